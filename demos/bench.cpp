@@ -22,6 +22,7 @@
 #include "bench/palette_cases.h"
 #include "bench/step_cases.h"
 #include "bench/touch_cases.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
@@ -227,16 +228,10 @@ std::vector<Eigen::Vector3d> pointsOn(const TriangleMesh& mesh, std::size_t coun
   return points;
 }
 
-Cage cageOf(const TriangleMesh& mesh, std::size_t tets) {
-  CageOptions options;
-  options.targetTets = tets;
-  return createCage(mesh, options).value();
-}
-
 /// Binds to a cage with a tenth as many tets. The time per vertex should not depend on the size.
 void attachSize(State& state, std::size_t vertices) {
   TriangleMesh mesh = makeSerpent({2 * vertices});
-  const Cage cage = cageOf(mesh, vertices / 10);
+  const Cage cage = builtCage(mesh, vertices / 10);
   const std::vector<Eigen::Vector3d> points = pointsOn(mesh, vertices);
   mesh = {};
   for (auto _ : state) {
@@ -254,7 +249,7 @@ void attachSize(State& state, std::size_t vertices) {
 void registerAttachSizes() {
   for (const std::size_t vertices : {10000, 100000, 1000000, 10000000}) {
     const std::string name = "Attach/vertices:" + std::to_string(vertices);
-    benchmark::RegisterBenchmark(name.c_str(), [vertices](State& state) { attachSize(state, vertices); })
+    benchmark::RegisterBenchmark(name.c_str(), attachSize, vertices)
         ->Unit(benchmark::kMillisecond)
         ->Iterations(static_cast<benchmark::IterationCount>(1 + 3000000 / vertices));
   }
@@ -266,7 +261,7 @@ std::function<const Bench&()> benchOfPoints(std::size_t vertices, std::size_t te
     if (!*made) {
       Model model;
       model.mesh = makeSerpent({std::min(vertices * 5 / 3, kMaxSerpentTriangles)});
-      model.cage = cageOf(model.mesh, tets);
+      model.cage = builtCage(model.mesh, tets);
       model.mesh.positions = pointsOn(model.mesh, vertices);
       model.mesh.triangles.clear();
       model.mesh.normals.clear();
@@ -302,7 +297,7 @@ void registerBuildBodySizes() {
     const std::string full = std::string(name) + "/tets:" + std::to_string(tets);
     benchmark::RegisterBenchmark(full.c_str(), [tets, function](State& state) {
       Model model;
-      model.cage = cageOf(makeSerpent(), tets);
+      model.cage = builtCage(makeSerpent(), tets);
       Bench bench(std::move(model), false);
       function(state, bench);
       state.counters["tets"] = static_cast<double>(bench.model.cage.mesh.tetCount());

@@ -2,30 +2,22 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Contact and joints compared with analytic results: momentum, friction, rolling, energy, rest.
-#include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <utility>
-
-#include "contact/report.h"
 #include "contact/scene_list.h"
-#include "scenes/command_line.h"
-#include "scenes/files.h"
+#include "measure/report.h"
 #include "scenes/input_error.h"
-#include "scenes/summary.h"
-#include "scenes/timer.h"
 
 using namespace tetskin;
 using namespace tetskin::contact_demo;
+using namespace tetskin::measure;
 using namespace tetskin::scenes;
 
 namespace {
 
 struct ContactOptions {
-  std::string only, json, markdown, before, bullet;
+  std::string only, before, bullet;
+  ReportOptions report;
   Force force = Force::Elastic;
   Contact contact = Contact::Surface;
-  bool quiet = false;
 
   Kind kind() const {
     if (force != Force::Elastic) return Kind::Bullet;
@@ -39,33 +31,17 @@ const char* titleOf(Kind kind) {
   return kind == Kind::Surface ? "tetskin-surface" : "tetskin-nodes";
 }
 
-SceneResult runScene(const ContactScene& scene, Kind kind) {
-  const WallTimer timer;
-  Run run(kind);
-  scene.run(run);
-  const double iterations = static_cast<double>(run.iterations) / std::max(1L, run.steps);
-  return {scene.name, run.steps, iterations, timer.seconds(), std::move(run.figures)};
-}
-
 SceneResults runScenes(const ContactOptions& options) {
   const Kind kind = options.kind();
   SceneResults results;
-  for (const ContactScene& scene : contactScenes()) {
+  for (const MeasuredScene& scene : contactScenes()) {
     if (scene.name.find(options.only) == std::string::npos || !scene.isFor(kind)) continue;
     results.push_back(runScene(scene, kind));
-    if (!options.quiet) print(results.back());
+    if (!options.report.quiet) print(results.back());
   }
   if (results.empty())
     throw InputError("--only " + options.only + ": no scene that can be run with these options has this in its name");
   return results;
-}
-
-std::size_t brokenIn(const SceneResults& results) {
-  std::size_t broken = 0;
-  for (const SceneResult& result : results) {
-    for (const Figure& figure : result.figures) broken += !holds(result, figure);
-  }
-  return broken;
 }
 
 int run(const ContactOptions& options) {
@@ -73,14 +49,8 @@ int run(const ContactOptions& options) {
   if (!options.before.empty()) columns.push_back({"before", readResults(options.before)});
   if (!options.bullet.empty()) columns.push_back({"Bullet", readResults(options.bullet)});
   columns.insert(columns.begin(), {titleOf(options.kind()), runScenes(options)});
-  const SceneResults& results = columns.front().results;
-  if (!options.json.empty()) writeJson(toJson(results), options.json);
-  if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(columns));
-  const std::size_t broken = brokenIn(results);
-  if (!options.quiet)
-    std::printf("\n%zu scenes; %zu figures outside the limits promised for contact at the surface\n", results.size(),
-                broken);
-  return broken == 0 || options.kind() != Kind::Surface ? kDone : kRunFailed;
+  const int status = finish(columns.front().results, toMarkdown(columns), options.report);
+  return options.kind() == Kind::Surface ? status : kDone;
 }
 
 }  // namespace
@@ -100,9 +70,7 @@ int main(int argc, char** argv) {
                 "Results of an earlier version (its --json file), for a column of the Markdown table");
   line.addInput("--bullet", options.bullet,
                 "Results of --elasticity bullet (its --json file), for a column of the Markdown table");
-  line.addSummaryOption(options.json);
-  line.addOutput("--markdown", options.markdown, "one row per promise, with its worst figure");
-  line.addQuietOption(options.quiet);
+  addReportOptions(line, options.report, "one row per promise, with its worst figure");
   return line.run(argc, argv, [&] {
     if (options.force != Force::Elastic && line.given("--contact") && options.contact == Contact::Surface) {
       throw InputError(

@@ -11,12 +11,12 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 
+#include "scenes/caged_mesh.h"
 #include "scenes/command_line.h"
 #include "scenes/crowd.h"
 #include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/memory.h"
-#include "scenes/placement.h"
 #include "scenes/progress.h"
 #include "scenes/statistics.h"
 #include "scenes/summary.h"
@@ -163,9 +163,7 @@ class Measurement {
     EmbedReport fit;
     const Status embedded = embed(model_.cage, model_.mesh, {}, &fit).status();
     requireFit(embedded, fit, options.model);
-    const Placement position = placementOf(boundingBox(model_.cage.mesh.nodes));
-    position.toWorld(model_.cage.mesh.nodes);
-    position.toWorld(model_.mesh.positions);
+    putInWorld(model_.mesh, model_.cage);
     SceneOptions scene;
     scene.bodies = options.bodies;
     scene.substeps = kSubsteps;

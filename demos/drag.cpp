@@ -15,11 +15,11 @@
 #include <optional>
 
 #include "drag/props.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/command_line.h"
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/joined_mesh.h"
-#include "scenes/placement.h"
 #include "scenes/playback.h"
 #include "scenes/printed_table.h"
 #include "scenes/recording.h"
@@ -101,9 +101,7 @@ class Ring {
 /// A height just above the floor.
 Model placedModel(const ModelOptions& options) {
   Model model = loadModel(options);
-  Placement position = placementOf(boundingBox(model.cage.mesh.nodes));
-  model.cage = position.toWorld(model.cage);
-  position.toWorld(model.mesh.positions);
+  putInWorld(model.mesh, model.cage);
   const double lift = 0.01 * kSize - boundingBox(model.mesh.positions).min().y();
   for (auto* points : {&model.cage.mesh.nodes, &model.mesh.positions}) {
     for (Vector3d& p : *points) p.y() += lift;
@@ -130,7 +128,7 @@ class Drag {
   /// The stretch of the spring, over the body's size; nothing if there is no spring.
   std::optional<double> stretch() const;
   /// Root mean square of the nodes' speeds, in body lengths per second.
-  double nodeSpeed() const;
+  double nodeSpeed() const { return scenes::nodeSpeed({&body_}) / kSize; }
   /// Records the run that follows.
   Recording record(const std::string& view) const;
   ViewMoment moment() const;
@@ -164,18 +162,12 @@ class Drag {
   Vector3d pointerNow_ = Vector3d::Zero();
 };
 
-SoftBodyBinding::Pointer bound(const Model& model) {
-  auto made = SoftBodyBinding::create(model.cage, model.mesh);
-  require(made.status());
-  return made.value();
-}
-
 Drag::Drag(const DragOptions& options)
     : options_(options),
       model_(placedModel(options.model)),
       world_(Force::Elastic, btVector3(0, btScalar(-kEarth), 0)),
       body_(world_.add(model_.cage, oneKilogram())),
-      binding_(bound(model_)),
+      binding_(boundTo(model_.cage, model_.mesh)),
       selfContact_(selfContactOf(model_.name, model_.cage, model_.mesh, options.selfContact, options.output.quiet)),
       tree_(SurfaceTree::create(binding_, model_.mesh).value()) {
   body_.setActivationState(DISABLE_DEACTIVATION);
@@ -262,12 +254,6 @@ bool Drag::step(int frame) {
 std::optional<double> Drag::stretch() const {
   if (!spring_) return {};
   return static_cast<double>(spring_->stretch()) / kSize;
-}
-
-double Drag::nodeSpeed() const {
-  double squared = 0.0;
-  for (int n = 0; n < body_.m_nodes.size(); ++n) squared += static_cast<double>(body_.m_nodes[n].m_v.length2());
-  return std::sqrt(squared / body_.m_nodes.size()) / kSize;
 }
 
 void Drag::measure(double t) {
@@ -392,7 +378,7 @@ class Phases {
   SolveTotals totalsBefore_, totalsNow_;
 };
 
-void printSummary(const nlohmann::ordered_json& json, const OutputOptions& output, const std::string& summary) {
+void printSummary(const nlohmann::ordered_json& json, const OutputOptions& output) {
   const auto percent = [&](const char* key) {
     return formatted("%.3f %% of the body's size", 100.0 * json.at(key).get<double>());
   };
@@ -411,12 +397,12 @@ void printSummary(const nlohmann::ordered_json& json, const OutputOptions& outpu
   const std::string pushed = formatted("%.0f vertices", json, "pushed_vertices");
   printValue("push", ifSo(json.at("pushed_vertices") > 0, pushed));
   printValue("frames", formatted("%.0f", json, "frames"));
-  printValue("files", firstFileOf(output) + " ... " + summary);
+  printValue("files", firstFileOf(output) + " ... " + summaryPath(output));
 }
 
 int run(const DragOptions& options) {
   const OutputOptions& output = options.output;
-  const std::string summary = summaryPath(output), view = viewPath(output);
+  const std::string view = viewPath(output);
   Drag drag(options);
   FrameWriter writer(framePlanOf(output, drag.drawn(), drag.floor()), ObjLayout::create(drag.drawn()));
   Recording recording = drag.record(view);
@@ -439,25 +425,17 @@ int run(const DragOptions& options) {
     writer.write(frame, surface, boundingBox(surface), {});
   };
   const Playback run = playFrames("simulating", output, drag.world(), step, keep, write);
-  writer.finish();
-  recording.writeGlb();
-  nlohmann::ordered_json json;
-  drag.tell(json);
-  json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
-  tellSolve(drag.world().solveTotals(), json);
-  json["frames"] = run.frames;
-  json["frames_written"] = run.written;
-  json["finite"] = run.finite;
-  json["out"] = output.out;
-  writeJson(json, summary);
-  if (!output.quiet) {
+  const auto summarise = [&] {
+    nlohmann::ordered_json json;
+    drag.tell(json);
+    json["simulation_ms_per_frame"] = run.simulationMs / run.steps();
+    tellSolve(drag.world().solveTotals(), json);
+    return json;
+  };
+  return finishRun("tetskin_drag", output, run, writer, recording, summarise, [&](const nlohmann::ordered_json& json) {
     std::printf("\n%s\n", phases.table().c_str());
-    printSummary(json, output, summary);
-  }
-  recording.writePage();
-  if (run.finite) return kDone;
-  std::fprintf(stderr, "tetskin_drag: the simulation exploded after frame %d\n", run.frames - 1);
-  return kRunFailed;
+    printSummary(json, output);
+  });
 }
 
 }  // namespace

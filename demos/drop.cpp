@@ -173,8 +173,6 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   json["skin_us_per_frame"] = surface_.microseconds / run.steps();
   json["write_ms_per_frame"] = run.writeMs / std::max(1, run.written);
   json["glb_ms"] = recording_->glbMilliseconds();
-  json["frames"] = run.frames;
-  json["frames_written"] = run.written;
   json["floor_y"] = floorY();
   json["margin"] = margin;
   json["lowest_y"] = totals_.lowest;
@@ -183,12 +181,10 @@ nlohmann::ordered_json Drop::summarise(const Playback& run) {
   json["extent_max"] = totals_.extentMax;
   json["rest_speed"] = totals_.restSpeed();
   json["at_rest"] = totals_.restSpeed() < kRestSpeed;
-  json["finite"] = run.finite;
-  json["out"] = options_.output.out;
   return json;
 }
 
-void printSummary(const nlohmann::ordered_json& json, const OutputOptions& output, const std::string& summaryPath) {
+void printSummary(const nlohmann::ordered_json& json, const OutputOptions& output) {
   const auto number = [&](const char* key, const char* format) { return formatted(format, json, key); };
   std::printf("\n");
   printValue("model", json.at("model").get<std::string>());
@@ -216,12 +212,12 @@ void printSummary(const nlohmann::ordered_json& json, const OutputOptions& outpu
   printValue("lowest point", "y = " + number("lowest_y", "%.4g") + "; floor at y = " + number("floor_y", "%.4g") +
                                  ", tolerance " + number("floor_tolerance", "%.2g"));
   printValue("frames", number("frames", "%.0f"));
-  printValue("files", firstFileOf(output) + " ... " + summaryPath);
+  printValue("files", firstFileOf(output) + " ... " + summaryPath(output));
 }
 
 int run(const DropOptions& options) {
   const OutputOptions& output = options.output;
-  const std::string path = summaryPath(output), view = viewPath(output);
+  const std::string view = viewPath(output);
   Drop drop(options);
   FramePlan plan = framePlanOf(output);
   plan.cages = options.writeCage;
@@ -232,22 +228,15 @@ int run(const DropOptions& options) {
   if (recording.hasGlb()) writer.addOther(Recording::kGlbName, recording.glbBytes());
 
   const Playback run = drop.simulate(writer);
-  writer.finish();
-  recording.writeGlb();
-  const nlohmann::ordered_json json = drop.summarise(run);
-  writeJson(json, path);
-  if (!output.quiet) printSummary(json, output, path);
-  recording.writePage();
-  if (!run.finite) {
-    std::fprintf(stderr, "tetskin_drop: the simulation exploded after frame %d\n", run.frames - 1);
-    return kRunFailed;
-  }
-  if (!run.aboveFloor) {
+  const int status = finishRun(
+      "tetskin_drop", output, run, writer, recording, [&] { return drop.summarise(run); },
+      [&](const nlohmann::ordered_json& json) { printSummary(json, output); });
+  if (status == kDone && !run.aboveFloor) {
     std::fprintf(stderr, "tetskin_drop: the surface passed through the floor at y = %g, down to y = %g\n",
                  drop.floorY(), drop.totals().lowest);
     return kRunFailed;
   }
-  return kDone;
+  return status;
 }
 
 }  // namespace

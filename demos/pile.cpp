@@ -17,6 +17,7 @@
 #include <random>
 #include <set>
 
+#include "scenes/caged_mesh.h"
 #include "scenes/command_line.h"
 #include "scenes/deepest_vertex.h"
 #include "scenes/frame_writer.h"
@@ -71,15 +72,11 @@ constexpr double kMaxCoordinate = 100.0 * kSize;
 /// A model scaled to the world about the origin, and what all bodies of it share.
 struct PileModel {
   explicit PileModel(const ModelOptions& options) : model(loadModel(options)) {
-    const Placement position = placementOf(boundingBox(model.cage.mesh.nodes));
-    model.cage = position.toWorld(model.cage);
-    position.toWorld(model.mesh.positions);
+    putInWorld(model.mesh, model.cage);
     auto made = ContactShape::create(model.cage, model.mesh);
     if (!made.ok()) throw InputError(model.name + ": " + made.status().message);
     shape = made.value();
-    auto bound = SoftBodyBinding::create(model.cage, model.mesh);
-    require(bound.status());
-    binding = bound.value();
+    binding = boundTo(model.cage, model.mesh);
   }
 
   Model model;
@@ -167,7 +164,7 @@ class Pile {
   /// Pairs of bodies that touch each other.
   std::size_t pairCount() const;
   /// Root mean square of the nodes' speeds, in body lengths per second.
-  double nodeSpeed() const;
+  double nodeSpeed() const { return scenes::nodeSpeed(bodies_) / kSize; }
   /// Of all steps so far.
   StageTimes stageTimes() const;
 
@@ -262,15 +259,6 @@ std::size_t Pile::pairCount() const {
     if (c.body != c.other) pairs.insert(std::minmax(c.body, c.other));
   }
   return pairs.size();
-}
-
-double Pile::nodeSpeed() const {
-  double squared = 0.0, count = 0.0;
-  for (const btSoftBody* body : bodies_) {
-    for (int n = 0; n < body->m_nodes.size(); ++n) squared += static_cast<double>(body->m_nodes[n].m_v.length2());
-    count += body->m_nodes.size();
-  }
-  return std::sqrt(squared / count) / kSize;
 }
 
 Recording Pile::record(const PileOptions& options, const std::string& view) const {
@@ -431,10 +419,6 @@ nlohmann::ordered_json summarise(const PileOptions& options, const Pile& pile, c
   json["contacts_at_end"] = pile.contactCount();
   json["pairs_at_end"] = pile.pairCount();
   json["node_speed_at_end"] = pile.nodeSpeed();
-  json["frames"] = run.frames;
-  json["frames_written"] = run.written;
-  json["finite"] = run.finite;
-  json["out"] = options.output.out;
   return json;
 }
 
@@ -444,7 +428,7 @@ std::string bodiesOf(const nlohmann::ordered_json& pair) {
   return ", of body " + pair[0].dump() + " in body " + pair[1].dump();
 }
 
-void printSummary(const nlohmann::ordered_json& json, const PileOptions& options, const std::string& summary) {
+void printSummary(const nlohmann::ordered_json& json, const PileOptions& options) {
   const auto percent = [&](const char* key) {
     return formatted("%.2f %% of the body's size", 100.0 * std::abs(json.at(key).get<double>()));
   };
@@ -471,12 +455,12 @@ void printSummary(const nlohmann::ordered_json& json, const PileOptions& options
                                     percent("deepest_contact_at_end") + " at the end");
   printValue("speed at the end", formatted("%.3f body lengths per second", json, "node_speed_at_end"));
   printValue("frames", formatted("%.0f", json, "frames"));
-  printValue("files", firstFileOf(options.output) + " ... " + summary);
+  printValue("files", firstFileOf(options.output) + " ... " + summaryPath(options.output));
 }
 
 int run(const PileOptions& options) {
   const OutputOptions& output = options.output;
-  const std::string summary = summaryPath(output), view = viewPath(output);
+  const std::string view = viewPath(output);
   Pile pile(options);
   FrameWriter writer(framePlanOf(output, pile.mesh(), pile.obstacles()), ObjLayout::create(pile.mesh()));
   Recording recording = pile.record(options, view);
@@ -500,18 +484,12 @@ int run(const PileOptions& options) {
     writer.write(frame, surface, boundingBox(surface), {});
   };
   const Playback run = playFrames("simulating", output, pile.world(), step, measure, write);
-  writer.finish();
-  recording.writeGlb();
-  const nlohmann::ordered_json json = summarise(options, pile, measured, run);
-  writeJson(json, summary);
-  if (!output.quiet) {
-    std::printf("\n%s\n", measured.table().c_str());
-    printSummary(json, options, summary);
-  }
-  recording.writePage();
-  if (run.finite) return kDone;
-  std::fprintf(stderr, "tetskin_pile: the simulation exploded after frame %d\n", run.frames - 1);
-  return kRunFailed;
+  return finishRun(
+      "tetskin_pile", output, run, writer, recording, [&] { return summarise(options, pile, measured, run); },
+      [&](const nlohmann::ordered_json& json) {
+        std::printf("\n%s\n", measured.table().c_str());
+        printSummary(json, options);
+      });
 }
 
 }  // namespace

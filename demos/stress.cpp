@@ -7,10 +7,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "scenes/command_line.h"
-#include "scenes/files.h"
+#include "measure/report.h"
 #include "scenes/input_error.h"
-#include "scenes/summary.h"
 #include "stress/report.h"
 #include "stress/run_case.h"
 
@@ -23,12 +21,10 @@ namespace {
 struct StressOptions {
   bool quick = false;
   bool lasting = false;
-  bool quiet = false;
   bool hash = false;
   std::string force = "both";
   std::string only;
-  std::string json;
-  std::string markdown;
+  measure::ReportOptions report;
 };
 
 bool isOfForce(const StressCase& stressCase, const std::string& whose) {
@@ -49,14 +45,14 @@ std::vector<StressCase> chosenCases(const StressOptions& options) {
 int run(const StressOptions& options) {
   const std::vector<StressCase> cases = chosenCases(options);
   std::vector<Row> rows;
+  RowPrinter printer(options.hash);
   for (const StressCase& stressCase : cases) {
     rows.push_back({stressCase, runCase(stressCase)});
-    if (!options.quiet) printRow(rows.back(), options.hash);
+    if (!options.report.quiet) printer.print(rows.back());
   }
   const auto broken = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.verdict.passed(); });
-  if (!options.json.empty()) writeJson(toJson(rows), options.json);
-  if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(rows));
-  if (!options.quiet) {
+  measure::write(options.report, toJson(rows), toMarkdown(rows));
+  if (!options.report.quiet) {
     printMap(rows);
     const auto gained = std::count_if(rows.begin(), rows.end(),
                                       [&](const Row& row) { return bulletCannot(row, rows).value_or(false); });
@@ -86,8 +82,6 @@ int main(int argc, char** argv) {
   line.addWord("--elasticity", options.force, {"both", "tetskin", "bullet"}, "both: all cases");
   line.addText("--only", options.only);
   line.addFlag("--hash", options.hash, "one per case");
-  line.addSummaryOption(options.json);
-  line.addOutput("--markdown", options.markdown);
-  line.addQuietOption(options.quiet);
+  measure::addReportOptions(line, options.report);
   return line.run(argc, argv, [&] { return run(options); });
 }

@@ -13,6 +13,7 @@
 #include "scenes/joined_mesh.h"
 #include "scenes/materials.h"
 #include "scenes/player.h"
+#include "scenes/printed_table.h"
 #include "scenes/recording.h"
 #include "scenes/summary.h"
 #include "scenes/wring.h"
@@ -153,8 +154,6 @@ nlohmann::ordered_json summarise(const Player& player, const TwistOptions& optio
   json["error_quadratic_max"] = quadraticError.max;
   json["normal_error_linear_deg"] = linearError.normalDegrees;
   json["normal_error_quadratic_deg"] = quadraticError.normalDegrees;
-  json["frames"] = run.frames;
-  json["frames_written"] = run.written;
   json["frame_turned"] = kTurned;
   json["frame_released"] = kReleased;
   json["nodes_off_twist_rms"] = totals.nodesOffTwist;
@@ -164,23 +163,15 @@ nlohmann::ordered_json summarise(const Player& player, const TwistOptions& optio
   json["skin_linear_us_per_frame"] = linear.microseconds / run.steps();
   json["skin_quadratic_us_per_frame"] = quadratic.microseconds / run.steps();
   json["extent_max"] = totals.extentMax;
-  json["finite"] = run.finite;
-  json["out"] = options.output.out;
   return json;
 }
 
-void printTable(const nlohmann::ordered_json& json, const OutputOptions& output, const std::string& summaryPath) {
+void printTable(const nlohmann::ordered_json& json, const OutputOptions& output) {
   const auto number = [&](const std::string& key) { return json.at(key).get<double>(); };
-  const auto both = [&](const char* what, const char* format, const std::string& key, const char* end,
-                        const char* unit) {
-    std::printf("  %-26s", what);
-    for (const char* kind : {"linear", "quadratic"}) std::printf(format, number(key + kind + end));
-    std::printf("  %s\n", unit);
-  };
-  const auto one = [&](const char* what, const char* format, const char* key, const char* unit) {
-    std::printf("  %-26s", what);
-    std::printf(format, number(key));
-    std::printf("  %s\n", unit);
+  PrintedTable table({{"nodes set to a full turn"}, {"linear"}, {"quadratic"}});
+  const auto both = [&](const char* what, const char* format, const std::string& key, const char* end) {
+    table.add(
+        {what, formatted(format, number(key + "linear" + end)), formatted(format, number(key + "quadratic" + end))});
   };
   std::printf("\n%s: %.0f vertices, %.0f tets\n", json.at("model").get<std::string>().c_str(), number("vertices"),
               number("tets"));
@@ -188,15 +179,17 @@ void printTable(const nlohmann::ordered_json& json, const OutputOptions& output,
     std::printf("  %.0f vertices outside the cage, the farthest is vertex %.0f at a distance of %.3g\n",
                 number("outside"), number("worst_vertex"), number("worst_distance"));
   }
-  std::printf("  %-26s%11s%11s\n", "", "linear", "quadratic");
-  both("error, RMS", "%11.2e", "error_", "_rms", "of the box's diagonal, with the nodes set to a full turn");
-  both("error, largest", "%11.2e", "error_", "_max", "of the box's diagonal");
-  both("error of normals, mean", "%11.2f", "normal_error_", "_deg", "degrees");
-  both("update", "%11.1f", "skin_", "_us_per_frame", "us per frame");
-  one("distance of both, RMS", "%22.2e", "difference_rms", "of the box's diagonal, when Bullet has turned the end");
-  one("nodes off an even twist", "%22.2e", "nodes_off_twist_rms", "of the box's diagonal, RMS, at the same time");
-  one("simulation", "%22.2f", "simulation_ms_per_frame", "ms per frame");
-  std::printf("  %s ... %s\n", firstFileOf(output).c_str(), summaryPath.c_str());
+  both("error, RMS, of the box's diagonal", "%.2e", "error_", "_rms");
+  both("error, largest, of the box's diagonal", "%.2e", "error_", "_max");
+  both("error of normals, mean, degrees", "%.2f", "normal_error_", "_deg");
+  both("update, us per frame", "%.1f", "skin_", "_us_per_frame");
+  std::printf("%s", table.text().c_str());
+  printValue("distance of both",
+             formatted("%.2e of the box's diagonal, RMS, when Bullet has turned the end", json, "difference_rms"));
+  printValue("nodes off even twist",
+             formatted("%.2e of the box's diagonal, RMS, at the same time", json, "nodes_off_twist_rms"));
+  printValue("simulation", formatted("%.2f ms per frame", json, "simulation_ms_per_frame"));
+  printValue("files", firstFileOf(output) + " ... " + summaryPath(output));
 }
 
 /// Both surfaces on one cage, as they are in the frames.
@@ -210,7 +203,7 @@ Recording record(const OutputOptions& output, const std::string& view, const Mod
 }
 
 int run(const TwistOptions& options) {
-  const std::string path = summaryPath(options.output), view = viewPath(options.output);
+  const std::string view = viewPath(options.output);
   Player player(options.model, "wring");
   const auto carry = [&](Interpolation interpolation) -> const Carried& {
     SkinOptions skin = options.skin;
@@ -233,15 +226,10 @@ int run(const TwistOptions& options) {
         if (recording.wanted()) recording.keep({{player.nodes(), pair.beside(player.nodes())}, {}});
       },
       [&](int frame) { pair.write(linear, quadratic, frame, writer); });
-  writer.finish();
-  recording.writeGlb();
-  const nlohmann::ordered_json json = summarise(player, options, totals, run, linear, quadratic);
-  writeJson(json, path);
-  if (!options.output.quiet) printTable(json, options.output, path);
-  recording.writePage();
-  if (run.finite) return kDone;
-  std::fprintf(stderr, "tetskin_twist: the simulation exploded after frame %d\n", run.frames - 1);
-  return kRunFailed;
+  return finishRun(
+      "tetskin_twist", options.output, run, writer, recording,
+      [&] { return summarise(player, options, totals, run, linear, quadratic); },
+      [&](const nlohmann::ordered_json& json) { printTable(json, options.output); });
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/elastic_body.h>
 #ifdef TETSKIN_BENCH_THREADS
 #include <tetskin/threads/thread_pool.h>
@@ -17,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/caged_mesh.h"
 #include "scenes/serpent.h"
 #include "scenes/table.h"
 
@@ -42,9 +42,7 @@ void buildFaceTree(State& state, std::size_t triangles) {
 }
 
 TetMesh serpentCage(std::size_t tets) {
-  CageOptions options;
-  options.targetTets = tets;
-  return createCage(makeSerpent(), options).value().mesh;
+  return scenes::builtCage(makeSerpent(), tets).mesh;
 }
 
 /// A cage with two components that share no node.
@@ -104,7 +102,7 @@ void registerThreads() {
   for (const std::size_t tets : {3000, 30000}) {
     for (const std::size_t threads : {1, 2, 4}) {
       const std::string name = "Step/threads:" + std::to_string(threads) + "/tets:" + std::to_string(tets);
-      benchmark::RegisterBenchmark(name.c_str(), [=](State& state) { stepWithThreads(state, tets, threads); })
+      benchmark::RegisterBenchmark(name.c_str(), stepWithThreads, tets, threads)
           ->Unit(benchmark::kMicrosecond)
           ->UseRealTime();
     }
@@ -118,16 +116,13 @@ void registerBodyCases() {
 #ifdef TETSKIN_BENCH_THREADS
   registerThreads();
 #endif
-  benchmark::RegisterBenchmark("FaceTree/60000", [](State& state) {
-    buildFaceTree(state, 60000);
-  })->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("FaceTree/60000", buildFaceTree, 60000)->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("Ray/two_parts", castRay)->Unit(benchmark::kMicrosecond);
   for (const int bodies : {1, 2}) {
     for (const bool faceTree : {true, false}) {
       const std::string name = std::string("Step/face_tree:") + (faceTree ? "yes" : "no") + "/bodies:";
-      benchmark::RegisterBenchmark((name + std::to_string(bodies)).c_str(), [bodies, faceTree](State& state) {
-        step(state, bodies, faceTree);
-      })->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark((name + std::to_string(bodies)).c_str(), step, bodies, faceTree)
+          ->Unit(benchmark::kMillisecond);
     }
   }
 }

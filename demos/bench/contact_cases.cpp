@@ -5,7 +5,6 @@
 #include <BulletSoftBody/btSoftBody.h>
 #include <benchmark/benchmark.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/cage/create_cage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "measure/obstacles.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/obstacle_mesh.h"
-#include "scenes/placement.h"
 #include "scenes/serpent.h"
 #include "scenes/world.h"
 
@@ -51,21 +51,20 @@ void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher
 
 /// What a body falls on, with its top at the origin, or what it hangs around.
 struct ContactObstacle {
-  std::unique_ptr<btTriangleMesh> triangles;
   std::unique_ptr<btCollisionShape> shape;
   btVector3 centre{0, 0, 0};
   std::vector<std::unique_ptr<btCollisionShape>> children{};  ///< children of a compound
 };
 
 ContactObstacle ground() {
-  return {nullptr, std::make_unique<btBoxShape>(btVector3(10, 1, 10)), btVector3(0, -1, 0)};
+  return {std::make_unique<btBoxShape>(btVector3(10, 1, 10)), btVector3(0, -1, 0)};
 }
 /// A runway longer than any distance that a body slides.
 ContactObstacle runway() {
-  return {nullptr, std::make_unique<btBoxShape>(btVector3(40, 1, 10)), btVector3(0, -1, 0)};
+  return {std::make_unique<btBoxShape>(btVector3(40, 1, 10)), btVector3(0, -1, 0)};
 }
 ContactObstacle sphere() {
-  return {nullptr, std::make_unique<btSphereShape>(btScalar(1.2)), btVector3(0, btScalar(-1.2), 0)};
+  return {std::make_unique<btSphereShape>(btScalar(1.2)), btVector3(0, btScalar(-1.2), 0)};
 }
 /// An ellipsoid.
 std::unique_ptr<btConvexHullShape> hullOf(const Eigen::Vector3d& radii, int rings) {
@@ -82,7 +81,7 @@ std::unique_ptr<btConvexHullShape> hullOf(const Eigen::Vector3d& radii, int ring
   return shape;
 }
 ContactObstacle hull() {
-  return {nullptr, hullOf({1.5, 0.8, 1.5}, 12), btVector3(0, btScalar(-0.8), 0)};
+  return {hullOf({1.5, 0.8, 1.5}, 12), btVector3(0, btScalar(-0.8), 0)};
 }
 /// A square of shapes, side by side in a compound, with their tops at the height of its origin.
 template <class MakeShape>
@@ -111,24 +110,25 @@ ContactObstacle compound() {
 }
 /// A hilly square of 1,152 triangles.
 ContactObstacle hills() {
-  auto triangles = std::make_unique<btTriangleMesh>();
   constexpr int kCells = 24;
   const auto corner = [](int i, int j) {
     const double x = 0.25 * (i - kCells / 2), z = 0.25 * (j - kCells / 2);
     return toBullet({x, 0.12 * std::sin(2 * x) * std::cos(2 * z), z});
   };
-  for (int i = 0; i < kCells; ++i) {
-    for (int j = 0; j < kCells; ++j) {
-      triangles->addTriangle(corner(i, j), corner(i, j + 1), corner(i + 1, j));
-      triangles->addTriangle(corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1));
+  const auto fill = [&](btTriangleMesh& mesh) {
+    for (int i = 0; i < kCells; ++i) {
+      for (int j = 0; j < kCells; ++j) {
+        mesh.addTriangle(corner(i, j), corner(i, j + 1), corner(i + 1, j));
+        mesh.addTriangle(corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1));
+      }
     }
-  }
-  auto shape = std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true);
-  return {std::move(triangles), std::move(shape), btVector3(0, 0, 0)};
+  };
+  return {std::make_unique<measure::TriangleShape>(fill), btVector3(0, 0, 0)};
 }
+
 /// An obstacle in the body's box, but not near its surface.
 ContactObstacle apart() {
-  return {nullptr, std::make_unique<btSphereShape>(btScalar(0.05)), btVector3(btScalar(0.6), 1, 0)};
+  return {std::make_unique<btSphereShape>(btScalar(0.05)), btVector3(btScalar(0.6), 1, 0)};
 }
 
 TriangleMesh ball() {
@@ -161,9 +161,7 @@ struct ContactCase {
 /// A body's mesh and cage, scaled to the world, at their initial position.
 struct ContactModel {
   explicit ContactModel(const ContactCase& made) : mesh(made.mesh()) {
-    CageOptions options;
-    options.targetTets = kContactTets;
-    cage = createCage(mesh, options).value();
+    cage = scenes::builtCage(mesh, kContactTets);
     const double scale = scenes::kSize / boundingBox(cage.mesh.nodes).sizes().maxCoeff();
     const double lift = made.height - scale * boundingBox(mesh.positions).min().y();
     for (auto* points : {&cage.mesh.nodes, &mesh.positions}) {
@@ -186,7 +184,10 @@ class ContactRun {
   ContactRun(const ContactModel& model, const ContactCase& made, Finder finder)
       : obstacle_(made.obstacle()),
         world_(finder == Finder::Bullet ? scenes::Force::NeoHookean : scenes::Force::Elastic, gravityOf(made, finder)) {
-    if (finder != Finder::Free) addObstacle(static_cast<btScalar>(made.friction));
+    if (finder != Finder::Free) {
+      const btTransform at(btQuaternion::getIdentity(), obstacle_.centre);
+      world_.addRigid(std::move(obstacle_.shape), at, 0.0).setFriction(static_cast<btScalar>(made.friction));
+    }
     const auto binding = SoftBodyBinding::create(model.cage, model.mesh).value();
     for (int b = 0; b < made.bodies; ++b) {
       Cage cage = model.cage;
@@ -198,11 +199,6 @@ class ContactRun {
     }
     static_cast<btCollisionDispatcher*>(world_.bullet().getDispatcher())->setNearCallback(timedNearCallback);
   }
-  ~ContactRun() {
-    if (rigid_) world_.bullet().removeRigidBody(rigid_.get());
-  }
-  ContactRun(const ContactRun&) = delete;
-  ContactRun& operator=(const ContactRun&) = delete;
 
   /// Simulates one frame. Returns seconds per substep, for pairs alone and in total.
   std::pair<double, double> step() {
@@ -214,14 +210,6 @@ class ContactRun {
   }
 
  private:
-  void addObstacle(btScalar friction) {
-    rigid_ = std::make_unique<btRigidBody>(0, nullptr, obstacle_.shape.get());
-    const btTransform at(btQuaternion::getIdentity(), obstacle_.centre);
-    rigid_->setWorldTransform(at);
-    rigid_->setInterpolationWorldTransform(at);
-    rigid_->setFriction(friction);
-    world_.bullet().addRigidBody(rigid_.get());
-  }
   /// A body that rolls turns about the centre of its height.
   static void setMotion(btSoftBody& body, const ContactCase& made) {
     btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
@@ -239,7 +227,6 @@ class ContactRun {
   }
 
   ContactObstacle obstacle_;
-  std::unique_ptr<btRigidBody> rigid_;
   scenes::World world_;
 };
 
@@ -295,8 +282,8 @@ std::vector<ContactCase> contactCases() {
 void registerContactCases() {
   for (const ContactCase& made : contactCases()) {
     for (const auto& [finder, suffix] : kFinders) {
-      const auto run = [made, finder = finder](State& state) { findContacts(state, made, finder); };
-      benchmark::RegisterBenchmark((std::string("Contact/") + made.name + suffix).c_str(), run)
+      const std::string full = std::string("Contact/") + made.name + suffix;
+      benchmark::RegisterBenchmark(full.c_str(), findContacts, made, finder)
           ->UseManualTime()
           ->Iterations(kContactFrames)
           ->Unit(benchmark::kMicrosecond);

@@ -4,11 +4,9 @@
 
 #include <BulletSoftBody/btDeformableGravityForce.h>
 #include <BulletSoftBody/btDeformableMassSpringForce.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 
 #include <algorithm>
@@ -18,9 +16,7 @@
 #include <vector>
 
 #include "bench/xpbd.h"
-#include "scenes/input_error.h"
-#include "scenes/model.h"
-#include "scenes/placement.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/serpent.h"
 #include "scenes/table.h"
 
@@ -37,10 +33,7 @@ constexpr int kXpbdSubsteps = 10;
 
 /// A cage scaled to the world.
 TetMesh worldCage(std::size_t tets) {
-  CageOptions options;
-  options.targetTets = tets;
-  TetMesh cage = createCage(scenes::makeSerpent(), options).value().mesh;
-  return scenes::placementOf(boundingBox(cage.nodes)).toWorld(std::move(cage)).mesh;
+  return scenes::inWorld(scenes::makeSerpent(), tets).cage.mesh;
 }
 
 /// Times frames of a run of kFrames that are spread evenly over it, however few the library asks for: a landing costs
@@ -119,19 +112,13 @@ void crowd(State& state, Force force) {
 
 /// A cloth of Bullet's springs that hangs by two corners: what Bullet's own bodies cost in a world with either solver.
 /// Bullet projects contacts in both.
-template <class Solver>
-void cloth(State& state) {
+void cloth(State& state, Force force) {
   constexpr int kSettled = 240;
   constexpr btScalar kFrame = btScalar(1.0 / 60.0);
-  btSoftBodyRigidBodyCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher(&configuration);
-  btDbvtBroadphase broadphase;
-  Solver solver;
-  btDeformableMultiBodyConstraintSolver constraintSolver;
-  constraintSolver.setDeformableSolver(&solver);
-  btDeformableMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &constraintSolver, &configuration, &solver);
-  world.setUseProjection(true);
   const btVector3 gravity(0, btScalar(-scenes::kEarth), 0);
+  scenes::World owner(force, gravity);
+  auto& world = static_cast<btDeformableMultiBodyDynamicsWorld&>(owner.bullet());
+  world.setUseProjection(true);
   btDeformableMassSpringForce springs(30, 1, true);
   btDeformableGravityForce weight(gravity);
   const std::unique_ptr<btSoftBody> body(btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), {-4, 0, -4}, {4, 0, -4},
@@ -209,15 +196,11 @@ void held(State& state, std::size_t tets, double stiffness) {
 /// The serpent scaled to the world, and its contact shape with 4,000 samples.
 struct TouchingModel {
   explicit TouchingModel(std::size_t tets) {
-    scenes::ModelOptions options;
-    options.tets = tets;
-    scenes::Model model = scenes::loadModel(options);
-    const scenes::Placement position = scenes::placementOf(boundingBox(model.cage.mesh.nodes));
-    cage = position.toWorld(model.cage);
-    position.toWorld(model.mesh.positions);
-    ContactShapeOptions shapeOptions;
-    shapeOptions.sampleCount = 4000;
-    shape = ContactShape::create(cage, model.mesh, shapeOptions).value();
+    scenes::CagedMesh serpent = scenes::inWorld(scenes::makeSerpent(), tets);
+    ContactShapeOptions options;
+    options.sampleCount = 4000;
+    shape = ContactShape::create(serpent.cage, serpent.mesh, options).value();
+    cage = std::move(serpent.cage);
   }
 
   Cage cage;
@@ -284,9 +267,7 @@ void registerHeld() {
   for (const std::size_t tets : {500, 3000, 30000}) {
     for (const int kilopascals : {3, 30, 300}) {
       const std::string name = "Step/held/kPa:" + std::to_string(kilopascals) + "/tets:" + std::to_string(tets);
-      benchmark::RegisterBenchmark(name.c_str(), [=](State& state) {
-        held(state, tets, 1e3 * kilopascals);
-      })->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(name.c_str(), held, tets, 1e3 * kilopascals)->Unit(benchmark::kMillisecond);
     }
   }
 }
@@ -297,9 +278,8 @@ void registerSoftPairs() {
       for (const bool touch : {false, true}) {
         const std::string name = "Step/soft_pair/" + std::string(apart ? "apart" : "touching") +
                                  (touch ? "/contact" : "/none") + "/tets:" + std::to_string(tets);
-        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) {
-          softPair(state, tets, apart ? 4.0 : 0.0, touch);
-        })->Unit(benchmark::kMicrosecond);
+        benchmark::RegisterBenchmark(name.c_str(), softPair, tets, apart ? 4.0 : 0.0, touch)
+            ->Unit(benchmark::kMicrosecond);
       }
     }
   }
@@ -311,9 +291,7 @@ void registerSoftSelves() {
       for (const bool itself : {false, true}) {
         const std::string name = "Step/soft_self/" + std::string(sinks ? "touching" : "apart") +
                                  (itself ? "/contact" : "/none") + "/tets:" + std::to_string(tets);
-        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) {
-          softSelf(state, tets, sinks, itself);
-        })->Unit(benchmark::kMicrosecond);
+        benchmark::RegisterBenchmark(name.c_str(), softSelf, tets, sinks, itself)->Unit(benchmark::kMicrosecond);
       }
     }
   }
@@ -322,8 +300,8 @@ void registerSoftSelves() {
 }  // namespace
 
 void registerStepCases() {
-  benchmark::RegisterBenchmark("Step/cloth/bullet", cloth<btDeformableBodySolver>)->Unit(benchmark::kMicrosecond);
-  benchmark::RegisterBenchmark("Step/cloth/tetskin", cloth<DeformableSolver>)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Step/cloth/bullet", cloth, Force::NeoHookean)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Step/cloth/tetskin", cloth, Force::Elastic)->Unit(benchmark::kMicrosecond);
   registerHeld();
   registerSoftPairs();
   registerSoftSelves();
@@ -333,17 +311,14 @@ void registerStepCases() {
   for (const std::size_t tets : {300, 3000, 10000, 30000, 100000}) {
     const std::string size = "/tets:" + std::to_string(tets);
     for (const auto& [name, force] : forces) {
-      const auto run = [force = force, tets](State& state) { drop(state, force, tets); };
-      benchmark::RegisterBenchmark(("Step/" + std::string(name) + size).c_str(), run)->Unit(benchmark::kMillisecond);
+      const std::string full = std::string("Step/") + name + size;
+      benchmark::RegisterBenchmark(full.c_str(), drop, force, tets)->Unit(benchmark::kMillisecond);
     }
-    benchmark::RegisterBenchmark(("Step/xpbd" + size).c_str(), [tets](State& state) {
-      dropXpbd(state, tets);
-    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("Step/xpbd" + size).c_str(), dropXpbd, tets)->Unit(benchmark::kMillisecond);
   }
   for (const auto& [name, force] : {forces[0], forces[2]}) {
-    const auto run = [force = force](State& state) { crowd(state, force); };
-    benchmark::RegisterBenchmark(("Step/sleeping_crowd/" + std::string(name)).c_str(), run)
-        ->Unit(benchmark::kMillisecond);
+    const std::string full = std::string("Step/sleeping_crowd/") + name;
+    benchmark::RegisterBenchmark(full.c_str(), crowd, force)->Unit(benchmark::kMillisecond);
   }
 }
 

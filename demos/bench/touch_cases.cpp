@@ -6,7 +6,6 @@
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 #include <benchmark/benchmark.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/cage/create_cage.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 
@@ -15,7 +14,8 @@
 #include <random>
 #include <string>
 
-#include "scenes/placement.h"
+#include "measure/body_model.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/serpent.h"
 #include "scenes/world.h"
 
@@ -32,30 +32,16 @@ constexpr int kSwingFrames = 120;
 /// Farther than any body is sent, in units of its size: a body beyond it has exploded.
 constexpr double kLost = 50.0;
 
-struct TouchModel {
-  Cage cage;
-  TriangleMesh mesh;
-  std::shared_ptr<const SoftBodyBinding> binding;
-};
-
 /// The serpent, kSize long, with its cage's centre two of its sizes above the origin.
-const TouchModel& serpent() {
-  static const TouchModel model = [] {
-    TouchModel made;
-    made.mesh = scenes::makeSerpent();
-    CageOptions options;
-    options.targetTets = kTouchTets;
-    made.cage = createCage(made.mesh, options).value();
-    const scenes::Placement position = scenes::placementOf(boundingBox(made.cage.mesh.nodes));
-    made.cage = position.toWorld(made.cage);
-    position.toWorld(made.mesh.positions);
+const measure::BodyModel& serpent() {
+  static const measure::ModelPtr model = [] {
+    scenes::CagedMesh made = scenes::inWorld(scenes::makeSerpent(), kTouchTets);
     for (auto* points : {&made.cage.mesh.nodes, &made.mesh.positions}) {
       for (Vector3d& p : *points) p.y() += 2 * scenes::kSize;
     }
-    made.binding = SoftBodyBinding::create(made.cage, made.mesh).value();
-    return made;
+    return measure::makeModel(std::move(made.mesh), std::move(made.cage));
   }();
-  return model;
+  return *model;
 }
 
 /// The vertex of the mesh that is furthest along an axis.
@@ -86,7 +72,7 @@ std::vector<std::array<btVector3, 2>> raysThrough(const SoftBodySkin& skin, std:
 
 /// fits  the face tree is refitted, as the body moves before every ray
 void castRays(State& state, bool fits) {
-  const TouchModel& model = serpent();
+  const measure::BodyModel& model = serpent();
   scenes::World world(scenes::Force::Elastic, btVector3(0, 0, 0));
   btSoftBody& body = world.add(model.cage, scenes::oneKilogram());
   SoftBodySkin skin;
@@ -144,7 +130,7 @@ std::unique_ptr<btDeformableMousePickingForce> bulletsForce(btSoftBody& body, co
 /// The serpent hangs by its top, and is swung. The lag is the largest distance between point and target after a frame,
 /// from half a second onwards.
 void swing(State& state, Puller puller, double stiffness, int rate) {
-  const TouchModel& model = serpent();
+  const measure::BodyModel& model = serpent();
   double lag = 0;
   bool lost = false;
   for (auto _ : state) {
@@ -183,7 +169,7 @@ void swing(State& state, Puller puller, double stiffness, int rate) {
 
 /// A rigid body of the given mass (the soft body's is 1) hangs from the serpent's lowest point, while its top is swung.
 void hang(State& state, bool welded, double mass, int rate) {
-  const TouchModel& model = serpent();
+  const measure::BodyModel& model = serpent();
   double worst = 0;
   for (auto _ : state) {
     scenes::World world(scenes::Force::Elastic, btVector3(0, btScalar(-9.81), 0));
@@ -193,36 +179,28 @@ void hang(State& state, bool welded, double mass, int rate) {
     const SurfacePoint top = tree.pointAtVertex(body, furthest(model.mesh, Vector3d::UnitY())).value();
     const SurfacePoint low = tree.pointAtVertex(body, furthest(model.mesh, -Vector3d::UnitY())).value();
     const btVector3 start = *top.position(), pivot(0, btScalar(0.1), 0);
-    btBoxShape shape(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
-    btVector3 inertia;
-    shape.calculateLocalInertia(static_cast<btScalar>(mass), inertia);
-    btRigidBody box(static_cast<btScalar>(mass), nullptr, &shape, inertia);
-    box.setWorldTransform(btTransform(btMatrix3x3::getIdentity(), *low.position() - pivot));
-    box.setInterpolationWorldTransform(box.getWorldTransform());
+    btRigidBody& box = world.addRigid(std::make_unique<btBoxShape>(toBullet(Vector3d(0.1, 0.1, 0.1))),
+                                      btTransform(btMatrix3x3::getIdentity(), *low.position() - pivot), mass);
     box.setActivationState(DISABLE_DEACTIVATION);
-    world.bullet().addRigidBody(&box);
-    {
-      SurfaceSpringOptions stiff;
-      stiff.stiffness = 100;
-      const auto holder = SurfaceSpring::add(world.bullet(), top, stiff).value();
-      std::unique_ptr<SurfaceWeld> weld;
-      std::unique_ptr<SurfaceSpring> joint;
-      if (welded) {
-        weld = SurfaceWeld::add(world.bullet(), low, box).value();
-      } else {
-        joint = SurfaceSpring::add(world.bullet(), low, box, pivot).value();
-      }
-      const int substeps = static_cast<int>(std::lround(rate * kFrameTime));
-      for (int frame = 1; frame <= kSwingFrames; ++frame) {
-        (void)holder->setTarget(swung(start, frame * kFrameTime));
-        for (int s = 0; s < substeps; ++s) {
-          world.step(kFrameTime / substeps);
-          worst = std::max(worst, static_cast<double>(weld ? weld->separation() : joint->stretch()));
-        }
-      }
-      if (!toEigen(*low.position()).allFinite() || low.position()->length() > kLost) worst = HUGE_VAL;
+    SurfaceSpringOptions stiff;
+    stiff.stiffness = 100;
+    const auto holder = SurfaceSpring::add(world.bullet(), top, stiff).value();
+    std::unique_ptr<SurfaceWeld> weld;
+    std::unique_ptr<SurfaceSpring> joint;
+    if (welded) {
+      weld = SurfaceWeld::add(world.bullet(), low, box).value();
+    } else {
+      joint = SurfaceSpring::add(world.bullet(), low, box, pivot).value();
     }
-    world.bullet().removeRigidBody(&box);
+    const int substeps = static_cast<int>(std::lround(rate * kFrameTime));
+    for (int frame = 1; frame <= kSwingFrames; ++frame) {
+      (void)holder->setTarget(swung(start, frame * kFrameTime));
+      for (int s = 0; s < substeps; ++s) {
+        world.step(kFrameTime / substeps);
+        worst = std::max(worst, static_cast<double>(weld ? weld->separation() : joint->stretch()));
+      }
+    }
+    if (!toEigen(*low.position()).allFinite() || low.position()->length() > kLost) worst = HUGE_VAL;
   }
   state.counters["separation_S"] = worst / scenes::kSize;
 }
@@ -241,10 +219,8 @@ void registerSwings() {
       for (const int rate : {60, 240, 1000}) {
         const std::string name =
             std::string("Touch/") + pullerName + named("stiffness", stiffness) + named("rate", rate);
-        benchmark::RegisterBenchmark(name.c_str(),
-                                     [=, pulls = puller](State& state) { swing(state, pulls, stiffness, rate); })
-            ->Iterations(1)
-            ->Unit(benchmark::kMillisecond);
+        const auto run = [=, puller = puller](State& state) { swing(state, puller, stiffness, rate); };
+        benchmark::RegisterBenchmark(name.c_str(), run)->Iterations(1)->Unit(benchmark::kMillisecond);
       }
     }
   }
@@ -253,19 +229,15 @@ void registerSwings() {
 }  // namespace
 
 void registerTouchCases() {
-  benchmark::RegisterBenchmark("Touch/ray", [](State& state) {
-    castRays(state, false);
-  })->Unit(benchmark::kMicrosecond);
-  benchmark::RegisterBenchmark("Touch/ray_after_a_step", [](State& state) {
-    castRays(state, true);
-  })->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Touch/ray", castRays, false)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("Touch/ray_after_a_step", castRays, true)->Unit(benchmark::kMicrosecond);
   registerSwings();
   for (const bool welded : {true, false}) {
     for (const double mass : {0.01, 0.1, 1.0, 10.0}) {
       for (const int rate : {60, 240}) {
         const std::string name =
             std::string("Touch/") + (welded ? "weld" : "ball_joint") + named("mass", mass) + named("rate", rate);
-        benchmark::RegisterBenchmark(name.c_str(), [=](State& state) { hang(state, welded, mass, rate); })
+        benchmark::RegisterBenchmark(name.c_str(), hang, welded, mass, rate)
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);
       }

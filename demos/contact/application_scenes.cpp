@@ -9,13 +9,14 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
@@ -29,9 +30,9 @@ BodyOptions applicationBody(double youngsModulus, bool byNodes) {
 }
 
 /// A world set up as in that application.
-class ApplicationWorld : public ContactWorld {
+class ApplicationWorld : public MeasuringWorld {
  public:
-  explicit ApplicationWorld(Run& run) : ContactWorld(run) { bullet().getSolverInfo().m_numIterations = 50; }
+  explicit ApplicationWorld(Run& run) : MeasuringWorld(run) { bullet().getSolverInfo().m_numIterations = 50; }
 
   btRigidBody& addPlate(double y, double mass) {
     btRigidBody& plate = addBox({0, y, 0}, {0.4, 0.1, 0.4}, mass);
@@ -150,7 +151,7 @@ void slope(Run& run, double degrees, bool byNodes) {
 
 /// Bullet's mouse force drags a face of a body at rest.
 void mouse(Run& run) {
-  ContactWorld world(run, Vector3d::Zero());
+  MeasuringWorld world(run, Vector3d::Zero());
   world.bullet().getSolverInfo().m_numIterations = 50;
   SoftObject& body = world.addSoft(makeLattice({4, 4, 4}, 0.25), applicationBody(2e4, true), Vector3d(0, 2.5, 0));
   btSoftBody::Face& face = body.soft().m_faces[0];

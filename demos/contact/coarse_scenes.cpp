@@ -12,74 +12,53 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
+#include "measure/obstacles.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 constexpr double kAside = 0.25;  ///< distance of supports from the middle, S
 const Vector3d kCube(0.5, 0.5, 0.5), kThinPlate(0.5, 0.05, 0.5);
 
-/// A rigid thing on both sides of the middle, or at the four corners of a square about it; all in units of S.
+/// Solids on both sides of the middle, or at the four corners of a square about it.
 struct Support {
-  std::function<std::unique_ptr<btCollisionShape>(btScalar size)> make;
-  btQuaternion turn;
-  double top = 0.0;    ///< above its centre
-  Distance distance;   ///< from its centre
+  std::function<Solid(double size)> make;
+  double top = 0.0;    ///< above its centre, S
   bool isLong = true;  ///< along z: two of them, otherwise four
 };
 
-Support ball(double radius) {
-  return {[=](btScalar size) { return std::make_unique<btSphereShape>(size * static_cast<btScalar>(radius)); },
-          btQuaternion::getIdentity(), radius, [=](const Vector3d& p) { return p.norm() - radius; }, false};
+Support onBalls(double radius) {
+  return {[=](double size) { return ball(size * radius); }, radius, false};
 }
-Support pole(double radius) {
-  return {
-      [=](btScalar size) { return std::make_unique<btCapsuleShapeZ>(size * static_cast<btScalar>(radius), 2 * size); },
-      btQuaternion::getIdentity(), radius, [=](const Vector3d& p) { return std::hypot(p.x(), p.y()) - radius; }};
+Support onPoles(double radius) {
+  return {[=](double size) { return capsule(size * radius, size); }, radius};
 }
-Support cylinder(double radius) {
-  Support round = pole(radius);
-  round.make = [=](btScalar size) {
-    const auto r = static_cast<btScalar>(radius);
-    return std::make_unique<btCylinderShapeZ>(size * btVector3(r, r, 1));
-  };
-  return round;
+Support onCylinders(double radius) {
+  return {[=](double size) { return cylinder(size * radius, size); }, radius};
 }
-/// The edge of a beam, with sides at 45 degrees.
-Support edge() {
-  constexpr double kHalf = 0.1;
-  return {[=](btScalar size) {
-            return std::make_unique<btBoxShape>(size * btVector3(btScalar(kHalf), btScalar(kHalf), 1));
-          },
-          btQuaternion(btVector3(0, 0, 1), SIMD_PI / 4), kHalf * std::sqrt(2.0),
-          [=](const Vector3d& p) {
-            const double u = std::abs(p.x() + p.y()) / std::sqrt(2.0) - kHalf;
-            const double v = std::abs(p.x() - p.y()) / std::sqrt(2.0) - kHalf;
-            return std::max(u, v) < 0.0 ? std::max(u, v) : std::hypot(std::max(u, 0.0), std::max(v, 0.0));
-          }};
+/// The edges of beams, with sides at 45 degrees.
+Support onEdges() {
+  const Vector3d half(0.1, 0.1, 1);
+  return {[=](double size) { return box(size * half, 0.25 * EIGEN_PI); }, half.x() * std::sqrt(2.0)};
 }
 
-std::vector<Vector3d> placesOf(const Support& support) {
-  std::vector<Vector3d> places;
+/// The tops are at the height 0.
+Obstacle obstacleOf(const Support& support, double size) {
+  std::vector<Vector3d> centres;
   for (const double x : {-kAside, kAside}) {
     if (support.isLong) {
-      places.emplace_back(x, -support.top, 0.0);
+      centres.push_back(size * Vector3d(x, -support.top, 0));
     } else {
-      for (const double z : {-kAside, kAside}) places.emplace_back(x, -support.top, z);
+      for (const double z : {-kAside, kAside}) centres.push_back(size * Vector3d(x, -support.top, z));
     }
   }
-  return places;
-}
-
-BodyOptions optionsFor(double size, double stiffness) {
-  BodyOptions options;
-  options.stiffness = stiffness * size;  // gravity grows with the size, too
-  return options;
+  return measure::obstacleOf(support.make(size), centres);
 }
 
 /// The least distance of the drawn triangles, corners and what is between them, less the margin, S.
@@ -91,31 +70,25 @@ double gapAsDrawn(SoftObject& body, double size, const Distance& distance) {
     const Vector3d &p = at[static_cast<std::size_t>(a)], u = at[static_cast<std::size_t>(b)] - p,
                    v = at[static_cast<std::size_t>(c)] - p;
     for (int i = 0; i <= kParts; ++i) {
-      for (int k = 0; i + k <= kParts; ++k) lower(minimum, distance((p + (i * u + k * v) / kParts) / size));
+      for (int k = 0; i + k <= kParts; ++k) lower(minimum, distance(p + (i * u + k * v) / kParts));
     }
   }
-  return minimum - kMargin * body.model().size / size;
+  return (minimum - kMargin * body.model().size) / size;
 }
 
-/// A box lies down on supports, whose tops are at the height 0.
+/// A box lies down on supports.
 void lieOnSupports(Run& run, const Vector3d& half, const Support& support, double size) {
   constexpr double kFall = 0.01;
-  ContactWorld world(run, Vector3d(0, -scenes::kEarth * size, 0));
-  const std::vector<Vector3d> places = placesOf(support);
-  for (const Vector3d& place : places) {
-    world.addRigid(support.make(static_cast<btScalar>(size)), btTransform(support.turn, toBullet(size * place)));
-  }
-  const Distance nearest = [&](const Vector3d& p) {
-    double minimum = HUGE_VAL;
-    for (const Vector3d& place : places) lower(minimum, support.distance(p - place));
-    return minimum;
-  };
+  MeasuringWorld world(run, Vector3d(0, -scenes::kEarth * size, 0));
+  const Obstacle obstacle = obstacleOf(support, size);
+  obstacle.addTo(world);
+  // Gravity grows with the size, too.
   SoftObject& body =
-      world.addSoft(makeCoarseBox(half * size), optionsFor(size, 500.0), Vector3d(0, size * (half.y() + kFall), 0));
+      world.addSoft(makeCoarseBox(half * size), BodyOptions{500.0 * size}, Vector3d(0, size * (half.y() + kFall), 0));
   double gap = HUGE_VAL;
   for (int tenth = 0; tenth < 30; ++tenth) {
     world.simulate(0.1);
-    lower(gap, gapAsDrawn(body, size, nearest));
+    lower(gap, gapAsDrawn(body, size, obstacle.distance));
   }
   run.report("least gap as drawn, S", gap);
   run.report("fastest node, S/s", body.fastest() / size);
@@ -125,9 +98,8 @@ void lieOnSupports(Run& run, const Vector3d& half, const Support& support, doubl
 void ballsOnMat(Run& run) {
   constexpr double kHalfHeight = 0.2, kRadius = 0.05, kTouching = 0.005, kMass = 0.01;
   const ModelPtr mat = makeCoarseBox({1.0, kHalfHeight, 1.0}, 3000);
-  ContactWorld world(run);
-  BodyOptions options;
-  options.stiffness = 500;
+  MeasuringWorld world(run);
+  BodyOptions options{500};
   options.pinned = [](const Vector3d& p) { return p.y() < 0.01 - kHalfHeight; };
   SoftObject& body = world.addSoft(mat, options, Vector3d(0, -kHalfHeight, 0));
   std::vector<const btRigidBody*> balls;
@@ -155,9 +127,8 @@ void ballsOnMat(Run& run) {
 
 /// A cube on an equal one that is turned by 45 degrees and held at its bottom, so that edges cross.
 void cubeOnCube(Run& run) {
-  ContactWorld world(run);
-  BodyOptions options;
-  options.stiffness = 500;
+  MeasuringWorld world(run);
+  BodyOptions options{500};
   Eigen::Isometry3d turned(Eigen::AngleAxisd(0.25 * EIGEN_PI, Vector3d::UnitY()));
   turned.pretranslate(Vector3d(0, 0.51, 0));
   SoftObject& upper = world.addSoft(makeCoarseBox(kCube), options, turned);
@@ -176,12 +147,12 @@ void addCoarseScenes(ContactScenes& scenes) {
   const auto add = [&](const std::string& name, const Vector3d& half, const Support& support, double size = 1.0) {
     scenes.push_back({"coarse/" + name, [=](Run& run) { lieOnSupports(run, half, support, size); }});
   };
-  add("cube on balls", kCube, ball(0.1));
-  add("cube on poles", kCube, pole(0.03));
-  add("cube on cylinders", kCube, cylinder(0.05));
-  for (const double size : {0.01, 1.0, 100.0}) add("cube on edges/size " + text(size), kCube, edge(), size);
-  add("plate on balls", kThinPlate, ball(0.05));
-  add("plate on edges", kThinPlate, edge());
+  add("cube on balls", kCube, onBalls(0.1));
+  add("cube on poles", kCube, onPoles(0.03));
+  add("cube on cylinders", kCube, onCylinders(0.05));
+  for (const double size : {0.01, 1.0, 100.0}) add("cube on edges/size " + text(size), kCube, onEdges(), size);
+  add("plate on balls", kThinPlate, onBalls(0.05));
+  add("plate on edges", kThinPlate, onEdges());
   scenes.push_back({"coarse/balls on a mat", ballsOnMat});
   scenes.push_back({"coarse/cube on cube", cubeOnCube, {Kind::Surface}});
 }

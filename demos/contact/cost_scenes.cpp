@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_world.h"
 #include "contact/scene_list.h"
+#include "measure/measuring_world.h"
 #include "scenes/input_error.h"
 #include "scenes/statistics.h"
 #include "scenes/timer.h"
@@ -21,9 +21,10 @@
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
-double stepMilliseconds(ContactWorld& world) {
+double stepMilliseconds(MeasuringWorld& world) {
   const scenes::CpuTimer timer;
   world.step();
   return timer.milliseconds();
@@ -52,7 +53,7 @@ std::vector<SurfacePoint> randomPoints(SoftObject& body, int count) {
 /// A ball hangs from this many springs to points in space: the median time of several steps.
 double millisecondsOfSprings(Run& run, int count) {
   constexpr int kWarm = 3, kSteps = 9;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   SoftObject& ball = world.addSoft(makeBall(), {}, Vector3d(0, 0, 0));
   std::vector<std::unique_ptr<SurfaceSpring>> springs;
   for (const SurfacePoint& point : randomPoints(ball, count)) {
@@ -78,7 +79,7 @@ void manySprings(Run& run) {
 }
 
 /// A thousand rotating cubes, two of their sizes apart.
-void addCubes(ContactWorld& world, const ModelPtr& model, bool touching) {
+void addCubes(MeasuringWorld& world, const ModelPtr& model, bool touching) {
   constexpr int kAlong = 10;
   const double apart = 3.0 * model->size;
   BodyOptions options;
@@ -95,7 +96,7 @@ void addCubes(ContactWorld& world, const ModelPtr& model, bool touching) {
 void apart(Run& run) {
   constexpr int kWarm = 5, kSteps = 61;
   const ModelPtr model = makeLattice({2, 2, 2}, 0.25);
-  ContactWorld without(run, Vector3d::Zero()), with(run, Vector3d::Zero());
+  MeasuringWorld without(run, Vector3d::Zero()), with(run, Vector3d::Zero());
   addCubes(without, model, false);
   addCubes(with, model, true);
   std::vector<double> withoutContact, withContact, ratios;

@@ -10,26 +10,20 @@
 #include <memory>
 #include <random>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 /// Gravity on a slope that falls towards +x. The slope itself stays level in the world, so it is exact.
 Vector3d gravityOn(double slope) {
   return scenes::kEarth * Vector3d(std::sin(slope), -std::cos(slope), 0);
-}
-
-BodyOptions bodyOf(double stiffness, double friction) {
-  BodyOptions options;
-  options.stiffness = stiffness;
-  options.friction = friction;
-  return options;
 }
 
 ModelPtr flatBox(int divisions = 16, Copies copies = {}) {
@@ -49,9 +43,9 @@ struct Rolled {
 /// A ball that has come to rest rolls down a slope of 10 degrees, until it reaches 1 m/s.
 Rolled roll(Run& run, const Rolling& rolling) {
   constexpr double kSlope = 10.0 * EIGEN_PI / 180, kRadius = 0.5, kFrom = 0.1, kUntil = 2.5, kSpeed = 1.0;
-  ContactWorld world(run, gravityOn(0.0));
+  MeasuringWorld world(run, gravityOn(0.0));
   world.addFloor();
-  BodyOptions options = bodyOf(rolling.stiffness, 0.8);
+  BodyOptions options = BodyOptions{rolling.stiffness, 0.8};
   options.damping = 0.05;
   options.tolerance = rolling.tolerance;
   SoftObject& ball = world.addSoftOn(0.0, makeBall(rolling.tets), options, -2.0);
@@ -102,7 +96,7 @@ constexpr double kTableSpin = 1.8;
 /// A turntable that keeps its angle.
 class Turntable {
  public:
-  explicit Turntable(ContactWorld& world)
+  explicit Turntable(MeasuringWorld& world)
       : world_(world),
         table_(world.makeKinematic(
             world.addRigid(std::make_unique<btCylinderShape>(btVector3(4, btScalar(0.5), 4)), turned(0.0)))) {}
@@ -124,21 +118,21 @@ class Turntable {
     return btTransform(btQuaternion(btVector3(0, 1, 0), static_cast<btScalar>(angle)), btVector3(0, btScalar(-0.5), 0));
   }
 
-  ContactWorld& world_;
+  MeasuringWorld& world_;
   btRigidBody& table_;
   double angle_ = 0.0;
 };
 
 constexpr double kRiderSize = 0.5;
 
-SoftObject& addRider(ContactWorld& world, double stiffness, double friction, double radius) {
-  return world.addSoftOn(0.0, makeBox(Vector3d(0.25, 0.125, 0.25)), bodyOf(stiffness, friction), radius);
+SoftObject& addRider(MeasuringWorld& world, double stiffness, double friction, double radius) {
+  return world.addSoftOn(0.0, makeBox(Vector3d(0.25, 0.125, 0.25)), BodyOptions{stiffness, friction}, radius);
 }
 
 /// A box rides on the table at 2 m from the axis; this needs a friction coefficient of 0.66.
 void ride(Run& run, double stiffness, double friction) {
   constexpr double kRadius = 2.0;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   Turntable table(world);
   SoftObject& rider = addRider(world, stiffness, friction, kRadius);
   rider.push(Vector3d(0, 0, -kTableSpin * kRadius), Vector3d(0, kTableSpin, 0));
@@ -150,7 +144,7 @@ void ride(Run& run, double stiffness, double friction) {
 
 /// A box at rest in the middle of the table is taken along.
 void turnAlong(Run& run, double stiffness) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   Turntable table(world);
   SoftObject& rider = addRider(world, stiffness, 0.8, 0.0);
   table.simulate(2);
@@ -178,9 +172,9 @@ std::vector<std::size_t> touching(const std::vector<Vector3d>& surface) {
 /// A box on a slope whose downhill force is 2.5 % below the limit of friction.
 void creep(Run& run, double stiffness) {
   constexpr double kFriction = 0.5, kFraction = 0.975;
-  ContactWorld world(run, gravityOn(std::atan(kFraction * kFriction)));
+  MeasuringWorld world(run, gravityOn(std::atan(kFraction * kFriction)));
   world.addFloor();
-  SoftObject& box = world.addSoftOn(0.0, flatBox(), bodyOf(stiffness, kFriction));
+  SoftObject& box = world.addSoftOn(0.0, flatBox(), BodyOptions{stiffness, kFriction});
   world.simulate(1);
   const std::vector<Vector3d> before = box.surface();
   world.simulate(5);
@@ -197,7 +191,7 @@ using Steps = std::function<double()>;
 double slide(Run& run, const ModelPtr& model, BodyOptions options, const Steps& steps) {
   constexpr double kFriction = 0.5, kSpeed = 3.0, kSeconds = 1.5;
   options.friction = kFriction;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   SoftObject& box = world.addSoftOn(0.0, model, options);
   world.simulate(1);
@@ -234,12 +228,12 @@ Steps randomSteps() {
 }
 
 void stop(Run& run, double stiffness, const Steps& steps) {
-  run.report("distance over a point's", slide(run, flatBox(), bodyOf(stiffness, 0.5), steps));
+  run.report("distance over a point's", slide(run, flatBox(), BodyOptions{stiffness, 0.5}, steps));
 }
 
 /// How far a ball rolls in 1.5 seconds.
 double rollDistance(Run& run, const ModelPtr& model, const BodyOptions& options) {
-  ContactWorld world(run, gravityOn(10.0 * EIGEN_PI / 180));
+  MeasuringWorld world(run, gravityOn(10.0 * EIGEN_PI / 180));
   world.addFloor();
   SoftObject& ball = world.addSoftOn(0.0, model, options);
   const double from = ball.motion().centroid.x();
@@ -256,14 +250,11 @@ void copies(Run& run, const std::function<double(Copies)>& distance) {
 }
 
 void copiesThatRoll(Run& run) {
-  BodyOptions options;
-  options.friction = 0.8;
-  copies(run, [&](Copies count) { return rollDistance(run, makeBall(1000, 2, count), options); });
+  copies(run, [&](Copies count) { return rollDistance(run, makeBall(1000, 2, count), BodyOptions{50.0, 0.8}); });
 }
 
 void copiesThatStop(Run& run) {
-  BodyOptions options;
-  copies(run, [&](Copies count) { return slide(run, flatBox(8, count), options, equalSteps()); });
+  copies(run, [&](Copies count) { return slide(run, flatBox(8, count), {}, equalSteps()); });
 }
 
 }  // namespace

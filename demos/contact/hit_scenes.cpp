@@ -8,41 +8,26 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 const Vector3d kWeightless = Vector3d::Zero();
 const Vector3d kBallStart(-0.75, 0.3, 0.05), kBallVelocity(5, 0, 0);
 constexpr double kBallRadius = 0.15;
 
-/// Runs for half a second, until everything that met has parted.
-void reportLost(Run& run, ContactWorld& world) {
-  const Momentum before = world.momentum();
-  const double start = world.energy();
-  double maximum = 0.0;
-  world.simulate(0.5, [&] { raise(maximum, world.energy()); });
-  const Momentum after = world.momentum();
-  run.report("linear momentum lost", (after.linear - before.linear).norm() / before.linearScale);
-  run.report("angular momentum lost", (after.angular - before.angular).norm() / before.angularScale);
-  if (run.kind != Kind::Bullet) run.report("energy over its start", maximum / start);
-}
-
-BodyOptions hitBody(double stiffness) {
-  BodyOptions options;
-  options.stiffness = stiffness;
-  return options;
-}
+/// Seconds until everything that met has parted.
+constexpr double kUntilParted = 0.5;
 
 /// A zone that surrounds the whole scene.
 enum class Zone { None, Trigger, Ghost };
 
-void addZone(ContactWorld& world, Zone zone) {
+void addZone(MeasuringWorld& world, Zone zone) {
   constexpr double kHalf = 5.0;
   if (zone == Zone::Trigger) world.addTrigger(kHalf);
   if (zone == Zone::Ghost) world.addGhost(kHalf);
@@ -50,27 +35,27 @@ void addZone(ContactWorld& world, Zone zone) {
 
 /// Nothing meets anything: the accuracy of the figures themselves.
 void miss(Run& run, double stiffness) {
-  ContactWorld world(run, kWeightless);
-  world.addSoft(makeBall(), hitBody(stiffness), kWeightless).push(Vector3d(1, 2, 3), Vector3d(1, -2, 0.5));
+  MeasuringWorld world(run, kWeightless);
+  world.addSoft(makeBall(), BodyOptions{stiffness}, kWeightless).push(Vector3d(1, 2, 3), Vector3d(1, -2, 0.5));
   btRigidBody& ball = world.addSphere({-3, 3, 0}, kBallRadius, 1);
   ball.setLinearVelocity(toBullet(-kBallVelocity));
   ball.setAngularVelocity(btVector3(1, 2, 3));
-  reportLost(run, world);
+  reportConserved(run, world, kUntilParted);
 }
 
 /// A rigid ball hits a soft one of 1 kg off its centre.
 void hit(Run& run, double stiffness, double mass, Zone zone) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   addZone(world, zone);
-  world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
+  world.addSoft(makeBall(), BodyOptions{stiffness}, kWeightless);
   world.addSphere(kBallStart, kBallRadius, mass).setLinearVelocity(toBullet(kBallVelocity));
-  reportLost(run, world);
+  reportConserved(run, world, kUntilParted);
 }
 
 /// A multibody without links hits the soft ball.
 void hitByMultiBody(Run& run, double stiffness) {
-  ContactWorld world(run, kWeightless);
-  world.addSoft(makeBall(), hitBody(stiffness), kWeightless);
+  MeasuringWorld world(run, kWeightless);
+  world.addSoft(makeBall(), BodyOptions{stiffness}, kWeightless);
   constexpr btScalar kMass = 1;
   auto shape = std::make_unique<btSphereShape>(static_cast<btScalar>(kBallRadius));
   btVector3 inertia;
@@ -82,26 +67,26 @@ void hitByMultiBody(Run& run, double stiffness) {
   body->setLinearDamping(0);
   body->setAngularDamping(0);
   world.addMultiBody(std::move(body), -1, std::move(shape));
-  reportLost(run, world);
+  reportConserved(run, world, kUntilParted);
 }
 
 /// A soft ball falls on a box that lies on a heavy one; all are free.
 void onBoxes(Run& run, double stiffness) {
-  ContactWorld world(run, kWeightless);
+  MeasuringWorld world(run, kWeightless);
   world.addBox({0, -0.2, 0}, {1.5, 0.2, 1.5}, 20);
   world.addBox({0, 0.15, 0}, {0.4, 0.15, 0.4}, 1);
-  world.addSoft(makeBall(), hitBody(stiffness), Vector3d(0.2, 0.9, 0)).push(Vector3d(0, -3, 0));
-  reportLost(run, world);
+  world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0.2, 0.9, 0)).push(Vector3d(0, -3, 0));
+  reportConserved(run, world, kUntilParted);
 }
 
 /// Two free boxes close on a soft one from both sides, out of line.
 void betweenBoxes(Run& run, double stiffness, double mass, double otherMass) {
-  ContactWorld world(run, kWeightless);
-  world.addSoft(makeBox({0.5, 0.5, 0.5}), hitBody(stiffness), kWeightless);
+  MeasuringWorld world(run, kWeightless);
+  world.addSoft(makeBox({0.5, 0.5, 0.5}), BodyOptions{stiffness}, kWeightless);
   const Vector3d half(0.2, 0.4, 0.4);
   world.addBox({-0.8, 0.1, 0}, half, mass).setLinearVelocity(btVector3(3, 0, 0));
   world.addBox({0.8, -0.1, 0}, half, otherMass).setLinearVelocity(btVector3(-2, 0, 0));
-  reportLost(run, world);
+  reportConserved(run, world, kUntilParted);
 }
 
 }  // namespace

@@ -16,29 +16,23 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-Vector3d angularMomentumAbout(const Vector3d& pivot, const btSoftBody& body) {
-  Momentum sum;
-  addMomentum(sum, body);
-  return sum.angular - pivot.cross(sum.linear);
-}
 
 /// A bar of 1 m is thrown so that it turns about the middle of its end, where one node is pinned.
 void turnPinnedBar(Run& run, double stiffness) {
   const Vector3d pivot(-0.5, 0, 0), spin(0, 1, 5);
-  ContactWorld world(run, Vector3d::Zero());
-  BodyOptions options;
-  options.stiffness = stiffness;
+  MeasuringWorld world(run, Vector3d::Zero());
+  BodyOptions options{stiffness};
   options.pinned = [&](const Vector3d& p) { return (p - pivot).norm() < 1e-6; };
   SoftObject& bar = world.addSoft(makeLattice({8, 2, 2}, 0.125), options, Vector3d(0, 0, 0));
   bar.push(spin.cross(bar.motion().centroid - pivot), spin);
@@ -58,7 +52,7 @@ void turnPinnedBar(Run& run, double stiffness) {
 class Pendulum {
  public:
   /// damping  of the rod, 1/s
-  Pendulum(ContactWorld& world, double angle, double stiffness, double damping)
+  Pendulum(MeasuringWorld& world, double angle, double stiffness, double damping)
       : model_(makeBox(Vector3d::Constant(kHalf))) {
     auto shape = std::make_unique<btBoxShape>(toBullet(kRodHalf));
     btVector3 inertia;
@@ -73,9 +67,8 @@ class Pendulum {
     rod->setJointPos(0, static_cast<btScalar>(angle));
     rod_ = &world.addMultiBody(std::move(rod), 0, std::move(shape));
     const Isometry3d turn(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));
-    BodyOptions options;
-    options.stiffness = stiffness;
-    cube_ = &world.addSoft(model_, options, turn * Eigen::Translation3d(0, -2.0 * kRodHalf.y() - kHalf, 0));
+    cube_ =
+        &world.addSoft(model_, BodyOptions{stiffness}, turn * Eigen::Translation3d(0, -2.0 * kRodHalf.y() - kHalf, 0));
   }
 
   SoftObject& cube() { return *cube_; }
@@ -107,13 +100,13 @@ class Pendulum {
   double inertia_ = 0.0;
 };
 
-std::unique_ptr<SurfaceWeld> weld(ContactWorld& world, Pendulum& pendulum) {
+std::unique_ptr<SurfaceWeld> weld(MeasuringWorld& world, Pendulum& pendulum) {
   auto made = SurfaceWeld::add(world.bullet(), pendulum.top(), pendulum.link());
   scenes::require(made.status());
   return std::move(made).value();
 }
 
-std::unique_ptr<SurfaceSpring> spring(ContactWorld& world, Pendulum& pendulum) {
+std::unique_ptr<SurfaceSpring> spring(MeasuringWorld& world, Pendulum& pendulum) {
   auto made = SurfaceSpring::add(world.bullet(), pendulum.top(), pendulum.link(), toBullet(Pendulum::tip()));
   scenes::require(made.status());
   return std::move(made).value();
@@ -139,7 +132,7 @@ double turn(const SurfaceSpring&) {
 /// Four seconds to settle, and one of measurement: a joint at a point holds a cube, which goes on swinging a little.
 template <class Join>
 void hang(Run& run, const Join& join) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   Pendulum pendulum(world, 0.0, 50.0, 5.0);
   const auto joint = join(world, pendulum);
   world.simulate(4);
@@ -158,7 +151,7 @@ void hang(Run& run, const Join& join) {
 }
 
 /// The period of the first full swing, counted from when it first hangs straight.
-double periodOf(ContactWorld& world, const Pendulum& pendulum, const std::function<void()>& after) {
+double periodOf(MeasuringWorld& world, const Pendulum& pendulum, const std::function<void()>& after) {
   std::vector<double> crossings;
   double time = 0.0, before = pendulum.angle();
   world.simulate(4, [&] {
@@ -173,7 +166,7 @@ double periodOf(ContactWorld& world, const Pendulum& pendulum, const std::functi
 
 /// A stiff cube swings with the rod as one rigid body would.
 void swing(Run& run) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   Pendulum pendulum(world, 0.2, 5000.0, 0.0);
   const auto joint = weld(world, pendulum);
   double apart = 0.0, turned = 0.0;

@@ -9,13 +9,14 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 double lowestCorner(const btRigidBody& box, const Vector3d& half) {
@@ -29,15 +30,13 @@ double lowestCorner(const btRigidBody& box, const Vector3d& half) {
 
 /// A soft ball at 3 S/s hits a plate with a tenth of its mass that lies on the floor.
 void plate(Run& run, double stiffness) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   const Vector3d half(0.5, 0.15, 0.5);
   const btRigidBody& plate = world.addBox({0, half.y(), 0}, half, 0.1);
   world.simulate(0.5);
   const double before = lowestCorner(plate, half);
-  BodyOptions options;
-  options.stiffness = stiffness;
-  world.addSoft(makeBall(), options, Vector3d(0.2, 0.85, 0)).push(Vector3d(0, -3, 0));
+  world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0.2, 0.85, 0)).push(Vector3d(0, -3, 0));
   double lowest = HUGE_VAL;
   world.simulate(0.5, [&] { lower(lowest, lowestCorner(plate, half)); });
   run.report("sinks, S", before - lowest);
@@ -46,14 +45,12 @@ void plate(Run& run, double stiffness) {
 constexpr double kHeavyMass = 10.0, kHeavyStiffness = 500.0;
 const Vector3d kHeavyHalf(0.4, 0.15, 0.4);
 
-SoftObject& addCube(ContactWorld& world, double height) {
-  BodyOptions options;
-  options.stiffness = kHeavyStiffness;
-  return world.addSoftOn(height, makeBox({0.5, 0.5, 0.5}), options);
+SoftObject& addCube(MeasuringWorld& world, double height) {
+  return world.addSoftOn(height, makeBox({0.5, 0.5, 0.5}), BodyOptions{kHeavyStiffness});
 }
 
 /// Two seconds to come to rest, and one of measurement.
-void reportRest(Run& run, ContactWorld& world, SoftObject& cube, const btCollisionObject& heavy,
+void reportRest(Run& run, MeasuringWorld& world, SoftObject& cube, const btCollisionObject& heavy,
                 const std::function<double()>& speedOfBox) {
   const btVector3 start = heavy.getWorldTransform().getOrigin();
   world.simulate(2);
@@ -67,7 +64,7 @@ void reportRest(Run& run, ContactWorld& world, SoftObject& cube, const btCollisi
   run.report("box displacement, S", toEigen(heavy.getWorldTransform().getOrigin() - start).norm());
 }
 
-void reportRest(Run& run, ContactWorld& world, SoftObject& cube, const btRigidBody& heavy) {
+void reportRest(Run& run, MeasuringWorld& world, SoftObject& cube, const btRigidBody& heavy) {
   reportRest(run, world, cube, heavy, [&] { return toEigen(heavy.getLinearVelocity()).norm(); });
 }
 
@@ -77,7 +74,7 @@ double boxHeight() {
 }
 
 void heavyOnTop(Run& run, bool inTrigger) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   if (inTrigger) world.addTrigger(5.0);
   world.addFloor();
   SoftObject& cube = addCube(world, 0.0);
@@ -85,7 +82,7 @@ void heavyOnTop(Run& run, bool inTrigger) {
 }
 
 void heavyBelow(Run& run) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   const Vector3d half(0.7, 0.15, 0.7);
   const btRigidBody& box = world.addBox({0, half.y(), 0}, half, kHeavyMass);
@@ -98,7 +95,7 @@ void heavyBelow(Run& run) {
 constexpr double kHingeArm = 1.2;
 
 void heavyOnHinge(Run& run) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   SoftObject& cube = addCube(world, 0.0);
   btRigidBody& box = world.addBox({0, boxHeight(), 0}, kHeavyHalf, kHeavyMass);
@@ -109,7 +106,7 @@ void heavyOnHinge(Run& run) {
 }
 
 void heavyAsLink(Run& run) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   SoftObject& cube = addCube(world, 0.0);
   const auto mass = static_cast<btScalar>(kHeavyMass);

@@ -6,20 +6,21 @@
 
 #include <cmath>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 /// A plate that moves along one axis.
 class MovedPlate {
  public:
-  MovedPlate(ContactWorld& world, const Vector3d& centre, const Vector3d& halfExtents, const Vector3d& direction)
-      : body_(ContactWorld::makeKinematic(world.addBox(centre, halfExtents))),
+  MovedPlate(MeasuringWorld& world, const Vector3d& centre, const Vector3d& halfExtents, const Vector3d& direction)
+      : body_(MeasuringWorld::makeKinematic(world.addBox(centre, halfExtents))),
         centre_(centre),
         half_(halfExtents.cwiseProduct(direction).norm()),
         direction_(direction) {}
@@ -41,17 +42,11 @@ class MovedPlate {
 
 const Vector3d kPlateHalf(1.5, 0.2, 1.5), kPlateCentre(0, -0.2, 0);
 
-BodyOptions movedBody(double stiffness) {
-  BodyOptions options;
-  options.stiffness = stiffness;
-  return options;
-}
-
 /// A plate moves up under a ball, and throws it.
 void kick(Run& run, double stiffness, double speed) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   MovedPlate plate(world, kPlateCentre, kPlateHalf, Vector3d::UnitY());
-  SoftObject& ball = world.addSoftOn(0.0, makeBall(), movedBody(stiffness));
+  SoftObject& ball = world.addSoftOn(0.0, makeBall(), BodyOptions{stiffness});
   double gap = HUGE_VAL;
   for (int k = 0; k < 36; ++k) {
     plate.advance(speed * kStep);
@@ -64,9 +59,9 @@ void kick(Run& run, double stiffness, double speed) {
 /// A plate lifts a box; measures the gap during the steady part.
 void carry(Run& run, double stiffness) {
   constexpr double kSpeed = 1.0;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   MovedPlate plate(world, kPlateCentre, kPlateHalf, Vector3d::UnitY());
-  SoftObject& box = world.addSoftOn(0.0, makeBox({0.5, 0.25, 0.5}), movedBody(stiffness));
+  SoftObject& box = world.addSoftOn(0.0, makeBox({0.5, 0.25, 0.5}), BodyOptions{stiffness});
   double gap = 0.0;
   for (int k = 0; k < 480; ++k) {
     plate.advance(kSpeed * kStep);
@@ -79,12 +74,12 @@ void carry(Run& run, double stiffness) {
 /// Two plates squeeze a cube by a tenth of its width, and hold it by friction.
 void grip(Run& run, double stiffness) {
   constexpr double kSpeed = 0.25, kPressed = 0.05;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   const Vector3d half(0.2, 1, 1);
   const double start = 0.5 + kMargin + half.x();
   MovedPlate left(world, {-start, 0, 0}, half, Vector3d::UnitX());
   MovedPlate right(world, {start, 0, 0}, half, -Vector3d::UnitX());
-  SoftObject& cube = world.addSoft(makeBox({0.5, 0.5, 0.5}), movedBody(stiffness), Vector3d(0, 0, 0));
+  SoftObject& cube = world.addSoft(makeBox({0.5, 0.5, 0.5}), BodyOptions{stiffness}, Vector3d(0, 0, 0));
   const auto simulate = [&](double seconds, double speed) {
     for (long k = 0; k < std::lround(seconds / kStep); ++k) {
       left.advance(speed * kStep);
@@ -101,10 +96,10 @@ void grip(Run& run, double stiffness) {
 
 /// A ball falls on a plate whose thickness is a fiftieth of the ball's size.
 void fallOnThin(Run& run, double stiffness, double speed) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   const double half = 0.01;
   world.addBox({0, -half, 0}, {2, half, 2});
-  SoftObject& ball = world.addSoft(makeBall(), movedBody(stiffness), Vector3d(0, 1, 0));
+  SoftObject& ball = world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0, 1, 0));
   ball.push(Vector3d(0, -speed, 0));
   double gap = HUGE_VAL;
   world.simulate(0.5, [&] { lower(gap, ball.floorGap()); });

@@ -8,13 +8,15 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
+#include "measure/obstacles.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 /// Reports whether the floor pushes back as strongly as gravity pulls, where contacts report impulses.
@@ -39,7 +41,7 @@ class Weighing {
 };
 
 void rest(Run& run, const ModelPtr& model, const BodyOptions& options) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   SoftObject& body = world.addSoftOn(0.0, model, options);
   world.simulate(4);
@@ -47,8 +49,7 @@ void rest(Run& run, const ModelPtr& model, const BodyOptions& options) {
   Weighing weighing(body);
   double gap = 0.0, fastest = 0.0;
   world.simulate(1, [&] {
-    const double now = body.floorGap() - kMargin * model->size;
-    if (!(std::abs(now) <= std::abs(gap))) gap = now;
+    raiseMagnitude(gap, body.floorGap() - kMargin * model->size);
     raise(fastest, body.fastest());
     weighing.step();
   });
@@ -60,15 +61,14 @@ void rest(Run& run, const ModelPtr& model, const BodyOptions& options) {
 
 /// A ball between two slopes of 45 degrees.
 void restInV(Run& run, double stiffness) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   for (const double side : {-1.0, 1.0}) {
     const btQuaternion turn(btVector3(0, 0, 1), static_cast<btScalar>(side * EIGEN_PI / 4));
     world.addRigid(std::make_unique<btBoxShape>(btVector3(2, btScalar(0.5), 2)),
                    btTransform(turn, quatRotate(turn, btVector3(0, btScalar(-0.5), 0))));
   }
-  BodyOptions options;
-  options.stiffness = stiffness;
-  SoftObject& body = world.addSoft(makeBall(), options, Vector3d(0, std::sqrt(2.0) * (0.5 + kMargin), 0));
+  SoftObject& body =
+      world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0, std::sqrt(2.0) * (0.5 + kMargin), 0));
   world.simulate(4);
   Weighing weighing(body);
   double fastest = 0.0;
@@ -80,36 +80,28 @@ void restInV(Run& run, double stiffness) {
   weighing.report(run);
 }
 
-/// A flat floor of triangles, its upper side at y = 0.
-struct TriangleFloor {
-  TriangleFloor() {
-    constexpr int kHalf = 8;
-    constexpr btScalar kEdge = btScalar(0.5);
-    const auto corner = [&](int x, int z) { return btVector3(x * kEdge, 0, z * kEdge); };
-    for (int x = -kHalf; x < kHalf; ++x) {
-      for (int z = -kHalf; z < kHalf; ++z) {
-        mesh.addTriangle(corner(x, z), corner(x, z + 1), corner(x + 1, z + 1));
-        mesh.addTriangle(corner(x, z), corner(x + 1, z + 1), corner(x + 1, z));
-      }
+/// A flat floor, its upper side at y = 0.
+void addFlatFloor(btTriangleMesh& mesh) {
+  constexpr int kHalf = 8;
+  constexpr btScalar kEdge = btScalar(0.5);
+  const auto corner = [&](int x, int z) { return btVector3(x * kEdge, 0, z * kEdge); };
+  for (int x = -kHalf; x < kHalf; ++x) {
+    for (int z = -kHalf; z < kHalf; ++z) {
+      mesh.addTriangle(corner(x, z), corner(x, z + 1), corner(x + 1, z + 1));
+      mesh.addTriangle(corner(x, z), corner(x + 1, z + 1), corner(x + 1, z));
     }
   }
-  btTriangleMesh mesh;
-};
-struct TriangleFloorShape : private TriangleFloor, public btBvhTriangleMeshShape {
-  TriangleFloorShape() : btBvhTriangleMeshShape(&mesh, true) {}
-};
+}
 
 /// A ball that begins this deep in the floor.
 void deep(Run& run, double stiffness, double depth, bool inMesh) {
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   if (inMesh) {
-    world.addRigid(std::make_unique<TriangleFloorShape>(), btTransform::getIdentity());
+    world.addRigid(std::make_unique<TriangleShape>(addFlatFloor), btTransform::getIdentity());
   } else {
     world.addFloor();
   }
-  BodyOptions options;
-  options.stiffness = stiffness;
-  SoftObject& body = world.addSoft(makeBall(), options, Vector3d(0, 0.5 - depth, 0));
+  SoftObject& body = world.addSoft(makeBall(), BodyOptions{stiffness}, Vector3d(0, 0.5 - depth, 0));
   double fastest = 0.0;
   world.simulate(3, [&] { raise(fastest, body.fastest()); });
   run.report("fastest node, S/s", fastest);
@@ -123,11 +115,7 @@ void addRestScenes(ContactScenes& scenes) {
     scenes.push_back({"rest/ball/" + name, [=](Run& run) { rest(run, makeBall(), options); }});
     scenes.push_back({"rest/box/" + name, [=](Run& run) { rest(run, makeBox({0.5, 0.25, 0.5}), options); }});
   };
-  for (const double k : {50.0, 500.0, 5000.0}) {
-    BodyOptions options;
-    options.stiffness = k;
-    add("k" + text(k), options);
-  }
+  for (const double k : {50.0, 500.0, 5000.0}) add("k" + text(k), BodyOptions{k});
   for (const double k : {50.0, 500.0}) {
     scenes.push_back({"rest/ball in a V/k" + text(k), [=](Run& run) { restInV(run, k); }});
   }

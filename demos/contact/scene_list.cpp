@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact/scene_list.h"
 
-#include <cstdio>
-
 namespace tetskin::contact_demo {
 
 const ContactScenes& contactScenes() {
@@ -26,12 +24,6 @@ const ContactScenes& contactScenes() {
     return scenes;
   }();
   return all;
-}
-
-std::string text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%g", value);
-  return digits;
 }
 
 }  // namespace tetskin::contact_demo

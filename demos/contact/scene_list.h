@@ -1,28 +1,20 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The scenes in which contact is measured. Each is a function that makes its own world.
+// The scenes in which contact is measured.
 #pragma once
 
-#include <algorithm>
-#include <functional>
-#include <string>
 #include <vector>
 
-#include "contact/run.h"
+#include "measure/run.h"
 
 namespace tetskin::contact_demo {
 
-struct ContactScene {
-  std::string name;
-  std::function<void(Run&)> run;
-  /// the kinds with which it can be run
-  std::vector<Kind> kinds = {Kind::Surface, Kind::Nodes, Kind::Bullet};
+using measure::Kind;
+using measure::Run;
+using measure::text;
 
-  bool isFor(Kind kind) const { return std::count(kinds.begin(), kinds.end(), kind) > 0; }
-};
-
-using ContactScenes = std::vector<ContactScene>;
+using ContactScenes = std::vector<measure::MeasuredScene>;
 
 void addHitScenes(ContactScenes& scenes);
 void addApplicationScenes(ContactScenes& scenes);
@@ -40,8 +32,5 @@ void addSlidingScenes(ContactScenes& scenes);
 void addSleepScenes(ContactScenes& scenes);
 
 const ContactScenes& contactScenes();
-
-/// A number as it stands in names: "50", "0.05".
-std::string text(double value);
 
 }  // namespace tetskin::contact_demo

@@ -10,13 +10,14 @@
 #include <functional>
 #include <string>
 
-#include "contact/contact_world.h"
 #include "contact/scene_list.h"
+#include "measure/measuring_world.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
@@ -35,7 +36,7 @@ struct BoxOnSlab {
 };
 
 /// Before the rotation, the slab's upper side is at y = 0, where the box lies with 1.5 m of room along x.
-BoxOnSlab addBoxOnSlab(ContactWorld& world, const SlabOptions& slab) {
+BoxOnSlab addBoxOnSlab(MeasuringWorld& world, const SlabOptions& slab) {
   constexpr double kMass = 1.0, kBehind = 0.9, kBottom = 0.01;
   const ModelPtr boxModel = makeBox({0.5, 0.25, 0.5}), slabModel = makeBox(kSlabHalf, 32);
   const double density = kMass / boxModel->volume;
@@ -56,7 +57,7 @@ BoxOnSlab addBoxOnSlab(ContactWorld& world, const SlabOptions& slab) {
 void slide(Run& run, double stiffness) {
   SlabOptions slab;
   slab.stiffness = stiffness;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   const BoxOnSlab bodies = addBoxOnSlab(world, slab);
   world.simulate(1);
   const double from = bodies.box.motion().centroid.x();
@@ -80,7 +81,7 @@ void slideFreely(Run& run, double stiffness) {
   SlabOptions slab;
   slab.stiffness = stiffness;
   slab.friction = 0.0;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   const BoxOnSlab bodies = addBoxOnSlab(world, slab);
   world.simulate(1);
   const double before = bodies.box.motion().velocity.x();
@@ -91,7 +92,7 @@ void slideFreely(Run& run, double stiffness) {
 
 /// Sets the gravity in Bullet's `btSoftBodyWorldInfo` to the value that it has if nobody sets it, which is not the
 /// bodies' gravity.
-void forgetGravity(ContactWorld& world) {
+void forgetGravity(MeasuringWorld& world) {
   world.bullet().getWorldInfo().m_gravity = btVector3(0, -10, 0);
 }
 
@@ -102,7 +103,7 @@ void glide(Run& run, double friction) {
   SlabOptions slab;
   slab.friction = friction;
   slab.gap = kTouching;
-  ContactWorld world(run, Vector3d::Zero());
+  MeasuringWorld world(run, Vector3d::Zero());
   forgetGravity(world);
   const BoxOnSlab bodies = addBoxOnSlab(world, slab);
   bodies.box.push(Vector3d(kSlow, 0, 0));
@@ -116,7 +117,7 @@ void glide(Run& run, double friction) {
 const Isometry3d kToZ(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vector3d::UnitX()));
 
 /// Reports how fast the box creeps along the slab.
-void reportCreep(Run& run, ContactWorld& world, const BoxOnSlab& bodies, const Isometry3d& turn) {
+void reportCreep(Run& run, MeasuringWorld& world, const BoxOnSlab& bodies, const Isometry3d& turn) {
   constexpr double kSeconds = 2.0;
   world.simulate(2);
   const Vector3d before = bodies.box.motion().centroid;
@@ -131,7 +132,7 @@ void reportCreep(Run& run, ContactWorld& world, const BoxOnSlab& bodies, const I
 void lie(Run& run, const Isometry3d& turn) {
   SlabOptions slab;
   slab.turn = turn;
-  ContactWorld world(run, turn * Vector3d(0, -scenes::kEarth, 0));
+  MeasuringWorld world(run, turn * Vector3d(0, -scenes::kEarth, 0));
   forgetGravity(world);
   reportCreep(run, world, addBoxOnSlab(world, slab), turn);
 }
@@ -141,7 +142,7 @@ void lieByOwnGravity(Run& run) {
   SlabOptions slab;
   slab.turn = kToZ;
   const Vector3d down(0, -scenes::kEarth, 0);
-  ContactWorld world(run, down);
+  MeasuringWorld world(run, down);
   const BoxOnSlab bodies = addBoxOnSlab(world, slab);
   for (SoftObject* body : {&bodies.slab, &bodies.box}) {
     scenes::require(body->deformable().setGravity(toBullet(Vector3d(kToZ * down))));

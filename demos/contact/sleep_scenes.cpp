@@ -10,27 +10,27 @@
 #include <utility>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 constexpr double kFrame = 1.0 / 60;
 constexpr int kLongest = 30 * 60;  ///< frames in which bodies must have fallen asleep
 
 BodyOptions sleepingBody() {
-  BodyOptions options;
-  options.stiffness = 300.0;
+  BodyOptions options{300.0};
   options.sleeps = true;
   return options;
 }
 
 /// Four steps, after the scene has moved what it moves once.
-void frame(ContactWorld& world) {
+void frame(MeasuringWorld& world) {
   world.bullet().stepSimulation(static_cast<btScalar>(kFrame), 4, static_cast<btScalar>(kStep));
 }
 
@@ -64,8 +64,8 @@ double forceError(const Pile& pile, const ForceRecord& forces) {
   return error;
 }
 
-void weigh(Run& run, const std::function<Pile(ContactWorld&)>& make) {
-  ContactWorld world(run);
+void weigh(Run& run, const std::function<Pile(MeasuringWorld&)>& make) {
+  MeasuringWorld world(run);
   const auto forces = std::move(ForceRecord::add(world.bullet()).value());
   const Pile pile = make(world);
   if (run.kind == Kind::Surface) {
@@ -81,14 +81,14 @@ ModelPtr cube() {
   return makeBox({0.5, 0.5, 0.5});
 }
 
-Pile stackOf(ContactWorld& world, int count) {
+Pile stackOf(MeasuringWorld& world, int count) {
   Pile pile;
   pile.supports.push_back(&world.addFloor());
   for (int k = 0; k < count; ++k) pile.bodies.push_back(&world.addSoftOn(1.003 * k, cube(), sleepingBody()));
   return pile;
 }
 
-Pile onFourSupports(ContactWorld& world) {
+Pile onFourSupports(MeasuringWorld& world) {
   Pile pile;
   for (const double x : {-0.35, 0.35}) {
     for (const double z : {-0.35, 0.35}) pile.supports.push_back(&world.addBox({x, -0.5, z}, {0.15, 0.5, 0.15}));
@@ -97,7 +97,7 @@ Pile onFourSupports(ContactWorld& world) {
   return pile;
 }
 
-Pile plankOnTwoCubes(ContactWorld& world) {
+Pile plankOnTwoCubes(MeasuringWorld& world) {
   Pile pile;
   pile.supports.push_back(&world.addFloor());
   for (const double x : {-1.0, 1.0}) pile.bodies.push_back(&world.addSoftOn(0.0, cube(), sleepingBody(), x));
@@ -105,7 +105,7 @@ Pile plankOnTwoCubes(ContactWorld& world) {
   return pile;
 }
 
-Pile rigidBetween(ContactWorld& world) {
+Pile rigidBetween(MeasuringWorld& world) {
   Pile pile;
   pile.supports.push_back(&world.addFloor());
   pile.bodies.push_back(&world.addSoftOn(0.0, cube(), sleepingBody()));
@@ -117,7 +117,7 @@ Pile rigidBetween(ContactWorld& world) {
 
 /// A ball that nothing touches: its way in five seconds over that of a point.
 void fly(Run& run, double gravity, double speed) {
-  ContactWorld world(run, Vector3d(0, -gravity, 0));
+  MeasuringWorld world(run, Vector3d(0, -gravity, 0));
   SoftObject& ball = world.addSoft(makeBall(), sleepingBody(), Vector3d(0, 0, 0));
   ball.push(Vector3d(speed, 0, 0));
   for (int f = 0; f < 300; ++f) frame(world);
@@ -135,8 +135,8 @@ struct SleeperOnPlate {
     return body.gap([&](const Vector3d& p) { return p.y() - y - 0.2; });
   }
 
-  ContactWorld world;
-  btRigidBody& plate = ContactWorld::makeKinematic(world.addBox({0, -0.2, 0}, {3, 0.2, 3}));
+  MeasuringWorld world;
+  btRigidBody& plate = MeasuringWorld::makeKinematic(world.addBox({0, -0.2, 0}, {3, 0.2, 3}));
   SoftObject& body = world.addSoftOn(0.0, cube(), sleepingBody(), 1.0);
 };
 
@@ -178,7 +178,7 @@ void turn(Run& run, double rate) {
   run.report("way over the plate's", angle / (2 * rate - takenUp(rate)));
 }
 
-void wake(Run& run, const std::function<void(ContactWorld&, btSoftBody&)>& change) {
+void wake(Run& run, const std::function<void(MeasuringWorld&, btSoftBody&)>& change) {
   SleeperOnPlate sleeper(run);
   const bool slept = sleepAll({&sleeper.body});
   change(sleeper.world, sleeper.body.soft());
@@ -192,17 +192,17 @@ void addSleepScenes(ContactScenes& scenes) {
   const auto add = [&](const std::string& name, std::function<void(Run&)> scene) {
     scenes.push_back({"sleep/" + name, std::move(scene), {Kind::Surface, Kind::Nodes}});
   };
-  const auto addPile = [&](const std::string& name, const std::function<Pile(ContactWorld&)>& make) {
+  const auto addPile = [&](const std::string& name, const std::function<Pile(MeasuringWorld&)>& make) {
     add("forces/" + name, [=](Run& run) { weigh(run, make); });
   };
-  addPile("cube", [](ContactWorld& world) { return stackOf(world, 1); });
+  addPile("cube", [](MeasuringWorld& world) { return stackOf(world, 1); });
   addPile("four supports", onFourSupports);
   addPile("rigid between", rigidBetween);
   // By nodes, soft bodies do not meet.
-  const auto addSoftPile = [&](const std::string& name, const std::function<Pile(ContactWorld&)>& make) {
+  const auto addSoftPile = [&](const std::string& name, const std::function<Pile(MeasuringWorld&)>& make) {
     scenes.push_back({"sleep/forces/" + name, [=](Run& run) { weigh(run, make); }, {Kind::Surface}});
   };
-  addSoftPile("stack of five", [](ContactWorld& world) { return stackOf(world, 5); });
+  addSoftPile("stack of five", [](MeasuringWorld& world) { return stackOf(world, 5); });
   addSoftPile("plank on two cubes", plankOnTwoCubes);
 
   add("flight/drifts at 0.03", [](Run& run) { fly(run, 0.0, 0.03); });
@@ -215,19 +215,19 @@ void addSleepScenes(ContactScenes& scenes) {
   }
   for (const double w : {0.02, 0.05, 0.5}) add("carried/turntable " + text(w), [=](Run& run) { turn(run, w); });
 
-  using Change = std::function<void(ContactWorld&, btSoftBody&)>;
+  using Change = std::function<void(MeasuringWorld&, btSoftBody&)>;
   const auto addWaking = [&](const std::string& name, const Change& change) {
     add("woken/" + name, [=](Run& run) { wake(run, change); });
   };
   const btVector3 up(0, btScalar(0.1), 0);
-  addWaking("setVelocity", [=](ContactWorld&, btSoftBody& body) { body.setVelocity(up); });
-  addWaking("addVelocity", [=](ContactWorld&, btSoftBody& body) { body.addVelocity(up); });
-  addWaking("a node's velocity", [=](ContactWorld&, btSoftBody& body) { body.m_nodes[0].m_v = up; });
-  addWaking("translate", [=](ContactWorld&, btSoftBody& body) { body.translate(up); });
+  addWaking("setVelocity", [=](MeasuringWorld&, btSoftBody& body) { body.setVelocity(up); });
+  addWaking("addVelocity", [=](MeasuringWorld&, btSoftBody& body) { body.addVelocity(up); });
+  addWaking("a node's velocity", [=](MeasuringWorld&, btSoftBody& body) { body.m_nodes[0].m_v = up; });
+  addWaking("translate", [=](MeasuringWorld&, btSoftBody& body) { body.translate(up); });
   addWaking("rotate",
-            [](ContactWorld&, btSoftBody& body) { body.rotate(btQuaternion(btVector3(0, 1, 0), btScalar(0.1))); });
-  addWaking("mass", [](ContactWorld&, btSoftBody& body) { body.setTotalMass(10 * body.getTotalMass()); });
-  addWaking("gravity", [](ContactWorld& world, btSoftBody&) { world.setGravity(Vector3d(0, -1, 0)); });
+            [](MeasuringWorld&, btSoftBody& body) { body.rotate(btQuaternion(btVector3(0, 1, 0), btScalar(0.1))); });
+  addWaking("mass", [](MeasuringWorld&, btSoftBody& body) { body.setTotalMass(10 * body.getTotalMass()); });
+  addWaking("gravity", [](MeasuringWorld& world, btSoftBody&) { world.setGravity(Vector3d(0, -1, 0)); });
 }
 
 }  // namespace tetskin::contact_demo

@@ -18,13 +18,15 @@
 #include <utility>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
+#include "measure/obstacles.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 
 /// How something slides: it comes to rest after a distance of v^2 / (2 mu g).
@@ -38,7 +40,8 @@ struct Slide {
 
 /// Follows the centre of what slides until it rests.
 /// size  of what slides
-void measure(Run& run, ContactWorld& world, const Slide& slide, double size, const std::function<Vector3d()>& centre) {
+void measure(Run& run, MeasuringWorld& world, const Slide& slide, double size,
+             const std::function<Vector3d()>& centre) {
   const Vector3d from = centre(), side = slide.direction.cross(Vector3d::UnitY());
   double aside = 0.0, jump = 0.0;
   Vector3d moved = Vector3d::Zero();
@@ -68,18 +71,18 @@ std::unique_ptr<btConvexHullShape> hullOfBox(const Vector3d& half) {
 }
 
 /// A square mesh of equal cells around a point of the ground.
-std::unique_ptr<btCollisionShape> gridShape(ShapeParts& parts, double side, int cells) {
-  parts.meshes.push_back(std::make_unique<btTriangleMesh>());
+std::unique_ptr<btCollisionShape> gridShape(double side, int cells) {
   const auto corner = [&](int i, int k) {
     return toBullet(Vector3d(i, 0, k) * (side / cells) - Vector3d(0.5, 0, 0.5) * side);
   };
-  for (int i = 0; i < cells; ++i) {
-    for (int k = 0; k < cells; ++k) {
-      parts.meshes.back()->addTriangle(corner(i, k), corner(i, k + 1), corner(i + 1, k));
-      parts.meshes.back()->addTriangle(corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k));
+  return std::make_unique<TriangleShape>([&](btTriangleMesh& mesh) {
+    for (int i = 0; i < cells; ++i) {
+      for (int k = 0; k < cells; ++k) {
+        mesh.addTriangle(corner(i, k), corner(i, k + 1), corner(i + 1, k));
+        mesh.addTriangle(corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k));
+      }
     }
-  }
-  return std::make_unique<btBvhTriangleMeshShape>(parts.meshes.back().get(), true);
+  });
 }
 
 std::unique_ptr<btCollisionShape> flatTerrain(ShapeParts& parts, double side, int cells) {
@@ -100,15 +103,15 @@ void forTiles(const std::function<void(const Vector3d&)>& add) {
 
 const Vector3d kTileHalf(0.25, 0.1, 0.25);
 
-void addTiles(ContactWorld& world, ShapeParts&) {
+void addTiles(MeasuringWorld& world, ShapeParts&) {
   forTiles([&](const Vector3d& centre) { world.addBox(centre, kTileHalf); });
 }
 
-void addHulls(ContactWorld& world, ShapeParts&) {
+void addHulls(MeasuringWorld& world, ShapeParts&) {
   forTiles([&](const Vector3d& centre) { world.addRigid(hullOfBox(kTileHalf), at(centre)); });
 }
 
-void addCompound(ContactWorld& world, ShapeParts& parts) {
+void addCompound(MeasuringWorld& world, ShapeParts& parts) {
   auto compound = std::make_unique<btCompoundShape>();
   forTiles([&](const Vector3d& centre) {
     parts.children.push_back(std::make_unique<btBoxShape>(toBullet(kTileHalf)));
@@ -118,29 +121,29 @@ void addCompound(ContactWorld& world, ShapeParts& parts) {
 }
 
 /// Two halves of the ground that meet between the start and the end.
-void addHalves(ContactWorld& world, const std::function<std::unique_ptr<btCollisionShape>()>& half) {
+void addHalves(MeasuringWorld& world, const std::function<std::unique_ptr<btCollisionShape>()>& half) {
   constexpr double kSide = 12.0, kSeam = 0.61;
   for (const double end : {-0.5, 0.5}) world.addRigid(half(), at(Vector3d(kSeam + end * kSide, 0, 0)));
 }
 
-void addTwoMeshes(ContactWorld& world, ShapeParts& parts) {
-  addHalves(world, [&, cells = 7]() mutable { return gridShape(parts, 12, cells += 3); });
+void addTwoMeshes(MeasuringWorld& world, ShapeParts&) {
+  addHalves(world, [cells = 7]() mutable { return gridShape(12, cells += 3); });
 }
 
-void addTwoTerrains(ContactWorld& world, ShapeParts& parts) {
+void addTwoTerrains(MeasuringWorld& world, ShapeParts& parts) {
   addHalves(world, [&] { return flatTerrain(parts, 12, 24); });
 }
 
-void addMesh(ContactWorld& world, ShapeParts& parts, int cells) {
-  world.addRigid(gridShape(parts, 12, cells), btTransform::getIdentity());
+void addMesh(MeasuringWorld& world, int cells) {
+  world.addRigid(gridShape(12, cells), btTransform::getIdentity());
 }
 
-using AddGround = std::function<void(ContactWorld&, ShapeParts&)>;
+using AddGround = std::function<void(MeasuringWorld&, ShapeParts&)>;
 
 /// A soft box at rest is pushed.
 void slideSoftBox(Run& run, const AddGround& addGround, const Slide& slide) {
   ShapeParts parts;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   addGround(world, parts);
   BodyOptions options;
   options.friction = slide.friction;
@@ -199,7 +202,7 @@ void slideOnSlab(Run& run, const MakeShape& makeShape, const SlabKind& kind, con
   const Vector3d half(1.6, 0.2, 0.3);
   constexpr double kDensity = 100.0, kStart = 1.2;
   ShapeParts parts;
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   const ModelPtr model = makeWavyBox(half, kind.divisions, kind.wave);
   BodyOptions options;
   options.youngsModulus = 1e6;
@@ -229,8 +232,8 @@ void addGroundScenes(ContactScenes& scenes) {
       {"compound", addCompound},
       {"two meshes", addTwoMeshes},
       {"two height fields", addTwoTerrains},
-      {"mesh of 2", [](ContactWorld& world, ShapeParts& parts) { addMesh(world, parts, 1); }},
-      {"mesh of 20000", [](ContactWorld& world, ShapeParts& parts) { addMesh(world, parts, 100); }},
+      {"mesh of 2", [](MeasuringWorld& world, ShapeParts&) { addMesh(world, 1); }},
+      {"mesh of 20000", [](MeasuringWorld& world, ShapeParts&) { addMesh(world, 100); }},
   };
   const Slide along, across{2.0, 0.1, Vector3d(-0.6, 0, 0.8)};
   for (const auto& [name, add] : grounds) {

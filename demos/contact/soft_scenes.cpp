@@ -10,34 +10,29 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_world.h"
-#include "contact/extremes.h"
 #include "contact/scene_list.h"
+#include "measure/extremes.h"
+#include "measure/measuring_world.h"
 #include "scenes/timer.h"
 
 namespace tetskin::contact_demo {
 namespace {
 
+using namespace measure;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-BodyOptions bodyOf(double stiffness) {
-  BodyOptions options;
-  options.stiffness = stiffness;
-  return options;
-}
 
 /// A stack of boxes at rest on a floor.
 /// stiffnesses  from below
 void stack(Run& run, const std::vector<double>& stiffnesses) {
   constexpr double kHeight = 0.5, kSize = 1.0;
   const ModelPtr model = makeBox({0.5, 0.5 * kHeight, 0.5});
-  ContactWorld world(run);
+  MeasuringWorld world(run);
   world.addFloor();
   std::vector<SoftObject*> boxes;
   double height = 0.0;
   for (const double stiffness : stiffnesses) {
-    boxes.push_back(&world.addSoftOn(height, model, bodyOf(stiffness)));
+    boxes.push_back(&world.addSoftOn(height, model, BodyOptions{stiffness}));
     world.touchOthers(*boxes.back());
     height += kHeight + 2.0 * kMargin;
   }
@@ -63,27 +58,21 @@ struct Collision {
 void collide(Run& run, const Collision& collision) {
   constexpr double kApart = 1.05;
   const ModelPtr model = makeBall();
-  ContactWorld world(run, Vector3d::Zero());
+  MeasuringWorld world(run, Vector3d::Zero());
   const double along = std::sqrt(kApart * kApart - collision.aside * collision.aside);
   // Off the origin, so that head-on, too, there is angular momentum to lose.
   const Vector3d at(0, 0, 0.5);
-  SoftObject& moving = world.addSoft(model, bodyOf(collision.stiffness), at + Vector3d(-along, collision.aside, 0));
-  SoftObject& other = world.addSoft(model, bodyOf(collision.otherStiffness), at);
+  SoftObject& moving =
+      world.addSoft(model, BodyOptions{collision.stiffness}, at + Vector3d(-along, collision.aside, 0));
+  SoftObject& other = world.addSoft(model, BodyOptions{collision.otherStiffness}, at);
   for (SoftObject* ball : {&moving, &other}) world.touchOthers(*ball);
   moving.push(Vector3d(collision.speed, 0, 0));
-  const Momentum before = world.momentum();
-  const double start = world.energy();
-  double maximum = 0.0, deepest = 0.0;
+  double deepest = 0.0;
   int inverted = 0;
-  world.simulate(1, [&] {
-    raise(maximum, world.energy());
+  reportConserved(run, world, 1, [&] {
     lower(deepest, world.deepest());
     inverted = std::max({inverted, invertedTets(*model, moving.soft()), invertedTets(*model, other.soft())});
   });
-  const Momentum after = world.momentum();
-  run.report("linear momentum lost", (after.linear - before.linear).norm() / before.linearScale);
-  run.report("angular momentum lost", (after.angular - before.angular).norm() / before.angularScale);
-  run.report("energy over its start", maximum / start);
   run.report("least gap, S", deepest);
   run.report("most inverted tets", inverted);
 }
@@ -159,13 +148,13 @@ double minDistance(const std::vector<SoftObject*>& bodies) {
 /// Bodies that begin inside each other, for three seconds.
 void part(Run& run, const Vector3d& gravity, const ModelPtr& model, const std::vector<Vector3d>& centres,
           const Distance& distance) {
-  ContactWorld world(run, gravity);
+  MeasuringWorld world(run, gravity);
   if (!gravity.isZero()) world.addFloor();
   ContactShapeOptions shape;
   shape.sampleCount = 300;  // as each of seven bodies meets six others
   std::vector<SoftObject*> bodies;
   for (const Vector3d& centre : centres) {
-    bodies.push_back(&world.addSoft(model, bodyOf(50.0), centre));
+    bodies.push_back(&world.addSoft(model, BodyOptions{50.0}, centre));
     world.touchOthers(*bodies.back(), shape);
   }
   double fastest = 0.0;

@@ -2,14 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "gaps/gap_bodies.h"
 
-#include <tetskin/cage/create_cage.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "scenes/caged_mesh.h"
 #include "scenes/input_error.h"
-#include "scenes/placement.h"
 #include "scenes/serpent.h"
 #include "scenes/stuffed_solid.h"
 
@@ -23,7 +21,7 @@ ImplicitSolid solidIn(const Box3& box, std::function<double(const Vector3d&)> va
   return {box, std::move(value), [](const Vector3d& p) -> Vector3d { return p; }};
 }
 
-ImplicitSolid ball() {
+ImplicitSolid roundSolid() {
   return solidIn(Box3(Vector3d::Constant(-0.6), Vector3d::Constant(0.6)),
                  [](const Vector3d& p) { return p.norm() - 0.5; });
 }
@@ -48,7 +46,7 @@ double joined(double a, double b) {
 }
 
 /// A trunk along x, four separate legs, a neck and a tail.
-ImplicitSolid animal() {
+ImplicitSolid animalSolid() {
   static const std::array<Limb, 7> limbs = {{
       {{-0.28, 0.0, 0.0}, {0.28, 0.0, 0.0}, 0.16, 0.14},
       {{-0.30, 0.0, 0.09}, {-0.34, -0.38, 0.20}, 0.08, 0.055},
@@ -74,8 +72,8 @@ TriangleMesh meshOf(const ImplicitSolid& solid, std::size_t triangles) {
 
 TriangleMesh meshNamed(const std::string& name, std::size_t triangles) {
   if (name == "serpent") return scenes::makeSerpent({triangles});
-  if (name == "round") return meshOf(ball(), triangles);
-  if (name == "legs") return meshOf(animal(), triangles);
+  if (name == "round") return meshOf(roundSolid(), triangles);
+  if (name == "legs") return meshOf(animalSolid(), triangles);
   throw scenes::InputError("there is no body '" + name + "'; there are: serpent, round, legs");
 }
 
@@ -86,21 +84,11 @@ const std::vector<std::string>& bodyNames() {
   return names;
 }
 
-GapBody makeGapBody(const std::string& name, std::size_t tets, std::size_t triangles) {
-  GapBody body;
-  body.mesh = meshNamed(name, triangles);
-  body.mesh.groups.clear();
-  CageOptions options;
-  options.targetTets = tets;
-  auto cage = createCage(body.mesh, options);
-  scenes::require(cage.status());
-  const scenes::Placement position = scenes::placementOf(boundingBox(cage.value().mesh.nodes));
-  position.toWorld(body.mesh.positions);
-  body.cage = position.toWorld(std::move(cage).value());
-  auto binding = SoftBodyBinding::create(body.cage, body.mesh);
-  scenes::require(binding.status());
-  body.binding = binding.value();
-  return body;
+measure::ModelPtr makeGapBody(const std::string& name, std::size_t tets, std::size_t triangles) {
+  TriangleMesh mesh = meshNamed(name, triangles);
+  mesh.groups.clear();
+  scenes::CagedMesh body = scenes::inWorld(std::move(mesh), tets);
+  return measure::makeModel(std::move(body.mesh), std::move(body.cage));
 }
 
 }  // namespace tetskin::gaps

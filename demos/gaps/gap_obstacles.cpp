@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "gaps/gap_obstacles.h"
 
-#include <btBulletDynamicsCommon.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 
@@ -14,109 +11,63 @@
 namespace tetskin::gaps {
 namespace {
 
+using namespace measure;
 using Eigen::Vector3d;
 using scenes::kSize;
-using scenes::World;
 
-using Distance = std::function<double(const Vector3d&)>;
-
-/// The distance from a union.
-Distance nearestOf(const std::vector<Vector3d>& centres, const Distance& ofOne) {
-  return [=](const Vector3d& p) {
-    double nearest = HUGE_VAL;
-    for (const Vector3d& c : centres) nearest = std::min(nearest, ofOne(p - c));
-    return nearest;
-  };
-}
-
-double toBox(const Vector3d& p, const Vector3d& half) {
-  const Vector3d q = p.cwiseAbs() - half;
-  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-}
-
-GapObstacle floor() {
-  const Vector3d half(5 * kSize, kSize, 5 * kSize), centre(0, -kSize, 0);
-  return {"floor", "a flat floor", [=](World& world) { world.addBox(centre, half); },
-          [=](const Vector3d& p) { return toBox(p - centre, half); }};
-}
-
-GapObstacle edges() {
-  constexpr double kTurn = 0.25 * EIGEN_PI;
+/// The upper edges of two boxes at 45 degrees, 0.5 S apart.
+Obstacle edges() {
   const double side = 0.2 * kSize, below = -side * std::sqrt(2.0);
-  const Vector3d half(side, side, 2 * kSize);
-  const std::vector<Vector3d> centres = {{-0.25 * kSize, below, 0}, {0.25 * kSize, below, 0}};
-  const auto one = [=](const Vector3d& p) {
-    const double c = std::cos(kTurn), s = std::sin(kTurn);
-    return toBox({c * p.x() + s * p.y(), c * p.y() - s * p.x(), p.z()}, half);
-  };
-  return {"edge", "the upper edges of two boxes at 45 degrees, 0.5 S apart",
-          [=](World& world) {
-            for (const Vector3d& c : centres) world.addBox(c, half, kTurn);
-          },
-          nearestOf(centres, one)};
+  return obstacleOf(box({side, side, 2 * kSize}, 0.25 * EIGEN_PI),
+                    {{-0.25 * kSize, below, 0}, {0.25 * kSize, below, 0}});
 }
 
-GapObstacle balls(const std::string& name, const std::string& about, double radius,
-                  const std::vector<Vector3d>& centres) {
-  return {name, about,
-          [=](World& world) {
-            for (const Vector3d& c : centres) world.addSphere(c, radius);
-          },
-          nearestOf(centres, [=](const Vector3d& p) { return p.norm() - radius; })};
-}
-
-GapObstacle spheres() {
+/// The middle of four spheres of radius 0.6 S.
+Obstacle spheres() {
   const double radius = 0.6 * kSize, aside = 0.5 * kSize;
-  return balls(
-      "sphere", "in the middle of four spheres of radius 0.6 S", radius,
+  return obstacleOf(
+      ball(radius),
       {{-aside, -radius, -aside}, {-aside, -radius, aside}, {aside, -radius, -aside}, {aside, -radius, aside}});
 }
 
-GapObstacle smallBalls() {
+/// Three balls of radius 0.075 S, 0.25 S from the middle.
+Obstacle smallBalls() {
   const double radius = 0.075 * kSize;
   std::vector<Vector3d> centres;
   for (int k = 0; k < 3; ++k) {
     const double turn = 2.0 * EIGEN_PI * k / 3;
     centres.emplace_back(0.25 * kSize * std::cos(turn), -radius, 0.25 * kSize * std::sin(turn));
   }
-  GapObstacle made = balls("ball", "three balls of radius 0.075 S, 0.25 S from the middle", radius, centres);
-  made.roundOnly = true;
-  return made;
+  return obstacleOf(ball(radius), centres);
 }
 
-GapObstacle poles() {
-  const double radius = 0.03 * kSize, half = 2 * kSize;
-  const std::vector<Vector3d> centres = {{-0.25 * kSize, -radius, 0}, {0.25 * kSize, -radius, 0}};
-  const auto one = [=](const Vector3d& p) {
-    return (p - Vector3d(0, 0, std::clamp(p.z(), -half, half))).norm() - radius;
-  };
-  return {"pole", "two poles of radius 0.03 S, 0.5 S apart",
-          [=](World& world) {
-            for (const Vector3d& c : centres) world.addPole(c, radius, half);
-          },
-          nearestOf(centres, one)};
+/// Two poles of radius 0.03 S, 0.5 S apart.
+Obstacle poles() {
+  const double radius = 0.03 * kSize;
+  return obstacleOf(capsule(radius, 2 * kSize), {{-0.25 * kSize, -radius, 0}, {0.25 * kSize, -radius, 0}});
 }
 
-/// A slab whose sides slope at 45 degrees. Its distance is that of the farthest plane: exact inside and above the
-/// faces.
-GapObstacle hull() {
+/// The hull of a slab 0.6 S wide whose sides slope at 45 degrees. Its distance is that of the farthest plane: exact
+/// inside and above the faces.
+Obstacle hull() {
   const double top = 0.3 * kSize, height = 0.2 * kSize;
-  const auto add = [=](World& world) {
+  const auto add = [=](MeasuringWorld& world) {
     auto shape = std::make_unique<btConvexHullShape>();
     for (int k = 0; k < 8; ++k) {
       const double y = k & 4 ? 0.0 : -height, side = k & 4 ? top : top + height;
       shape->addPoint(btVector3(static_cast<btScalar>(k & 1 ? side : -side), static_cast<btScalar>(y),
                                 static_cast<btScalar>(k & 2 ? side : -side)));
     }
-    world.addRigid(std::move(shape), btTransform::getIdentity(), 0.0);
+    world.addRigid(std::move(shape), btTransform::getIdentity());
   };
-  return {"hull", "the hull of a slab 0.6 S wide with sloping sides", add, [=](const Vector3d& p) {
+  return {add, [=](const Vector3d& p) {
             const double slope = (std::max(std::abs(p.x()), std::abs(p.z())) + p.y() - top) * std::sqrt(0.5);
             return std::max({p.y(), slope, -height - p.y()});
           }};
 }
 
-/// Gentle hills, a grid of triangles. The distance is a function of the plane, by the triangle above or below a point.
+/// Gentle hills 0.04 S high, a grid of triangles. The distance is a function of the plane, by the triangle above or
+/// below a point.
 struct Hills {
   static constexpr int kCells = 12;  ///< to either side
   static constexpr double kCell = 0.125 * kSize, kDepth = 0.04 * kSize, kLength = 1.5 * kSize;
@@ -141,34 +92,31 @@ struct Hills {
   }
 };
 
-struct HillTriangles {
-  btTriangleMesh mesh;
-  HillTriangles() {
-    for (int i = -Hills::kCells; i < Hills::kCells; ++i) {
-      for (int j = -Hills::kCells; j < Hills::kCells; ++j) {
-        const btVector3 a = Hills::corner(i, j), b = Hills::corner(i + 1, j), c = Hills::corner(i, j + 1);
-        mesh.addTriangle(a, c, b);
-        mesh.addTriangle(b, c, Hills::corner(i + 1, j + 1));
-      }
+void addHills(btTriangleMesh& mesh) {
+  for (int i = -Hills::kCells; i < Hills::kCells; ++i) {
+    for (int j = -Hills::kCells; j < Hills::kCells; ++j) {
+      const btVector3 a = Hills::corner(i, j), b = Hills::corner(i + 1, j), c = Hills::corner(i, j + 1);
+      mesh.addTriangle(a, c, b);
+      mesh.addTriangle(b, c, Hills::corner(i + 1, j + 1));
     }
   }
-};
-
-/// Bullet's shape keeps a pointer to its triangles.
-struct HillShape : private HillTriangles, public btBvhTriangleMeshShape {
-  HillShape() : btBvhTriangleMeshShape(&mesh, true) {}
-};
-
-GapObstacle hills() {
-  return {"mesh", "a mesh of hills 0.04 S high",
-          [](World& world) { world.addRigid(std::make_unique<HillShape>(), btTransform::getIdentity(), 0.0); },
-          &Hills::distance};
 }
 
 }  // namespace
 
 const std::vector<GapObstacle>& gapObstacles() {
-  static const std::vector<GapObstacle> all = {floor(), edges(), spheres(), poles(), hull(), hills(), smallBalls()};
+  static const std::vector<GapObstacle> all = {
+      {obstacleOf(box({5 * kSize, kSize, 5 * kSize}), {{0, -kSize, 0}}), "floor"},
+      {edges(), "edge"},
+      {spheres(), "sphere"},
+      {poles(), "pole"},
+      {hull(), "hull"},
+      {{[](MeasuringWorld& world) {
+          world.addRigid(std::make_unique<TriangleShape>(addHills), btTransform::getIdentity());
+        },
+        &Hills::distance},
+       "mesh"},
+      {smallBalls(), "ball", true}};
   return all;
 }
 

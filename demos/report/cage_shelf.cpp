@@ -7,16 +7,11 @@
 
 #include <set>
 
+#include "scenes/caged_mesh.h"
 #include "scenes/input_error.h"
 
 namespace tetskin::report {
 namespace {
-
-Cage built(const TriangleMesh& mesh, const CageOptions& options) {
-  Result<Cage> cage = createCage(mesh, options);
-  scenes::require(cage.status());
-  return std::move(cage).value();
-}
 
 /// Makes all tets full; which of them contain the vertices is still known.
 void makeBare(Cage& cage) {
@@ -56,7 +51,7 @@ const ShelvedCage& CageShelf::at(std::size_t tets, CageKind kind) {
   CageOptions options;
   options.targetTets = tets;
   options.duplicateElements = isSplit(kind);
-  Cage cage = built(mesh_, options);
+  Cage cage = scenes::builtCage(mesh_, options);
   if (!isFilled(kind)) makeBare(cage);
   return cages_[{tets, kind}] = shelved(std::move(cage), isCalibrated(kind));
 }
@@ -66,7 +61,7 @@ const ShelvedCage& CageShelf::reference() {
   CageOptions options;
   options.targetTets = referenceTets_;
   options.fit = false;
-  putReference(built(mesh_, options), true);
+  putReference(scenes::builtCage(mesh_, options), true);
   return *reference_;
 }
 

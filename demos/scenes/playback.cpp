@@ -4,8 +4,10 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "scenes/progress.h"
+#include "scenes/summary.h"
 #include "scenes/timer.h"
 
 namespace tetskin::scenes {
@@ -30,6 +32,24 @@ Playback playFrames(const char* doing, const OutputOptions& output, const World&
   }
   if (output.hash) std::printf("nodes of %d frames: %016" PRIx64 "\n", run.frames, run.hash);
   return run;
+}
+
+int finishRun(const char* program, const OutputOptions& output, const Playback& run, FrameWriter& writer,
+              Recording& recording, const std::function<nlohmann::ordered_json()>& summarise,
+              const std::function<void(const nlohmann::ordered_json& json)>& print) {
+  writer.finish();
+  recording.writeGlb();
+  nlohmann::ordered_json json = summarise();
+  json["frames"] = run.frames;
+  json["frames_written"] = run.written;
+  json["finite"] = run.finite;
+  json["out"] = output.out;
+  writeJson(json, summaryPath(output));
+  if (!output.quiet) print(json);
+  recording.writePage();
+  if (run.finite) return kDone;
+  std::fprintf(stderr, "%s: the simulation exploded after frame %d\n", program, run.frames - 1);
+  return kRunFailed;
 }
 
 }  // namespace tetskin::scenes

@@ -2,10 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <functional>
 
 #include "scenes/command_line.h"
 #include "scenes/files.h"
+#include "scenes/frame_writer.h"
+#include "scenes/recording.h"
 
 namespace tetskin::scenes {
 
@@ -30,5 +34,12 @@ using FrameStep = std::function<bool(int frame, Playback& run)>;
 /// written
 Playback playFrames(const char* doing, const OutputOptions& output, const World& world, const FrameStep& step,
                     const OfFrame& measure, const OfFrame& write);
+
+/// Ends a run: writes what is left of its frames, its GLB, its summary and its page. Returns the exit status, and says
+/// so if the simulation exploded.
+/// summarise  called once the GLB is written; what all runs have is added to it; print  called unless the run is quiet
+int finishRun(const char* program, const OutputOptions& output, const Playback& run, FrameWriter& writer,
+              Recording& recording, const std::function<nlohmann::ordered_json()>& summarise,
+              const std::function<void(const nlohmann::ordered_json& json)>& print);
 
 }  // namespace tetskin::scenes

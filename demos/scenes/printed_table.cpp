@@ -10,31 +10,64 @@
 
 namespace tetskin::scenes {
 
-PrintedTable::PrintedTable(std::vector<TableColumn> columns) : lines_(2) {
+PrintedTable::PrintedTable(std::vector<TableColumn> columns) : header_(2) {
   for (TableColumn& column : columns) {
-    lines_[0].push_back(std::move(column.title));
-    lines_[1].push_back(std::move(column.unit));
+    widths_.push_back(column.width);
+    header_[0].push_back(std::move(column.title));
+    header_[1].push_back(std::move(column.unit));
   }
 }
 
 void PrintedTable::add(std::vector<std::string> cells) {
-  assert(cells.size() == lines_.front().size());
-  lines_.push_back(std::move(cells));
+  assert(cells.size() == widths_.size());
+  rows_.push_back(std::move(cells));
 }
 
-std::string PrintedTable::text() const {
-  std::vector<std::size_t> widths(lines_.front().size());
-  for (const std::vector<std::string>& line : lines_) {
+std::string PrintedTable::aligned(const Lines& lines) const {
+  std::vector<std::size_t> widths = widths_;
+  for (const std::vector<std::string>& line : lines) {
     for (std::size_t k = 0; k < widths.size(); ++k) widths[k] = std::max(widths[k], line[k].size());
   }
   std::string text;
-  for (const std::vector<std::string>& line : lines_) {
+  for (const std::vector<std::string>& line : lines) {
     std::string row = " ";
     for (std::size_t k = 0; k < widths.size(); ++k) {
       const std::string blanks(widths[k] - line[k].size(), ' ');
       row += k == 0 ? " " + line[k] + blanks : "  " + blanks + line[k];
     }
-    text += row.substr(0, row.find_last_not_of(' ') + 1) + "\n";
+    const std::size_t end = row.find_last_not_of(' ');
+    if (end != std::string::npos) text += row.substr(0, end + 1) + "\n";
+  }
+  return text;
+}
+
+std::string PrintedTable::text() const {
+  Lines lines = header_;
+  lines.insert(lines.end(), rows_.begin(), rows_.end());
+  return aligned(lines);
+}
+
+std::string PrintedTable::header() const {
+  return aligned(header_);
+}
+
+std::string PrintedTable::latest() const {
+  assert(!rows_.empty());
+  return aligned({rows_.back()});
+}
+
+std::string PrintedTable::markdown() const {
+  std::string text = "|", rule = "|";
+  for (std::size_t k = 0; k < widths_.size(); ++k) {
+    const std::string& unit = header_[1][k];
+    text += " " + header_[0][k] + (unit.empty() ? "" : " " + unit) + " |";
+    rule += "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const std::vector<std::string>& row : rows_) {
+    text += "|";
+    for (const std::string& cell : row) text += " " + cell + " |";
+    text += "\n";
   }
   return text;
 }

@@ -13,21 +13,32 @@ namespace tetskin::scenes {
 
 struct TableColumn {
   std::string title;
-  std::string unit;  ///< second line of the header
+  std::string unit = {};  ///< second line of the header
+  std::size_t width = 0;  ///< at least so many characters
 };
 
-/// Rows are gathered and printed at the end, so that they do not mix with the progress of the run.
+/// Rows are gathered. They are printed at the end, so that they do not mix with the progress of the run; or one by one,
+/// where the columns have widths; or written as Markdown.
 class PrintedTable {
  public:
   explicit PrintedTable(std::vector<TableColumn> columns);
   /// cells  one per column; "-" stands for a value that was not measured
   void add(std::vector<std::string> cells);
   /// A line of titles, one of units, then the rows, each indented by two blanks. The first column is aligned to the
-  /// left, all others to the right.
+  /// left, all others to the right. Header lines without any text are left out.
   std::string text() const;
+  /// The same, header and latest row, in the columns' own widths.
+  std::string header() const;
+  std::string latest() const;
+  /// Each column's unit is behind its title.
+  std::string markdown() const;
 
  private:
-  std::vector<std::vector<std::string>> lines_;
+  using Lines = std::vector<std::vector<std::string>>;
+  std::string aligned(const Lines& lines) const;
+
+  std::vector<std::size_t> widths_;
+  Lines header_, rows_;
 };
 
 /// A number in a format of printf.

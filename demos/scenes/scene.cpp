@@ -29,13 +29,7 @@ double Scene::margin() const {
 }
 
 double Scene::nodeSpeed() const {
-  double squared = 0.0;
-  int count = 0;
-  for (const btSoftBody* body : bodies_) {
-    for (int n = 0; n < body->m_nodes.size(); ++n) squared += toEigen(body->m_nodes[n].m_v).squaredNorm();
-    count += body->m_nodes.size();
-  }
-  return std::sqrt(squared / count) / options_.size;
+  return scenes::nodeSpeed(bodies_) / options_.size;
 }
 
 int Scene::step(int frame, const Moved& moved) {

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "scenes/files.h"
 #include "scenes/input_error.h"
@@ -101,13 +102,19 @@ World::~World() {
   world_.reset();
 }
 
-void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh) {
+SurfaceContact& World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh,
+                                      const SurfaceContactOptions& options) {
   if (!deformable_) throw InputError("contact at the surface needs the deformable world");
-  SurfaceContactOptions options;
-  options.sampleSpacing = kSampleSpacing * boundingBox(mesh.positions).sizes().maxCoeff();
   auto made = SurfaceContact::add(*deformable_, body, binding, mesh, options);
   require(made.status());
   contacts_.push_back(std::move(made).value());
+  return *contacts_.back();
+}
+
+void World::touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh) {
+  SurfaceContactOptions options;
+  options.sampleSpacing = kSampleSpacing * boundingBox(mesh.positions).sizes().maxCoeff();
+  touchBySurface(body, binding, mesh, options);
 }
 
 void World::touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool itself) {
@@ -211,10 +218,6 @@ const ReductionReport* World::reduction() const {
   return reducedBodies_.empty() ? nullptr : &reducedBodies_.back()->report();
 }
 
-double World::youngsModulus() const {
-  return deformableBodies_.back()->youngsModulus();
-}
-
 btRigidBody& World::addBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& halfExtents, double slope,
                            double mass) {
   if (mass == 0.0) appendBox(obstacles_, centre, halfExtents, slope);
@@ -270,7 +273,17 @@ void World::remove(btRigidBody& body) {
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options) {
   World world(Force::NeoHookean, btVector3(0, static_cast<btScalar>(-kEarth), 0));
   world.add(cage, options);
-  return world.youngsModulus();
+  return world.deformable().youngsModulus();
+}
+
+double nodeSpeed(const std::vector<btSoftBody*>& bodies) {
+  double squared = 0.0;
+  int count = 0;
+  for (const btSoftBody* body : bodies) {
+    for (int n = 0; n < body->m_nodes.size(); ++n) squared += toEigen(body->m_nodes[n].m_v).squaredNorm();
+    count += body->m_nodes.size();
+  }
+  return std::sqrt(squared / count);
 }
 
 void moveTo(btRigidBody& body, const Eigen::Vector3d& centre, double turn) {

@@ -31,6 +31,7 @@ class DeformableSolver;
 class ReducedBody;
 struct ReducedBodyOptions;
 struct ReductionReport;
+struct SurfaceContactOptions;
 struct VibrationModes;
 class ParallelFor;
 class ContactShape;
@@ -95,6 +96,9 @@ class World {
 
   /// From now on, rigid bodies meet this mesh instead of the cage's nodes; for Force::Elastic only. Throws InputError
   /// if body and mesh do not fit.
+  SurfaceContact& touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh,
+                                 const SurfaceContactOptions& options);
+  /// The same with samples closer together than obstacles here are thick.
   void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
 
   /// Soft bodies for which this was called meet each other at their visual surfaces, and, if requested, themselves; for
@@ -135,8 +139,8 @@ class World {
   btDiscreteDynamicsWorld& bullet() { return *world_; }
   /// The report on the last reduced body added; null without one.
   const ReductionReport* reduction() const;
-  /// Young's modulus of the last body added, in the deformable world with a force of the library's.
-  double youngsModulus() const;
+  /// The last body added, in the deformable world with a force of the library's.
+  DeformableBody& deformable() { return *deformableBodies_.back(); }
   /// A hash of the present nodes of all soft bodies, each position as three floats, seeded by `seed`: equal runs have
   /// equal hashes.
   std::uint64_t hashOfNodes(std::uint64_t seed) const;
@@ -174,6 +178,9 @@ class World {
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's forces, under earth's gravity.
 double defaultStiffness(const Cage& cage, const SoftBodyOptions& options);
+
+/// Root mean square of the speeds of all these bodies' nodes.
+double nodeSpeed(const std::vector<btSoftBody*>& bodies);
 
 /// Moves a box made by `addMovingBox` to a new position, in the next step.
 /// turn  radians about z

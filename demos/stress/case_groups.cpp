@@ -4,15 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace tetskin::stress {
-
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%g", value);
-  return buffer;
-}
 
 std::string stepText(double seconds) {
   return "1/" + text(std::round(1.0 / seconds));

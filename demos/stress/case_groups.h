@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "measure/run.h"
 #include "stress/stress_case.h"
 
 namespace tetskin::stress {
 
 using Cases = std::vector<StressCase>;
+using measure::text;
 using scenes::Force;
 
 constexpr double kStiffestOfBullets = 1e7;  ///< with stiffer bodies of Bullet's forces most time steps explode
@@ -25,8 +27,6 @@ void addContactCases(Cases& cases);
 void addReducedCases(Cases& cases);
 void addClaims(Cases& cases);
 
-/// A number as text: "1e+06", "0.49".
-std::string text(double value);
 /// A time step as text: "1/240".
 std::string stepText(double seconds);
 const char* integrator(bool implicit);

@@ -39,7 +39,8 @@ std::vector<Claim> allClaims();
 /// This many of the combinations, chosen so that each pair of values occurs.
 std::vector<Claim> chosenClaims(std::size_t count);
 
-/// Runs the combination for one second.
+/// Runs the combination for one second. Energies are relative to the initial one and the work put in, those of landings
+/// without elastic energy; momentum is that of free bodies.
 void runClaim(const Claim& claim, Verdict& verdict);
 
 }  // namespace tetskin::stress

@@ -2,14 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "stress/models.h"
 
-#include <tetskin/cage/create_cage.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "scenes/bar.h"
-#include "scenes/input_error.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/slotted_beam.h"
 
 namespace tetskin::stress {
@@ -19,25 +17,11 @@ constexpr std::size_t kTriangles = 2000, kTets = 200;
 constexpr std::size_t kLargeTets = 300000;
 constexpr std::size_t kMillionTriangles = 2000000;  ///< makes three million vertices
 
-struct Carried {
-  TriangleMesh mesh;
-  tetskin::Cage cage;
-};
-
-/// A mesh in its cage, with the cage's box centred at the origin.
-Carried inItsCage(TriangleMesh mesh, std::size_t tets) {
-  CageOptions options;
-  options.targetTets = tets;
-  Result<tetskin::Cage> cage = createCage(mesh, options);
-  scenes::require(cage.status());
-  const scenes::Placement position = scenes::placementOf(boundingBox(cage.value().mesh.nodes));
-  position.toWorld(mesh.positions);
-  return {std::move(mesh), position.toWorld(std::move(cage).value())};
-}
+using Carried = scenes::CagedMesh;
 
 /// The bar along x, in tets without volume fractions.
 Carried makeBarModel(std::size_t triangles, std::size_t tets) {
-  Carried bar = inItsCage(scenes::makeBar(triangles), tets);
+  Carried bar = scenes::inWorld(scenes::makeBar(triangles), tets);
   return {std::move(bar.mesh), TetMesh(std::move(bar.cage).mesh)};
 }
 
@@ -48,7 +32,7 @@ const Carried& smallBar() {
 }
 
 const Carried& slottedBeam() {
-  static const Carried beam = inItsCage(scenes::makeSlottedBeam(kTriangles), kTets);
+  static const Carried beam = scenes::inWorld(scenes::makeSlottedBeam(kTriangles), kTets);
   return beam;
 }
 

@@ -8,10 +8,15 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "measure/report.h"
+#include "scenes/printed_table.h"
 #include "scenes/summary.h"
 
 namespace tetskin::stress {
 namespace {
+
+using scenes::PrintedTable;
+using scenes::TableColumn;
 
 std::string simulationWord(const Verdict& verdict) {
   if (!verdict.simulationFinite) return "not finite";
@@ -32,6 +37,34 @@ std::string hashWord(const Verdict& verdict) {
 
 std::string pinnedWord(const Verdict& verdict) {
   return verdict.passed() ? "passed" : "FAILED: " + joined(verdict.broken);
+}
+
+/// end  columns after those of the kind of case
+std::vector<TableColumn> columnsOf(const Row& row, const std::vector<TableColumn>& end) {
+  std::vector<TableColumn> columns = {{"case", "", 50},      {"simulation", "", 10}, {"largest extent", "", 14},
+                                      {"surface", "", 10},   {"status", "", 10},     {"amplification", "", 13},
+                                      {"rest error", "", 10}};
+  if (row.stressCase.claim)
+    columns = {{"claim", "", 74}, {"energy", "", 7}, {"momentum lost", "", 13}, {"extent", "", 7}};
+  columns.insert(columns.end(), end.begin(), end.end());
+  return columns;
+}
+
+std::vector<std::string> cellsOf(const Row& row, const std::vector<std::string>& end) {
+  const auto& [stressCase, verdict] = row;
+  std::vector<std::string> cells = {stressCase.name};
+  if (stressCase.claim) {
+    for (const char* figure : {"energy", "momentum lost", "extent over its start"}) {
+      cells.push_back(measure::textOf(verdict.figures, figure));
+    }
+  } else {
+    cells.insert(cells.end(),
+                 {simulationWord(verdict), scenes::formatted("%.3g", verdict.extentMax),
+                  verdict.skinFinite ? "finite" : "not finite", verdict.status,
+                  scenes::formatted("%.4f", verdict.amplification), scenes::formatted("%.1e", verdict.restError)});
+  }
+  cells.insert(cells.end(), end.begin(), end.end());
+  return cells;
 }
 
 std::string cannotWord(const Row& row, const std::vector<Row>& rows) {
@@ -90,15 +123,13 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
     row["extent_max"] = verdict.extentMax;
     row["lowest"] = verdict.lowest;
     row["rest_speed"] = verdict.restSpeed;
-    row["energy"] = verdict.energy;
-    row["energy_stored"] = verdict.energyStored;
-    row["momentum_lost"] = verdict.momentumLost;
     row["expected"] = toString(stressCase.simulation);
     row["passed"] = verdict.passed();
     row["broken"] = verdict.broken;
     const std::optional<bool> cannot = bulletCannot(each, rows);
     row["bullet_cannot_tetskin_can"] = cannot ? nlohmann::ordered_json(*cannot) : nlohmann::ordered_json();
     row["hash"] = hashWord(verdict);
+    row["figures"] = measure::toJson(verdict.promised, verdict.figures);
     row["milliseconds"] = verdict.milliseconds;
     scenes::tellSolve(verdict.solve, row);
     row["force"] = toString(stressCase.force);
@@ -121,36 +152,27 @@ nlohmann::ordered_json toJson(const std::vector<Row>& rows) {
 
 std::string toMarkdown(const std::vector<Row>& rows) {
   std::string text;
-  std::string group;
-  for (const Row& row : rows) {
-    const auto& [stressCase, verdict] = row;
-    if (stressCase.group != group) {
-      group = stressCase.group;
-      text += "\n## " + group +
-              "\n\n| case | simulation | largest extent | surface | status | amplification | rest error | stable with "
-              "tetskin "
-              "only | expectations |\n|---|---|---|---|---|---|---|---|---|\n";
+  for (std::size_t k = 0; k < rows.size();) {
+    const std::string& group = rows[k].stressCase.group;
+    PrintedTable table(columnsOf(rows[k], {{"stable with tetskin only"}, {"expectations"}}));
+    for (; k < rows.size() && rows[k].stressCase.group == group; ++k) {
+      table.add(cellsOf(rows[k], {cannotWord(rows[k], rows), pinnedWord(rows[k].verdict)}));
     }
-    char numbers[160];
-    std::snprintf(numbers, sizeof numbers, " | %s | %.3g | %s | %s | %.4f | %.1e | ", simulationWord(verdict).c_str(),
-                  verdict.extentMax, verdict.skinFinite ? "finite" : "not finite", verdict.status.c_str(),
-                  verdict.amplification, verdict.restError);
-    text += "| " + stressCase.name + numbers + cannotWord(row, rows) + " | " + pinnedWord(verdict) + " |\n";
+    text += "\n## " + group + "\n\n" + table.markdown();
   }
   return text;
 }
 
-void printRow(const Row& row, bool hash) {
-  const Verdict& verdict = row.verdict;
-  const std::string end = (hash ? hashWord(verdict) + "  " : "") + pinnedWord(verdict);
-  if (row.stressCase.claim) {
-    std::printf("%-72s energy %7.4f  momentum %8.1e  extent %7.4g %7.0f ms  %s\n", row.stressCase.name.c_str(),
-                verdict.energy, verdict.momentumLost, verdict.extentMax, verdict.milliseconds, end.c_str());
-    return;
-  }
-  std::printf("%-48s %-10s %8.3g  %-10s %7.4f %9.1e %7.0f ms  %s\n", row.stressCase.name.c_str(),
-              simulationWord(verdict).c_str(), verdict.extentMax, verdict.status.c_str(), verdict.amplification,
-              verdict.restError, verdict.milliseconds, end.c_str());
+void RowPrinter::print(const Row& row) {
+  const TableColumn hash = hash_ ? TableColumn{"hash", "", 16} : TableColumn{};
+  PrintedTable table(columnsOf(row, {hash, {"", "ms", 7}, {"expectations"}}));
+  table.add(cellsOf(row, {hash_ ? hashWord(row.verdict) : "", scenes::formatted("%.0f", row.verdict.milliseconds),
+                          pinnedWord(row.verdict)}));
+  const bool isClaim = row.stressCase.claim.has_value();
+  if (headed_ != isClaim) std::printf("%s", table.header().c_str());
+  headed_ = isClaim;
+  std::printf("%s", table.latest().c_str());
+  std::fflush(stdout);
 }
 
 void printMap(const std::vector<Row>& rows) {

@@ -25,9 +25,18 @@ std::optional<bool> bulletCannot(const Row& ours, const std::vector<Row>& rows);
 nlohmann::ordered_json toJson(const std::vector<Row>& rows);
 /// One table per group.
 std::string toMarkdown(const std::vector<Row>& rows);
-/// Prints to standard output: a line per case, with the hash of its nodes if requested; and the stability maps as
-/// letters.
-void printRow(const Row& row, bool hash);
+/// Prints a line per case, and a header before the first one of a kind.
+class RowPrinter {
+ public:
+  /// hash  print that of each case's nodes
+  explicit RowPrinter(bool hash) : hash_(hash) {}
+  void print(const Row& row);
+
+ private:
+  bool hash_;
+  std::optional<bool> headed_;  ///< whether the last header was that of claims
+};
+/// Prints the stability maps as letters.
 void printMap(const std::vector<Row>& rows);
 
 }  // namespace tetskin::stress

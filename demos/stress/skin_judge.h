@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "measure/run.h"
 #include "scenes/files.h"
 #include "scenes/scene.h"
 #include "stress/models.h"
@@ -22,13 +23,10 @@ struct Verdict {
   /// RMS distance of the surface from its rest shape, regardless of its position, when the event was over, in diagonals
   /// of the mesh's box: it tells whether the body has recovered.
   double shapeError = 0.0;
-  double lowest = 0.0;  ///< height of the surface over the floor at the end, over the body's size; 0 without a floor
-  double energy = 0.0;  ///< of a claim: the largest energy, relative to the initial energy and the work put in
-  double energyStored = 0.0;  ///< the same for elastic energy alone, also in the steps of a landing
-  double momentumLost = 0.0;  ///< of a free body: the largest relative loss of momentum or angular momentum
-  double restSpeed = 0.0;     ///< RMS speed of nodes in the last half second, in body lengths per second
-  bool skinFinite = true;     ///< finite at every update
-  std::string status;         ///< the worst status that `update` returned, or why there is no skin
+  double lowest = 0.0;     ///< height of the surface over the floor at the end, over the body's size; 0 without a floor
+  double restSpeed = 0.0;  ///< RMS speed of nodes in the last half second, in body lengths per second
+  bool skinFinite = true;  ///< finite at every update
+  std::string status;      ///< the worst status that `update` returned, or why there is no skin
   /// The largest value over all updates of: the largest displacement of a vertex since bind, over the largest
   /// displacement of a node. Updates in which no node has moved by a thousandth of the body's size do not count.
   double amplification = 0.0;
@@ -38,7 +36,9 @@ struct Verdict {
   std::uint64_t hash = scenes::kNoHash;  ///< of all bodies' nodes after each checked step
   double milliseconds = 0.0;
   scenes::SolveTotals solve;
-  std::vector<std::string> broken;  ///< the expectations that were not met, in words
+  std::vector<measure::Figure> figures;  ///< of a claim
+  std::string promised;                  ///< name of the scene by which the figures' promises are found
+  std::vector<std::string> broken;       ///< the expectations that were not met, in words
 
   bool passed() const { return broken.empty(); }
   void expect(bool condition, const std::string& what);

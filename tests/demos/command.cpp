@@ -61,6 +61,12 @@ CommandResult CommandFolder::run(const std::string& executable, const std::vecto
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(".stdout"), read(".stderr")};
 }
 
+std::map<std::string, nlohmann::json> figuresOf(const nlohmann::json& scene) {
+  std::map<std::string, nlohmann::json> figures;
+  for (const auto& figure : scene["figures"]) figures[figure["name"]] = figure;
+  return figures;
+}
+
 std::vector<std::array<double, 3>> objPositions(const std::string& text) {
   std::vector<std::array<double, 3>> positions;
   std::istringstream lines(text);

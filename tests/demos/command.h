@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ class CommandFolder {
 
 /// Expects exit status 2 and one line that names what is wrong.
 void expectRefused(const CommandResult& result, const std::string& word);
+
+/// The figures of a measured scene, by name.
+std::map<std::string, nlohmann::json> figuresOf(const nlohmann::json& scene);
 
 /// Vertex positions of an OBJ file.
 std::vector<std::array<double, 3>> objPositions(const std::string& text);

@@ -17,7 +17,6 @@ namespace {
 
 using test::CommandFolder;
 using test::CommandResult;
-using test::expectRefused;
 
 TEST(Crowd, SleepersStayAsleepAndInPlaceWhileTheOthersFall) {
   scenes::ModelOptions options;
@@ -106,14 +105,6 @@ TEST_F(CrowdCommand, TakesAMeshOfTheUsersAndASingleBody) {
   EXPECT_TRUE(result.err.empty()) << result.err;
   EXPECT_EQ(folder.json("c.json")["asleep"], 0);
   EXPECT_EQ(folder.json("c.json")["vertices"], 8);
-}
-
-TEST_F(CrowdCommand, RefusesBadInput) {
-  expectRefused(crowd({"--mesh", "nowhere.obj"}), "nowhere.obj");
-  expectRefused(crowd({"--bodies", "0"}), "--bodies");
-  expectRefused(crowd({"--repetitions", "none"}), "--repetitions");
-  expectRefused(crowd({"--bodies", "2", "--triangles", "2000", "--repetitions", "1", "--json", "no/where.json"}),
-                "no/where.json");
 }
 
 }  // namespace

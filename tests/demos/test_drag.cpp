@@ -47,21 +47,6 @@ TEST(Drag, TheSerpentIsPickedWhereAHornEndsInOneVertex) {
   EXPECT_GT(folder.json("out/drag/summary.json")["lag_swinging"], 0);
 }
 
-TEST(Drag, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
-  const CommandFolder folder;
-  const auto run = [&](const char* frames) {
-    return folder.run(TETSKIN_DRAG, {"--tets", "100", "--triangles", "3000", "--frames", frames});
-  };
-  const CommandResult result = run("3");
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_LT(result.out.find("writing 3 frames and animation.glb, about "), result.out.find("simulating")) << result.out;
-  EXPECT_NE(folder.read("out/drag/frame_0002.mtl").find("newmtl hat\n"), std::string::npos);
-  ASSERT_EQ(run("2").status, 0);
-  EXPECT_EQ(folder.count("out/drag", ".obj"), 2u + 1u);
-  folder.write("out/drag/frame_0009.obj", "mine");
-  test::expectRefused(run("2"), "frame_0009.obj");
-}
-
 TEST(Drag, TakesAMeshOfTheUsers) {
   const CommandFolder folder;
   folder.write("box.obj", test::boxObj());
@@ -71,12 +56,6 @@ TEST(Drag, TakesAMeshOfTheUsers) {
   const auto json = folder.json("out/drag/summary.json");
   EXPECT_EQ(json["triangles"], 12);
   EXPECT_GT(json["lag_swinging"], 0);
-}
-
-TEST(Drag, RefusesWhatMakesNoSense) {
-  const CommandFolder folder;
-  test::expectRefused(folder.run(TETSKIN_DRAG, {"--spring-stiffness", "0"}), "--spring-stiffness");
-  test::expectRefused(folder.run(TETSKIN_DRAG, {"--tets", "0"}), "--tets");
 }
 
 }  // namespace

@@ -270,15 +270,5 @@ TEST_F(Drop, HashTellsRunsApart) {
   EXPECT_NE(hash, hashOf("120", "39"));
 }
 
-TEST_F(Drop, HelpListsTheOptions) {
-  const CommandResult result = drop({"--help"});
-  EXPECT_EQ(result.status, 0);
-  for (const char* option :
-       {"--mesh", "--cage", "--tets", "--outside", "--interpolation", "--normals", "--max-distance", "--frames",
-        "--every", "--out", "--json", "--quiet", "--write-cage", "--view", "--no-view", "--hash"}) {
-    EXPECT_NE(result.out.find(option), std::string::npos) << option;
-  }
-}
-
 }  // namespace
 }  // namespace tetskin

@@ -77,15 +77,6 @@ TEST_F(DropFrames, SaysHowMuchItWritesBeforeItDoes) {
   EXPECT_NE(result.out.find("kB, to o\n"), std::string::npos) << result.out;
 }
 
-TEST_F(DropFrames, SpeaksOfOneFrameAndOfFewBytesAsTheyAre) {
-  folder.write("box.obj", boxObj());
-  const CommandResult result =
-      drop({"--mesh", "box.obj", "--tets", "60", "--frames", "1", "--format", "obj", "--out", "o"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("writing 1 frame, about "), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find(" kB, to o\n"), std::string::npos) << result.out;
-}
-
 TEST_F(DropFrames, RefusesMoreThanTheDiskHasRoomFor) {
   const CommandResult result = drop({"--tets", "60", "--triangles", "300000", "--frames", "1000000", "--out", "o"});
   test::expectRefused(result, "--every");

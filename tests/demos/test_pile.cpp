@@ -85,22 +85,6 @@ TEST(Pile, HeapsBodiesAndTellsHowLongEachStageTakes) {
   }
 }
 
-TEST(Pile, SaysHowMuchItWritesBeforeItDoesAndReplacesAnEarlierRun) {
-  const CommandFolder folder;
-  const auto run = [&](const char* frames) {
-    return folder.run(TETSKIN_PILE, {"--bodies", "1", "--tets", "60", "--triangles", "3000", "--frames", frames});
-  };
-  const CommandResult result = run("3");
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_LT(result.out.find("writing 3 frames and animation.glb, about "), result.out.find("simulating")) << result.out;
-  EXPECT_EQ(folder.count("out/pile", ".obj"), 3u + 1u);
-  ASSERT_EQ(run("2").status, 0);
-  EXPECT_EQ(folder.count("out/pile", ".obj"), 2u + 1u);
-  EXPECT_EQ(folder.count("out/pile", ".mtl"), 2u + 2u);
-  folder.write("out/pile/frame_0009.obj", "mine");
-  test::expectRefused(run("2"), "frame_0009.obj");
-}
-
 TEST(Pile, TakesAMeshOfTheUsers) {
   const CommandFolder folder;
   folder.write("box.obj", test::boxObj());
@@ -111,13 +95,6 @@ TEST(Pile, TakesAMeshOfTheUsers) {
   EXPECT_EQ(loadMesh(folder.path("out/pile/frame_0001.obj")).value().triangleCount(), 2u * 12u);
   folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 1 4 3\n");
   test::expectRefused(run("sheet.obj"), "sheet.obj: ");
-}
-
-TEST(Pile, RefusesWhatMakesNoSense) {
-  const CommandFolder folder;
-  test::expectRefused(folder.run(TETSKIN_PILE, {"--bodies", "0"}), "--bodies");
-  test::expectRefused(folder.run(TETSKIN_PILE, {"--contact", "nothing"}), "--contact");
-  test::expectRefused(folder.run(TETSKIN_PILE, {"--scene", "nothing"}), "--scene");
 }
 
 }  // namespace

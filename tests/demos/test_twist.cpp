@@ -63,11 +63,6 @@ class TwistCommand : public testing::Test {
  protected:
   CommandResult twist(const std::vector<std::string>& arguments) const { return folder.run(TETSKIN_TWIST, arguments); }
 
-  void expectRefused(const std::vector<std::string>& arguments, const std::string& word) const {
-    test::expectRefused(twist(arguments), word);
-    EXPECT_FALSE(folder.exists("out"));
-  }
-
   CommandFolder folder;
 };
 
@@ -179,27 +174,6 @@ TEST_F(TwistCommand, TakesAMeshAnywhereAndOfAnySize) {
   EXPECT_NEAR(written[35][2], 6200.0, 1e-2);
   EXPECT_NEAR(written[71][2], 6200.0, 1e-2);  // next to the bar, not in line with it
   EXPECT_EQ(folder.json("o/summary.json")["vertices"], 36);
-}
-
-TEST_F(TwistCommand, QuietPrintsNothing) {
-  const CommandResult result =
-      twist({"--triangles", "2000", "--tets", "100", "--frames", "2", "--quiet", "--json", "s.json"});
-  EXPECT_EQ(result.status, 0);
-  EXPECT_TRUE(result.out.empty()) << result.out;
-  EXPECT_TRUE(result.err.empty()) << result.err;
-  EXPECT_EQ(folder.json("s.json")["frames"], 2);
-}
-
-TEST_F(TwistCommand, RefusesBadInput) {
-  folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
-  expectRefused({"--mesh", "nowhere.obj"}, "nowhere.obj");
-  expectRefused({"--mesh", "nan.obj"}, "nan.obj:2");
-  expectRefused({"--cage", "nowhere.vtk"}, "nowhere.vtk");
-  expectRefused({"--normals", "bumpy"}, "--normals");
-  expectRefused({"--frames", "0"}, "--frames");
-  expectRefused({"--tets", "none"}, "--tets");
-  folder.write("file", "in the way");
-  expectRefused({"--triangles", "2000", "--tets", "100", "--frames", "2", "--out", "file/o"}, "file/o");
 }
 
 /// An OBJ file with its vertices multiplied by a factor.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The greatest and the least of many values. NaN is kept: no later value hides an explosion.
+// The greatest and the least of many values, and the one farthest from 0. NaN is kept: no later value hides an
+// explosion.
 #pragma once
 
 #include <cmath>
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 inline void raise(double& maximum, double value) {
   if (!(value <= maximum) && !std::isnan(maximum)) maximum = value;
@@ -16,4 +17,8 @@ inline void lower(double& minimum, double value) {
   if (!(value >= minimum) && !std::isnan(minimum)) minimum = value;
 }
 
-}  // namespace tetskin::contact_demo
+inline void raiseMagnitude(double& farthest, double value) {
+  if (!(std::abs(value) <= std::abs(farthest)) && !std::isnan(farthest)) farthest = value;
+}
+
+}  // namespace tetskin::measure

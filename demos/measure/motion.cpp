@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "contact/motion.h"
+#include "measure/motion.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <btBulletDynamicsCommon.h>
@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/extremes.h"
+#include "measure/extremes.h"
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 namespace {
 
 using Eigen::Matrix3d;
@@ -72,6 +72,15 @@ void addMomentum(Momentum& sum, const btMultiBody& body) {
   sum.add(p, toEigen(body.getBasePos()).cross(p) + toEigen(quatRotate(toBase.inverse(), spin)));
 }
 
+Vector3d angularMomentumAbout(const Vector3d& pivot, const btSoftBody& body) {
+  Vector3d sum = Vector3d::Zero();
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body.m_nodes[n];
+    sum += massOf(node) * (toEigen(node.m_x) - pivot).cross(toEigen(node.m_v));
+  }
+  return sum;
+}
+
 RigidMotion rigidMotionOf(const btSoftBody& body) {
   RigidMotion motion;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -127,20 +136,18 @@ double kineticEnergy(const btMultiBody& body) {
                 spin.dot(toEigen(body.getBaseInertia()).cwiseProduct(spin)));
 }
 
-double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youngsModulus, double poissonRatio,
+double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli,
                      const std::vector<double>& stiffnessScale) {
-  const double mu = youngsModulus / (2.0 * (1.0 + poissonRatio));
-  const double lambda = youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio));
+  const double mu = moduli.youngsModulus / (2.0 * (1.0 + moduli.poissonRatio));
+  const double lambda = 2.0 * mu * moduli.poissonRatio / (1.0 - 2.0 * moduli.poissonRatio);
   double energy = 0.0;
   for (std::size_t t = 0; t < model.cage.mesh.tets.size(); ++t) {
     const Tet& tet = model.cage.mesh.tets[t];
     const Matrix3d rest = edgesOf([&](int n) { return model.cage.mesh.nodes[static_cast<std::size_t>(n)]; }, tet);
     const Matrix3d gradient = edgesOf([&](int n) { return toEigen(body.m_nodes[n].m_x); }, tet) * rest.inverse();
-    // Singular values; the smallest one is negative if the tet is inverted.
-    Eigen::SelfAdjointEigenSolver<Matrix3d> squares;
-    squares.computeDirect(gradient.transpose() * gradient, Eigen::EigenvaluesOnly);
-    Vector3d strain = squares.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-    if (gradient.determinant() < 0.0) strain[0] = -strain[0];
+    // The smallest singular value is negative if the tet is inverted.
+    Vector3d strain = Eigen::JacobiSVD<Matrix3d>(gradient).singularValues();
+    if (gradient.determinant() < 0.0) strain[2] = -strain[2];
     strain.array() -= 1.0;
     const double volume = std::abs(rest.determinant()) / 6.0 * (stiffnessScale.empty() ? 1.0 : stiffnessScale[t]);
     energy += volume * (mu * strain.squaredNorm() + 0.5 * lambda * strain.sum() * strain.sum());
@@ -148,4 +155,4 @@ double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youn
   return energy;
 }
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure

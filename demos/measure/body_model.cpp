@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "contact/body_model.h"
-
-#include <tetskin/cage/create_cage.h>
+#include "measure/body_model.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,9 +10,9 @@
 #include <random>
 #include <utility>
 
-#include "scenes/input_error.h"
+#include "scenes/caged_mesh.h"
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 namespace {
 
 using Eigen::Vector3d;
@@ -38,32 +36,6 @@ void appendCopies(TriangleMesh& mesh, Copies copies) {
   for (int copy = 1; copy < copies.count; ++copy) {
     for (const Vector3d& p : once) mesh.positions.push_back(p + Vector3d(offset(), offset(), offset()));
   }
-}
-
-ModelPtr finished(TriangleMesh mesh, Cage cage) {
-  auto model = std::make_shared<BodyModel>();
-  model->size = boundingBox(mesh.positions).sizes().maxCoeff();
-  model->volume = volumeOf(mesh);
-  auto binding = SoftBodyBinding::create(cage, mesh);
-  scenes::require(binding.status());
-  model->binding = binding.value();
-  model->mesh = std::move(mesh);
-  model->cage = std::move(cage);
-  return model;
-}
-
-/// The cage is that of the mesh without copies.
-ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies) {
-  CageOptions options;
-  options.targetTets = tets;
-  auto cage = createCage(mesh, options);
-  scenes::require(cage.status());
-  if (copies.count == 1) return finished(std::move(mesh), std::move(cage).value());
-  appendCopies(mesh, copies);
-  // What is known of single vertices does not hold for the copies; a convex body has no duplicate tets.
-  cage.value().vertexTets.clear();
-  cage.value().meshHash.reset();
-  return finished(std::move(mesh), std::move(cage).value());
 }
 
 TriangleMesh icosahedron() {
@@ -162,6 +134,26 @@ TetMesh latticeTets(const Vector3i& cubes, double edge) {
 
 }  // namespace
 
+ModelPtr makeModel(TriangleMesh mesh, Cage cage) {
+  auto model = std::make_shared<BodyModel>();
+  model->size = boundingBox(mesh.positions).sizes().maxCoeff();
+  model->volume = volumeOf(mesh);
+  model->binding = scenes::boundTo(cage, mesh);
+  model->mesh = std::move(mesh);
+  model->cage = std::move(cage);
+  return model;
+}
+
+ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies) {
+  Cage cage = scenes::builtCage(mesh, tets);
+  if (copies.count == 1) return makeModel(std::move(mesh), std::move(cage));
+  appendCopies(mesh, copies);
+  // What is known of single vertices does not hold for the copies; a convex body has no duplicate tets.
+  cage.vertexTets.clear();
+  cage.meshHash.reset();
+  return makeModel(std::move(mesh), std::move(cage));
+}
+
 ModelPtr makeBall(std::size_t tets, int level, Copies copies) {
   TriangleMesh mesh = icosahedron();
   for (Vector3d& p : mesh.positions) p.normalize();
@@ -198,7 +190,7 @@ ModelPtr makeLattice(const Vector3i& cubes, double edge) {
   constexpr int kFiner = 4;
   TriangleMesh mesh = gridBox(kFiner * cubes);
   for (Vector3d& p : mesh.positions) p = edge * (p / kFiner - 0.5 * cubes.cast<double>());
-  return finished(std::move(mesh), latticeTets(cubes, edge));
+  return makeModel(std::move(mesh), latticeTets(cubes, edge));
 }
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure

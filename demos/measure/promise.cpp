@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "contact/promise.h"
+#include "measure/promise.h"
 
 #include <cmath>
 #include <cstring>
 
-#include "contact/scene_list.h"
+#include "scenes/printed_table.h"
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -19,7 +19,16 @@ bool beginsWith(const std::string& name, const char* start) {
 }  // namespace
 
 const std::vector<Promise>& promises() {
+  // Of gaps, in units of S; of claims, energies over the initial one and the work put in.
   static const std::vector<Promise> all = {
+      {"gap", "gap at rest by surface", -0.003, 0.003},
+      {"claim", "energy", -kNone, 1.02},
+      // The point that is dragged is light compared with the rest; in long steps, the spring's full force strains the
+      // body for a moment.
+      {"claim/dragged", "energy", -kNone, 1.2},
+      {"claim/dragged in long steps", "energy", -kNone, 1.5},
+      {"claim", "momentum lost", -kNone, 1e-3},
+      {"claim", "extent over a fine reference's", -kNone, 1.2},
       {"free flight", "linear momentum lost", -kNone, 1e-5},
       {"free flight", "angular momentum lost", -kNone, 1e-5},
       {"hit", "linear momentum lost", -kNone, 1e-3},
@@ -114,6 +123,10 @@ const Promise* promiseFor(const std::string& scene, const std::string& figure) {
   return best;
 }
 
+std::string text(double value) {
+  return scenes::formatted("%g", value);
+}
+
 std::string text(const Promise& promise) {
   if (promise.minimum == promise.maximum) return text(promise.minimum);
   if (std::isinf(promise.minimum)) return "<= " + text(promise.maximum);
@@ -121,4 +134,4 @@ std::string text(const Promise& promise) {
   return text(promise.minimum) + " .. " + text(promise.maximum);
 }
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure

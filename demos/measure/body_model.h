@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 /// A body about the origin, in metres.
 struct BodyModel {
@@ -30,6 +30,12 @@ using ModelPtr = std::shared_ptr<const BodyModel>;
 struct Copies {
   int count = 1;
 };
+
+/// A mesh in a given cage.
+ModelPtr makeModel(TriangleMesh mesh, Cage cage);
+
+/// A mesh in a cage that is built for it, without copies.
+ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies = {});
 
 /// A ball of radius 0.5 in a built cage: an icosphere of 10 x 4^level + 2 vertices, turned so that no vertex is at its
 /// lowest point.
@@ -49,4 +55,4 @@ ModelPtr makeCoarseBox(const Eigen::Vector3d& halfExtents, std::size_t tets = 50
 /// A box of this many cubes of six tets each, with a surface grid four times as fine as the cubes.
 ModelPtr makeLattice(const Eigen::Vector3i& cubes, double edge);
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure

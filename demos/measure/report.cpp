@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "contact/report.h"
+#include "measure/report.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,24 +11,26 @@
 #include <optional>
 #include <utility>
 
-#include "contact/promise.h"
-#include "contact/scene_list.h"
+#include "measure/promise.h"
 #include "scenes/files.h"
 #include "scenes/input_error.h"
+#include "scenes/printed_table.h"
+#include "scenes/summary.h"
+#include "scenes/timer.h"
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 namespace {
 
-nlohmann::ordered_json toJson(const SceneResult& result, const Figure& figure) {
-  nlohmann::ordered_json json;
-  json["name"] = figure.name;
-  json["value"] = figure.value;
-  if (const Promise* promise = promiseFor(result.scene, figure.name)) {
-    if (std::isfinite(promise->minimum)) json["least"] = promise->minimum;
-    if (std::isfinite(promise->maximum)) json["most"] = promise->maximum;
-  }
-  json["passed"] = holds(result, figure);
-  return json;
+using scenes::formatted;
+using scenes::PrintedTable;
+using scenes::TableColumn;
+
+bool holds(const Promise* promise, double value) {
+  return !promise || promise->holds(value);
+}
+
+std::string textOf(double value) {
+  return formatted(value != 0.0 && std::abs(value) < 1e-3 ? "%.1e" : "%.4g", value);
 }
 
 /// A figure's present name, for results of versions in which it had another one.
@@ -92,10 +94,8 @@ WorstFigures worstFor(const Promise& promise, const SceneResults& results) {
 std::string cell(const Promise& promise, const WorstFigures& worst) {
   std::string cell;
   for (const auto& [stiffness, value] : worst) {
-    char digits[32];
-    const bool tiny = value != 0.0 && std::abs(value) < 1e-3;
-    std::snprintf(digits, sizeof digits, tiny ? "%.1e" : "%.4g", value);
-    cell += (cell.empty() ? "" : ", ") + (promise.holds(value) ? digits : "**" + std::string(digits) + "**");
+    const std::string number = textOf(value);
+    cell += (cell.empty() ? "" : ", ") + (promise.holds(value) ? number : "**" + number + "**");
   }
   return cell;
 }
@@ -112,23 +112,59 @@ std::string heading(const Promise& promise, const WorstFigures& worst) {
 
 }  // namespace
 
-bool holds(const SceneResult& result, const Figure& figure) {
-  const Promise* promise = promiseFor(result.scene, figure.name);
-  return !promise || promise->holds(figure.value);
+SceneResult runScene(const MeasuredScene& scene, Kind kind) {
+  const scenes::WallTimer timer;
+  Run run(kind);
+  scene.run(run);
+  const double iterations = static_cast<double>(run.iterations) / static_cast<double>(std::max(1L, run.steps));
+  return {scene.name, run.steps, iterations, timer.seconds(), std::move(run.figures)};
+}
+
+std::string faultOf(const std::string& scene, const Figure& figure) {
+  const Promise* promise = promiseFor(scene, figure.name);
+  return holds(promise, figure.value) ? "" : figure.name + ": " + textOf(figure.value) + ", not " + text(*promise);
+}
+
+std::string textOf(const std::vector<Figure>& figures, const std::string& name) {
+  const auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
+  return found == figures.end() ? "-" : textOf(found->value);
+}
+
+std::size_t brokenIn(const SceneResults& results) {
+  std::size_t broken = 0;
+  for (const SceneResult& result : results) {
+    for (const Figure& figure : result.figures) broken += !faultOf(result.scene, figure).empty();
+  }
+  return broken;
 }
 
 void print(const SceneResult& result) {
   std::printf("%-42s %6ld steps  %5.1f iterations per step  %6.2f s\n", result.scene.c_str(), result.steps,
               result.iterationsPerStep, result.seconds);
+  PrintedTable table({{"", "", 34}, {"", "", 12}, {"", "", 14}, {}});
   for (const Figure& figure : result.figures) {
     const Promise* promise = promiseFor(result.scene, figure.name);
-    std::printf("    %-32s %12.6g   %-16s %s\n", figure.name.c_str(), figure.value,
-                promise ? text(*promise).c_str() : "",
-                !promise                       ? ""
-                : promise->holds(figure.value) ? "passed"
-                                               : "FAILED");
+    const char* verdict = holds(promise, figure.value) ? "passed" : "FAILED";
+    table.add(
+        {"  " + figure.name, formatted("%.6g", figure.value), promise ? text(*promise) : "", promise ? verdict : ""});
   }
+  std::printf("%s", table.text().c_str());
   std::fflush(stdout);
+}
+
+nlohmann::ordered_json toJson(const std::string& scene, const std::vector<Figure>& figures) {
+  auto all = nlohmann::ordered_json::array();
+  for (const Figure& figure : figures) {
+    const Promise* promise = promiseFor(scene, figure.name);
+    nlohmann::ordered_json json;
+    json["name"] = figure.name;
+    json["value"] = figure.value;
+    if (promise && std::isfinite(promise->minimum)) json["least"] = promise->minimum;
+    if (promise && std::isfinite(promise->maximum)) json["most"] = promise->maximum;
+    json["passed"] = holds(promise, figure.value);
+    all.push_back(std::move(json));
+  }
+  return all;
 }
 
 nlohmann::ordered_json toJson(const SceneResults& results) {
@@ -139,8 +175,7 @@ nlohmann::ordered_json toJson(const SceneResults& results) {
     one["steps"] = result.steps;
     one["iterations_per_step"] = result.iterationsPerStep;
     one["seconds"] = result.seconds;
-    auto& figures = one["figures"] = nlohmann::ordered_json::array();
-    for (const Figure& figure : result.figures) figures.push_back(toJson(result, figure));
+    one["figures"] = toJson(result.scene, result.figures);
     json.push_back(std::move(one));
   }
   return json;
@@ -159,24 +194,43 @@ SceneResults readResults(const std::string& path) {
 }
 
 std::string toMarkdown(const std::vector<ResultColumn>& columns) {
-  std::string table = "| scenes | figure | promised |", rule = "|---|---|---|";
-  for (const ResultColumn& column : columns) {
-    table += " " + column.title + " |";
-    rule += "---|";
-  }
-  table += "\n" + rule + "\n";
+  std::vector<TableColumn> titles = {{"scenes"}, {"figure"}, {"promised"}};
+  for (const ResultColumn& column : columns) titles.push_back({column.title});
+  PrintedTable table(std::move(titles));
   for (const Promise& promise : promises()) {
-    std::string cells;
+    std::vector<std::string> cells = {"", promise.figure, text(promise)};
     WorstFigures first;
     for (const ResultColumn& column : columns) {
       const WorstFigures worst = worstFor(promise, column.results);
       if (first.empty()) first = worst;
-      cells += " " + cell(promise, worst) + " |";
+      cells.push_back(cell(promise, worst));
     }
     if (first.empty()) continue;
-    table += "| " + heading(promise, first) + " | " + promise.figure + " | " + text(promise) + " |" + cells + "\n";
+    cells[0] = heading(promise, first);
+    table.add(std::move(cells));
   }
-  return table;
+  return table.markdown();
 }
 
-}  // namespace tetskin::contact_demo
+void addReportOptions(scenes::CommandLine& line, ReportOptions& options, const std::string& note) {
+  line.addSummaryOption(options.json);
+  line.addOutput("--markdown", options.markdown, note);
+  line.addQuietOption(options.quiet);
+}
+
+void write(const ReportOptions& options, const nlohmann::ordered_json& json, const std::string& markdown) {
+  if (!options.json.empty()) scenes::writeJson(json, options.json);
+  if (!options.markdown.empty()) scenes::writeFile(options.markdown, markdown);
+}
+
+int finish(const SceneResults& results, const std::string& markdown, const ReportOptions& options) {
+  write(options, toJson(results), markdown);
+  const std::size_t broken = brokenIn(results);
+  if (!options.quiet) {
+    std::printf("\n%zu scenes; %zu figures outside the limits promised for contact at the surface\n", results.size(),
+                broken);
+  }
+  return broken == 0 ? scenes::kDone : scenes::kRunFailed;
+}
+
+}  // namespace tetskin::measure

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// One scene's run: which solver it uses, and what was measured in it.
+// A scene in which something is measured, and its run: which solver it uses, and what was measured.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 /// What solves soft bodies, and which points of them meet rigid bodies.
 enum class Kind {
@@ -21,6 +23,9 @@ struct Figure {
   std::string name;
   double value = 0.0;
 };
+
+/// A number as it stands in names: "50", "0.05".
+std::string text(double value);
 
 /// Filled in by a scene.
 struct Run {
@@ -36,4 +41,14 @@ struct Run {
   long steps = 0, iterations = 0;  ///< of all worlds; iterations are those of the library's solver
 };
 
-}  // namespace tetskin::contact_demo
+/// A function that makes its own world.
+struct MeasuredScene {
+  std::string name;
+  std::function<void(Run&)> run;
+  /// the kinds with which it can be run
+  std::vector<Kind> kinds = {Kind::Surface, Kind::Nodes, Kind::Bullet};
+
+  bool isFor(Kind kind) const { return std::count(kinds.begin(), kinds.end(), kind) > 0; }
+};
+
+}  // namespace tetskin::measure

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world in which contact is measured, with everything that moves in it.
+// A world in which motion and contact are measured, with everything that moves in it.
 #pragma once
 
 #include <tetskin/bullet/deformable_body.h>
@@ -15,9 +15,9 @@
 #include <optional>
 #include <vector>
 
-#include "contact/body_model.h"
-#include "contact/motion.h"
-#include "contact/run.h"
+#include "measure/body_model.h"
+#include "measure/motion.h"
+#include "measure/run.h"
 #include "scenes/world.h"
 
 class btGhostObject;
@@ -25,7 +25,7 @@ class btMultiBody;
 class btMultiBodyLinkCollider;
 class btTypedConstraint;
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 constexpr double kStep = 1.0 / 240;
 /// The distance kept between a surface and what it touches, over the body's size: the exact gap at rest.
@@ -39,35 +39,38 @@ using Distance = std::function<double(const Eigen::Vector3d&)>;
 
 struct BodyOptions {
   double stiffness = 50.0;     ///< Young's modulus over density x gravity x size
+  double friction = 0.5;       ///< combined with that of any obstacle of the scene
   double youngsModulus = 0.0;  ///< Pa; above 0: used instead of `stiffness`
   double mass = 1.0;           ///< kg
-  double friction = 0.5;       ///< combined with that of any obstacle of the scene
   double damping = 0.02;       ///< seconds
   double tolerance = 5e-3;     ///< tolerance of the library's solver
   bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever kind the run has
   bool sleeps = false;         ///< it may fall asleep
   double sampleSpacing = 0.0;  ///< of contact at the surface; 0: the default
-  std::function<bool(const Eigen::Vector3d&)> pinned;  ///< chooses pinned nodes by rest position, in the model's space
+  std::function<bool(const Eigen::Vector3d&)> pinned =
+      {};  ///< chooses pinned nodes by rest position, in the model's space
 };
 
-/// A soft body in a ContactWorld, which owns it.
+/// A soft body in a MeasuringWorld, which owns it.
 class SoftObject {
  public:
-  /// contact  null if the body's nodes meet rigid bodies
-  SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
-             std::vector<double> stiffnessScale);
+  /// material  from which the body was made
+  SoftObject(DeformableBody& deformable, ModelPtr model, const SoftBodyOptions& material);
 
   DeformableBody& deformable() { return deformable_; }
   btSoftBody& soft() { return deformable_.body(); }
   const btSoftBody& soft() const { return deformable_.body(); }
   const BodyModel& model() const { return *model_; }
+  const std::vector<double>& stiffnessScale() const { return stiffnessScale_; }  ///< tetCount; empty: 1
 
   /// Adds to the velocities of all nodes.
   void push(const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin = Eigen::Vector3d::Zero());
 
   RigidMotion motion() const { return rigidMotionOf(soft()); }
   double fastest() const { return fastestNode(soft()); }
-  double energy() const;  ///< kinetic plus elastic energy
+  double kineticEnergy() const { return measure::kineticEnergy(soft()); }
+  double elasticEnergy() const;
+  double energy() const { return kineticEnergy() + elasticEnergy(); }
   /// The sum of the impulses of all contacts in the last step; nothing where nodes meet rigid bodies, as Bullet does
   /// not report these.
   std::optional<Eigen::Vector3d> contactImpulse() const;
@@ -79,24 +82,29 @@ class SoftObject {
   double floorGap();
 
  private:
+  friend class MeasuringWorld;
+
   DeformableBody& deformable_;
-  const SurfaceContact* contact_;
+  const SurfaceContact* contact_ = nullptr;  ///< null if the body's nodes meet rigid bodies
   ModelPtr model_;
-  double youngsModulus_;
   std::vector<double> stiffnessScale_;
   SoftBodySkin skin_;
   std::vector<Eigen::Vector3d> surface_;
 };
 
-class ContactWorld {
+class MeasuringWorld {
  public:
-  explicit ContactWorld(Run& run, const Eigen::Vector3d& gravity = Eigen::Vector3d(0, -scenes::kEarth, 0));
-  ~ContactWorld();
-  ContactWorld(const ContactWorld&) = delete;
-  ContactWorld& operator=(const ContactWorld&) = delete;
+  explicit MeasuringWorld(Run& run, const Eigen::Vector3d& gravity = Eigen::Vector3d(0, -scenes::kEarth, 0));
+  ~MeasuringWorld();
+  MeasuringWorld(const MeasuringWorld&) = delete;
+  MeasuringWorld& operator=(const MeasuringWorld&) = delete;
 
   SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Isometry3d& at);
   SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Vector3d& centre);
+  /// Adds a soft body of any other material at its model's position; its nodes meet rigid bodies.
+  SoftObject& addSoft(ModelPtr model, const SoftBodyOptions& material);
+  /// From now on rigid bodies meet the body's surface, if the run's kind is that.
+  void touchBySurface(SoftObject& body);
   /// Adds a soft body whose lowest point just touches a horizontal plane.
   SoftObject& addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x = 0.0,
                         double z = 0.0);
@@ -126,6 +134,7 @@ class ContactWorld {
   /// link  the link that collides; -1: the base
   btMultiBody& addMultiBody(std::unique_ptr<btMultiBody> body, int link, std::unique_ptr<btCollisionShape> shape);
 
+  const scenes::World& world() const { return world_; }
   btDeformableMultiBodyDynamicsWorld& bullet();
   void setGravity(const Eigen::Vector3d& gravity);
   void step(double seconds = kStep);
@@ -139,6 +148,10 @@ class ContactWorld {
   double energy() const;
 
  private:
+  SoftObject& addSoft(ModelPtr model, const SoftBodyOptions& material, const Eigen::Isometry3d& at);
+
+  bool isBySurface(const BodyOptions& options) const { return run_.kind == Kind::Surface && !options.byNodes; }
+
   Run& run_;
   scenes::World world_;
   Eigen::Vector3d gravity_;
@@ -148,10 +161,13 @@ class ContactWorld {
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
   std::vector<btRigidBody*> rigid_;
-  std::vector<std::unique_ptr<DeformableBody>> deformables_;
-  std::vector<std::unique_ptr<SurfaceContact>> contacts_;
   std::vector<std::unique_ptr<SoftObject>> soft_;
   std::map<const BodyModel*, std::shared_ptr<const ContactShape>> shapesOfModels_;
 };
 
-}  // namespace tetskin::contact_demo
+/// Simulates. Reports how much momentum is lost, and the largest energy over its start, which Bullet's material would
+/// need other formulas for.
+/// after  called after each step
+void reportConserved(Run& run, MeasuringWorld& world, double seconds, const std::function<void()>& after = {});
+
+}  // namespace tetskin::measure

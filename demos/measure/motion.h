@@ -5,15 +5,16 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/elastic/elastic_body.h>
 
 #include <Eigen/Core>
 
-#include "contact/body_model.h"
+#include "measure/body_model.h"
 
 class btMultiBody;
 class btRigidBody;
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 /// Linear momentum, and angular momentum about the world's origin.
 struct Momentum {
@@ -28,6 +29,9 @@ void addMomentum(Momentum& sum, const btSoftBody& body);
 void addMomentum(Momentum& sum, const btRigidBody& body);
 /// Adds the momentum of the base: links are ignored.
 void addMomentum(Momentum& sum, const btMultiBody& body);
+
+/// Without pinned nodes.
+Eigen::Vector3d angularMomentumAbout(const Eigen::Vector3d& pivot, const btSoftBody& body);
 
 /// How a body moves as a whole; pinned nodes are left out.
 struct RigidMotion {
@@ -49,7 +53,7 @@ double kineticEnergy(const btRigidBody& body);
 double kineticEnergy(const btMultiBody& body);  ///< kinetic energy of its base
 /// The energy of corotated elasticity.
 /// stiffnessScale  tetCount; empty: 1
-double elasticEnergy(const BodyModel& model, const btSoftBody& body, double youngsModulus, double poissonRatio,
+double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli,
                      const std::vector<double>& stiffnessScale);
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is promised of contact by the surface, for each figure.
+// What is promised for each figure; in scenes of contact, of contact by the surface.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 
 /// This figure lies between two bounds in all scenes whose names begin with a given text.
 struct Promise {
@@ -32,4 +32,4 @@ const Promise* promiseFor(const std::string& scene, const std::string& figure);
 /// "<= 0.001", "0.9 .. 1.1".
 std::string text(const Promise& promise);
 
-}  // namespace tetskin::contact_demo
+}  // namespace tetskin::measure

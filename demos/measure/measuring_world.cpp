@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "contact/contact_world.h"
+#include "measure/measuring_world.h"
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -11,34 +11,30 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/extremes.h"
+#include "measure/extremes.h"
 #include "scenes/input_error.h"
 
-namespace tetskin::contact_demo {
+namespace tetskin::measure {
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-constexpr double kPoisson = 0.3;
 
 Cage moved(Cage cage, const Isometry3d& to) {
   for (Vector3d& node : cage.mesh.nodes) node = to * node;
   return cage;
 }
 
-SoftBodyOptions softOptions(const BodyModel& model, const BodyOptions& options, Kind kind, const Isometry3d& at) {
+SoftBodyOptions materialOf(const BodyModel& model, const BodyOptions& options, const Isometry3d& at) {
   SoftBodyOptions soft;
   soft.mass = options.mass;
   soft.friction = options.friction;
   soft.stiffnessDamping = options.damping;
-  soft.poissonRatio = kPoisson;
   soft.solverTolerance = options.tolerance;
   soft.maxIterations = 1000;  // no figure may come from a solve that was stopped early
   const double density = options.mass / model.volume;
   soft.youngsModulus =
       options.youngsModulus > 0.0 ? options.youngsModulus : options.stiffness * density * scenes::kEarth * model.size;
-  soft.forceModel = kind == Kind::Bullet ? ForceModel::LinearElasticity : ForceModel::Corotated;
   if (options.pinned) {
     soft.pinned = [pinned = options.pinned, toRest = at.inverse()](const Vector3d& p) { return pinned(toRest * p); };
   }
@@ -51,13 +47,10 @@ btTransform at(const Vector3d& centre) {
   return btTransform(btQuaternion::getIdentity(), toBullet(centre));
 }
 
-SoftObject::SoftObject(DeformableBody& deformable, const SurfaceContact* contact, ModelPtr model, double youngsModulus,
-                       std::vector<double> stiffnessScale)
+SoftObject::SoftObject(DeformableBody& deformable, ModelPtr model, const SoftBodyOptions& material)
     : deformable_(deformable),
-      contact_(contact),
       model_(std::move(model)),
-      youngsModulus_(youngsModulus),
-      stiffnessScale_(std::move(stiffnessScale)) {
+      stiffnessScale_(withCageDefaults(model_->cage, material).stiffnessScale) {
   scenes::require(skin_.bind(soft(), model_->binding));
 }
 
@@ -70,8 +63,9 @@ void SoftObject::push(const Vector3d& velocity, const Vector3d& spin) {
   }
 }
 
-double SoftObject::energy() const {
-  return kineticEnergy(soft()) + elasticEnergy(*model_, soft(), youngsModulus_, kPoisson, stiffnessScale_);
+double SoftObject::elasticEnergy() const {
+  return measure::elasticEnergy(*model_, soft(), {deformable_.youngsModulus(), deformable_.poissonRatio()},
+                                stiffnessScale_);
 }
 
 std::optional<Vector3d> SoftObject::contactImpulse() const {
@@ -101,61 +95,64 @@ double SoftObject::floorGap() {
   return gap([](const Vector3d& p) { return p.y(); });
 }
 
-ContactWorld::ContactWorld(Run& run, const Vector3d& gravity)
+MeasuringWorld::MeasuringWorld(Run& run, const Vector3d& gravity)
     : run_(run),
       world_(run.kind == Kind::Bullet ? scenes::Force::LinearElasticity : scenes::Force::Elastic, toBullet(gravity)),
       gravity_(gravity) {}
 
-ContactWorld::~ContactWorld() {
+MeasuringWorld::~MeasuringWorld() {
   for (const auto& constraint : constraints_) bullet().removeConstraint(constraint.get());
   for (const auto& collider : colliders_) bullet().removeCollisionObject(collider.get());
   for (const auto& body : multiBodies_) bullet().removeMultiBody(body.get());
   for (const auto& ghost : ghosts_) bullet().removeCollisionObject(ghost.get());
 }
 
-btDeformableMultiBodyDynamicsWorld& ContactWorld::bullet() {
+btDeformableMultiBodyDynamicsWorld& MeasuringWorld::bullet() {
   return static_cast<btDeformableMultiBodyDynamicsWorld&>(world_.bullet());
 }
 
-SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, const Isometry3d& at) {
-  const SoftBodyOptions soft = softOptions(*model, options, run_.kind, at);
-  auto made = DeformableBody::add(bullet(), moved(model->cage, at), soft);
-  scenes::require(made.status());
-  deformables_.push_back(std::move(made).value());
-  btSoftBody& body = deformables_.back()->body();
-  if (!options.sleeps) body.setActivationState(DISABLE_DEACTIVATION);
-  const bool bySurface = run_.kind == Kind::Surface && !options.byNodes;
-  if (bySurface) {
-    SurfaceContactOptions contact;
-    contact.margin = kMargin * model->size;
-    if (options.sampleSpacing > 0.0) contact.sampleSpacing = options.sampleSpacing;
-    auto touching = SurfaceContact::add(bullet(), body, *model->binding, model->mesh, contact);
-    scenes::require(touching.status());
-    contacts_.push_back(std::move(touching).value());
-  }
-  const std::vector<double> scale = withCageDefaults(model->cage, soft).stiffnessScale;
-  soft_.push_back(std::make_unique<SoftObject>(*deformables_.back(), bySurface ? contacts_.back().get() : nullptr,
-                                               std::move(model), soft.youngsModulus.value(), scale));
+SoftObject& MeasuringWorld::addSoft(ModelPtr model, const SoftBodyOptions& material, const Isometry3d& at) {
+  world_.add(moved(model->cage, at), material);
+  soft_.push_back(std::make_unique<SoftObject>(world_.deformable(), std::move(model), material));
   return *soft_.back();
 }
 
-SoftObject& ContactWorld::addSoft(ModelPtr model, const BodyOptions& options, const Vector3d& centre) {
+SoftObject& MeasuringWorld::addSoft(ModelPtr model, const SoftBodyOptions& material) {
+  return addSoft(std::move(model), material, Isometry3d::Identity());
+}
+
+SoftObject& MeasuringWorld::addSoft(ModelPtr model, const BodyOptions& options, const Isometry3d& at) {
+  SoftObject& body = addSoft(model, materialOf(*model, options, at), at);
+  if (!options.sleeps) body.soft().setActivationState(DISABLE_DEACTIVATION);
+  if (!isBySurface(options)) return body;
+  SurfaceContactOptions contact;
+  contact.margin = kMargin * model->size;
+  if (options.sampleSpacing > 0.0) contact.sampleSpacing = options.sampleSpacing;
+  body.contact_ = &world_.touchBySurface(body.soft(), *model->binding, model->mesh, contact);
+  return body;
+}
+
+SoftObject& MeasuringWorld::addSoft(ModelPtr model, const BodyOptions& options, const Vector3d& centre) {
   Isometry3d at = Isometry3d::Identity();
   at.translation() = centre;
   return addSoft(std::move(model), options, at);
 }
 
-SoftObject& ContactWorld::addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x,
-                                    double z) {
+SoftObject& MeasuringWorld::addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x,
+                                      double z) {
   // The default of `SoftBodyOptions::margin`.
   constexpr double kNodeMargin = 0.02;
-  const bool bySurface = run_.kind == Kind::Surface && !options.byNodes;
+  const bool bySurface = isBySurface(options);
   const Box3 box = boundingBox(bySurface ? model->mesh.positions : model->cage.mesh.nodes);
   const double margin = bySurface ? kMargin * model->size : kNodeMargin * box.sizes().maxCoeff();
   return addSoft(model, options, Vector3d(x, height + margin - box.min().y(), z));
 }
 
-void ContactWorld::touchOthers(SoftObject& body, const ContactShapeOptions& options) {
+void MeasuringWorld::touchBySurface(SoftObject& body) {
+  if (run_.kind == Kind::Surface) world_.touchBySurface(body.soft(), *body.model().binding, body.model().mesh);
+}
+
+void MeasuringWorld::touchOthers(SoftObject& body, const ContactShapeOptions& options) {
   std::shared_ptr<const ContactShape>& shape = shapesOfModels_[&body.model()];
   if (!shape) {
     auto made = ContactShape::create(body.model().cage, body.model().mesh, options);
@@ -165,13 +162,13 @@ void ContactWorld::touchOthers(SoftObject& body, const ContactShapeOptions& opti
   world_.touchEachOther(body.soft(), shape);
 }
 
-double ContactWorld::deepest() const {
+double MeasuringWorld::deepest() const {
   double deepest = 0.0;
   for (const SoftContact& contact : softContacts()) lower(deepest, static_cast<double>(contact.distance));
   return deepest;
 }
 
-btRigidBody& ContactWorld::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass) {
+btRigidBody& MeasuringWorld::addRigid(std::unique_ptr<btCollisionShape> shape, const btTransform& at, double mass) {
   btRigidBody& body = world_.addRigid(std::move(shape), at, mass);
   if (mass > 0.0) {
     body.setActivationState(DISABLE_DEACTIVATION);
@@ -180,24 +177,24 @@ btRigidBody& ContactWorld::addRigid(std::unique_ptr<btCollisionShape> shape, con
   return body;
 }
 
-btRigidBody& ContactWorld::addBox(const Vector3d& centre, const Vector3d& halfExtents, double mass) {
+btRigidBody& MeasuringWorld::addBox(const Vector3d& centre, const Vector3d& halfExtents, double mass) {
   return addRigid(std::make_unique<btBoxShape>(toBullet(halfExtents)), at(centre), mass);
 }
 
-btRigidBody& ContactWorld::addSphere(const Vector3d& centre, double radius, double mass) {
+btRigidBody& MeasuringWorld::addSphere(const Vector3d& centre, double radius, double mass) {
   return addRigid(std::make_unique<btSphereShape>(static_cast<btScalar>(radius)), at(centre), mass);
 }
 
-btRigidBody& ContactWorld::addFloor() {
+btRigidBody& MeasuringWorld::addFloor() {
   return addBox({0, -1, 0}, {20, 1, 20});
 }
 
-void ContactWorld::addTrigger(double halfExtent) {
+void MeasuringWorld::addTrigger(double halfExtent) {
   btRigidBody& trigger = addBox(Vector3d::Zero(), Vector3d::Constant(halfExtent));
   trigger.setCollisionFlags(trigger.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
 }
 
-void ContactWorld::addGhost(double halfExtent) {
+void MeasuringWorld::addGhost(double halfExtent) {
   shapes_.push_back(std::make_unique<btBoxShape>(toBullet(Vector3d::Constant(halfExtent))));
   ghosts_.push_back(std::make_unique<btGhostObject>());
   btGhostObject& ghost = *ghosts_.back();
@@ -208,19 +205,19 @@ void ContactWorld::addGhost(double halfExtent) {
   bullet().addCollisionObject(&ghost);
 }
 
-btRigidBody& ContactWorld::makeKinematic(btRigidBody& body) {
+btRigidBody& MeasuringWorld::makeKinematic(btRigidBody& body) {
   body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
   body.setActivationState(DISABLE_DEACTIVATION);
   return body;
 }
 
-void ContactWorld::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
+void MeasuringWorld::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
   bullet().addConstraint(constraint.get(), true);
   constraints_.push_back(std::move(constraint));
 }
 
-btMultiBody& ContactWorld::addMultiBody(std::unique_ptr<btMultiBody> body, int link,
-                                        std::unique_ptr<btCollisionShape> shape) {
+btMultiBody& MeasuringWorld::addMultiBody(std::unique_ptr<btMultiBody> body, int link,
+                                          std::unique_ptr<btCollisionShape> shape) {
   bullet().addMultiBody(body.get());
   btAlignedObjectArray<btQuaternion> turns;
   btAlignedObjectArray<btVector3> origins;
@@ -239,18 +236,18 @@ btMultiBody& ContactWorld::addMultiBody(std::unique_ptr<btMultiBody> body, int l
   return *multiBodies_.back();
 }
 
-void ContactWorld::setGravity(const Vector3d& gravity) {
+void MeasuringWorld::setGravity(const Vector3d& gravity) {
   gravity_ = gravity;
   bullet().setGravity(toBullet(gravity));
 }
 
-void ContactWorld::step(double seconds) {
+void MeasuringWorld::step(double seconds) {
   world_.step(seconds);
   ++run_.steps;
   run_.iterations += world_.iterations();
 }
 
-void ContactWorld::simulate(double seconds, const std::function<void()>& after, double step) {
+void MeasuringWorld::simulate(double seconds, const std::function<void()>& after, double step) {
   const auto steps = std::lround(seconds / step);
   for (long k = 0; k < steps; ++k) {
     this->step(step);
@@ -258,7 +255,7 @@ void ContactWorld::simulate(double seconds, const std::function<void()>& after, 
   }
 }
 
-Momentum ContactWorld::momentum() const {
+Momentum MeasuringWorld::momentum() const {
   Momentum sum;
   for (const auto& body : soft_) addMomentum(sum, body->soft());
   for (const btRigidBody* body : rigid_) addMomentum(sum, *body);
@@ -266,7 +263,7 @@ Momentum ContactWorld::momentum() const {
   return sum;
 }
 
-double ContactWorld::energy() const {
+double MeasuringWorld::energy() const {
   double energy = 0.0;
   for (const auto& body : soft_) {
     const RigidMotion motion = body->motion();
@@ -280,4 +277,18 @@ double ContactWorld::energy() const {
   return energy;
 }
 
-}  // namespace tetskin::contact_demo
+void reportConserved(Run& run, MeasuringWorld& world, double seconds, const std::function<void()>& after) {
+  const Momentum before = world.momentum();
+  const double start = world.energy();
+  double maximum = 0.0;
+  world.simulate(seconds, [&] {
+    raise(maximum, world.energy());
+    if (after) after();
+  });
+  const Momentum end = world.momentum();
+  run.report("linear momentum lost", (end.linear - before.linear).norm() / before.linearScale);
+  run.report("angular momentum lost", (end.angular - before.angular).norm() / before.angularScale);
+  if (run.kind != Kind::Bullet) run.report("energy over its start", maximum / start);
+}
+
+}  // namespace tetskin::measure
