@@ -40,8 +40,8 @@ TriangleMesh combMesh() {
 /// The pieces of a surface in all tets of the lattice around it.
 struct PiecedSurface {
   PiecedSurface(const TriangleMesh& mesh, const LatticeFrame& of) : frame(of), surface(prepareSurface(mesh)) {
-    for (int cube = 0; cube < 11 * 11 * 11; ++cube) {
-      set.add(static_cast<std::size_t>(set.insert({cube % 11 - 5, cube / 11 % 11 - 5, cube / 121 - 5})), kAllTets);
+    for (int cube = 0; cube < 5 * 5 * 5; ++cube) {
+      set.add(static_cast<std::size_t>(set.insert({cube % 5 - 2, cube / 5 % 5 - 2, cube / 25 - 2})), kAllTets);
     }
     lattice = meshOf(set, frame);
     const WindingTree winding = windingTreeOf(surface);
