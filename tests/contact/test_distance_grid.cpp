@@ -3,7 +3,6 @@
 #include <tetskin/contact/src/soft/distance_grid.h>
 
 #include "contact_test.h"
-#include "soft_fixtures.h"
 
 namespace tetskin::test {
 namespace {
@@ -68,26 +67,9 @@ TEST(DistanceGrid, OfASurfaceThatFacesInwardsHasNoInside) {
   EXPECT_FALSE(gridOf(box).hasInside());
 }
 
-TEST(DistanceGrid, IsThatOfTheTrianglesButForItsCubes) {
-  const Ball& model = ball();
-  const DistanceGrid& grid = dataOf(*model.shape).grid;
-  const Eigen::Vector3d centre(0.5, 0.5, 0.5);
-  const TriangleBvh tree(model.mesh);
-  const WindingTree solid(model.mesh);
-  for (const Eigen::Vector3d& p : randomPoints(500, around(model.cage, 1.0), 5)) {
-    GridDistance at;
-    ASSERT_TRUE(grid.at(toBullet(p), at));
-    const double distance = std::sqrt(tree.nearest(p).squaredDistance);
-    const double exact = solid.windingNumber(p) > kInside ? -distance : distance;
-    EXPECT_NEAR(at.distance, exact, 0.25 * grid.spacing());
-    if (std::abs(exact) > 0.2) continue;  // at the centre there is no direction
-    EXPECT_GT(toEigen(at.gradient).dot((p - centre).normalized()), 0.9);
-  }
-}
-
 TEST(DistanceGrid, KnowsNothingBeyondItsBox) {
   GridDistance at;
-  const DistanceGrid& grid = dataOf(*ball().shape).grid;
+  const DistanceGrid grid = gridOf(boxMesh(kGridHalf));
   EXPECT_FALSE(grid.at(btVector3(10, 0, 0), at));
   EXPECT_FALSE(grid.at(btVector3(0, -10, 0), at));
   EXPECT_FALSE(grid.at(btVector3(0, 0, std::numeric_limits<btScalar>::quiet_NaN()), at));
