@@ -50,7 +50,7 @@ class SleepingBody : public testing::Test {
   }
 
   TetskinWorld world;
-  btBoxShape shape{btVector3(1, 1, 1)}, otherShape{btVector3(1, btScalar(0.9), 1)};
+  btBoxShape shape{btVector3(1, 1, 1)}, otherShape{btVector3(1, 1, 1)};
   btRigidBody platform{0, nullptr, &shape}, stranger{0, nullptr, &shape};
   std::unique_ptr<btSoftBody> body;
   btAlignedObjectArray<btSoftBody*> all;
