@@ -13,7 +13,9 @@ using namespace contact_detail;
 
 TEST(ContactSides, OfASampleTheNearestOfTheStepBeforeIsFound) {
   std::mt19937 random(6);
-  const auto point = [&] { return btVector3(random() % 100, random() % 100, random() % 100) / 100; };
+  const auto point = [&] {
+    return btVector3(btScalar(random() % 100), btScalar(random() % 100), btScalar(random() % 100)) / 100;
+  };
   ContactSides sides;
   std::vector<ContactSide> before;
   for (int step = 0; step < 5; ++step) {
