@@ -144,4 +144,16 @@ std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fi
   return fault.empty() ? "" : "at " + std::to_string(targetTets) + " tets: " + fault;
 }
 
+Built build(const TriangleMesh& mesh, std::size_t target, bool fit, bool split) {
+  Built built;
+  CageOptions options;
+  options.targetTets = target;
+  options.fit = fit;
+  options.duplicateElements = split;
+  Result<Cage> made = createCage(mesh, options, &built.report);
+  built.status = made.status();
+  if (made.ok()) built.cage = std::move(made).value();
+  return built;
+}
+
 }  // namespace tetskin::test

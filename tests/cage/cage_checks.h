@@ -8,6 +8,13 @@
 
 namespace tetskin::test {
 
+struct Built {
+  Status status;
+  Cage cage;
+  CageReport report;
+};
+Built build(const TriangleMesh& mesh, std::size_t target = 3000, bool fit = true, bool split = true);
+
 /// The first promise of a cage that does not hold; empty if all hold: clean (`checkTetMesh`), dihedral angles, every
 /// vertex of a triangle inside (by `embed`, which trusts the map), what the cage stores about the mesh, components
 /// without hinges, and a report that agrees.

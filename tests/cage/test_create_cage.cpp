@@ -20,23 +20,6 @@
 namespace tetskin::test {
 namespace {
 
-struct Built {
-  Status status;
-  Cage cage;
-  CageReport report;
-};
-
-Built build(const TriangleMesh& mesh, std::size_t target = 3000, bool fit = true) {
-  Built built;
-  CageOptions options;
-  options.targetTets = target;
-  options.fit = fit;
-  Result<Cage> made = createCage(mesh, options, &built.report);
-  built.status = made.status();
-  if (made.ok()) built.cage = std::move(made).value();
-  return built;
-}
-
 Status failure(const TriangleMesh& mesh, std::size_t target = 3000) {
   CageOptions options;
   options.targetTets = target;

@@ -14,16 +14,7 @@
 namespace tetskin::test {
 namespace {
 
-using cage_detail::Crossing;
-using cage_detail::LatticeFrame;
-using cage_detail::LatticeLinks;
-using cage_detail::LatticeMesh;
-using cage_detail::LatticeSet;
-using cage_detail::prepareSurface;
-using cage_detail::SeenTriangle;
-using cage_detail::SegmentQueries;
-using cage_detail::Surface;
-using cage_detail::TetMaterial;
+using namespace cage_detail;
 using Eigen::Vector3d;
 
 constexpr std::size_t kDirections = 500;

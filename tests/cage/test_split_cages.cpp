@@ -26,18 +26,8 @@ constexpr std::size_t kManyTets = 30000;
 constexpr std::size_t kManyTets = 6000;
 #endif
 
-struct Built {
-  Cage cage;
-  CageReport report;
-};
-
-Built build(const TriangleMesh& mesh, std::size_t target, bool fit = true, bool split = true) {
-  Built built;
-  CageOptions options;
-  options.targetTets = target;
-  options.fit = fit;
-  options.duplicateElements = split;
-  built.cage = createCage(mesh, options, &built.report).value();
+Built checked(const TriangleMesh& mesh, std::size_t target, bool fit = true, bool split = true) {
+  Built built = build(mesh, target, fit, split);
   EXPECT_EQ(faultOfCage(mesh, built.cage, built.report), "");
   return built;
 }
@@ -64,45 +54,45 @@ void expectComponents(const ComponentModel& model, const Built& built) {
 
 TEST(SplitCages, KeepPartsApartAt300Tets) {
   for (const ComponentModel& model : {twoPlates(0.15), jaw(0.12), claw(0.08), chain(3, 0.15), coil(4, 0.15)}) {
-    for (const bool fit : {true, false}) expectComponents(model, build(model.mesh, 300, fit));
+    for (const bool fit : {true, false}) expectComponents(model, checked(model.mesh, 300, fit));
   }
 }
 
 TEST(SplitCages, KeepPartsApartAndAreFilledByTheirVolumeAt3000Tets) {
   for (const ComponentModel& model : {twoPlates(0.06), jaw(0.06), claw(0.06), chain(3, 0.06), coil(4, 0.06)}) {
-    const Built built = build(model.mesh, 3000);
+    const Built built = checked(model.mesh, 3000);
     expectComponents(model, built);
     EXPECT_NEAR(filledVolume(built.cage) / built.report.meshVolume, 1.0, 0.03) << model.name;
   }
 }
 
 TEST(SplitCages, KeepPartsApartAtManyTets) {
-  expectComponents(jaw(0.04), build(jaw(0.04).mesh, kManyTets));
+  expectComponents(jaw(0.04), checked(jaw(0.04).mesh, kManyTets));
 }
 
 TEST(SplitCages, TellPlatesApartThatAreAFifthOfATetApart) {
-  const double spacing = build(twoPlates(0.1).mesh, 3000).report.spacing;
-  const Built built = build(twoPlates(0.2 * spacing).mesh, 3000);
+  const double spacing = checked(twoPlates(0.1).mesh, 3000).report.spacing;
+  const Built built = checked(twoPlates(0.2 * spacing).mesh, 3000);
   EXPECT_NEAR(built.report.spacing, spacing, 0.1 * spacing);
   EXPECT_EQ(built.report.components, 2u);
   EXPECT_GT(built.report.duplicateTets, 100u);
-  EXPECT_EQ(build(twoPlates(0.2 * spacing).mesh, 3000, true, false).report.components, 1u);
+  EXPECT_EQ(checked(twoPlates(0.2 * spacing).mesh, 3000, true, false).report.components, 1u);
 }
 
 /// No tet holds material of both components, but tets of one share nodes with those of the other.
 TEST(SplitCages, TellApartWhatOnlyTouchesTheSameNodes) {
   const TriangleMesh boxes = joined(boxMesh({1, 1, 1}), transformed(boxMesh({1, 1, 1}), 1.0, {1.5, 0, 0}));
-  const Built built = build(boxes, 1000);
+  const Built built = checked(boxes, 1000);
   EXPECT_EQ(built.report.components, 2u);
-  EXPECT_EQ(build(boxes, 1000, true, false).report.components, 1u);
+  EXPECT_EQ(checked(boxes, 1000, true, false).report.components, 1u);
   const ComponentModel open = claw(0.15);
-  const Built hook = build(open.mesh, 3000);
+  const Built hook = checked(open.mesh, 3000);
   EXPECT_EQ(countComponentsBeyond(hook.cage.mesh, clearOf(open.plane, hook.report)), 2);
 }
 
 TEST(SplitCages, HaveAPartForEachRingOfAChain) {
   for (const int rings : {2, 5}) {
-    EXPECT_EQ(build(chain(rings, 0.1).mesh, 2000).report.components, static_cast<std::size_t>(rings));
+    EXPECT_EQ(checked(chain(rings, 0.1).mesh, 2000).report.components, static_cast<std::size_t>(rings));
   }
 }
 
@@ -111,7 +101,7 @@ TEST(SplitCages, NeverTearWhatHangsTogether) {
   for (const double gap : {1e-6, 0.02}) {
     for (const ComponentModel& model : {jaw(gap), claw(gap), coil(4, gap), sheet()}) {
       for (const std::size_t target : {300, 1000}) {
-        const Built built = build(model.mesh, target);
+        const Built built = checked(model.mesh, target);
         EXPECT_EQ(built.report.components, 1u) << model.name << " " << gap;
       }
     }
@@ -120,7 +110,7 @@ TEST(SplitCages, NeverTearWhatHangsTogether) {
 
 TEST(SplitCages, HoldEachPartsVerticesInItsOwnTets) {
   const TriangleMesh mesh = twoPlates(0.1).mesh;
-  const Built built = build(mesh, 3000);
+  const Built built = checked(mesh, 3000);
   std::vector<int> plateOf(built.report.components, -1);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
     const int component = built.cage.component[static_cast<std::size_t>(built.cage.vertexTets[v])];
@@ -132,19 +122,19 @@ TEST(SplitCages, HoldEachPartsVerticesInItsOwnTets) {
 
 TEST(SplitCages, AreTheSameForTheSameMesh) {
   const TriangleMesh mesh = jaw(0.06).mesh;
-  EXPECT_TRUE(sameCage(build(mesh, 1000).cage, build(mesh, 1000).cage));
+  EXPECT_TRUE(sameCage(checked(mesh, 1000).cage, checked(mesh, 1000).cage));
 }
 
 TEST(SplitCages, DoNotDependOnUnitAndPlace) {
   const TriangleMesh mesh = jaw(0.06).mesh;
-  const Built built = build(mesh, 1000);
+  const Built built = checked(mesh, 1000);
   for (const double scale : {1.0 / 256.0, 4096.0}) {
-    const Cage scaled = build(transformed(mesh, scale, Vector3d::Zero()), 1000).cage;
+    const Cage scaled = checked(transformed(mesh, scale, Vector3d::Zero()), 1000).cage;
     EXPECT_EQ(scaled.mesh.tets, built.cage.mesh.tets);
     EXPECT_EQ(scaled.vertexTets, built.cage.vertexTets);
     EXPECT_EQ(scaled.fineVolumeFraction, built.cage.fineVolumeFraction);
   }
-  const Built moved = build(transformed(mesh, 1.0, {8.0, -16.0, 32.0}), 1000);
+  const Built moved = checked(transformed(mesh, 1.0, {8.0, -16.0, 32.0}), 1000);
   EXPECT_EQ(moved.cage.mesh.tets, built.cage.mesh.tets);
   EXPECT_EQ(moved.report.duplicateTets, built.report.duplicateTets);
 }
@@ -152,7 +142,7 @@ TEST(SplitCages, DoNotDependOnUnitAndPlace) {
 /// Points on a prong's triangles lie in tets of that prong, although tets of the other one are as close.
 TEST(SplitCages, TheLocatorStaysOnThePartOfTheTriangle) {
   const TriangleMesh mesh = jaw(0.06).mesh;
-  const Built built = build(mesh, 3000, false);
+  const Built built = checked(mesh, 3000, false);
   const CageLocator locator(built.cage);
   const auto plane = clearOf(jaw(0.06).plane, built.report);
   const std::vector<int> tipOf = componentsBeyond(built.cage.mesh, *plane);

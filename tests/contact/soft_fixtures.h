@@ -5,6 +5,7 @@
 #include "../bullet/deformable_test.h"
 
 #include <tetskin/contact/soft_contacts.h>
+#include <tetskin/contact/src/soft/contact_body.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/triangle_bvh.h>
@@ -44,6 +45,24 @@ inline const Ball& ball() {
   static const Ball made;
   return made;
 }
+
+/// Balls, which may be squeezed, and which no world steps.
+class StillBalls : public testing::Test {
+ protected:
+  std::unique_ptr<contact_detail::ContactBody> include(const Eigen::Vector3d& offset, double squeeze = 1.0,
+                                                       std::shared_ptr<const ContactShape> shape = ball().shape) {
+    bodies_.push_back(createSoftBody(ball().at(offset), info_).value());
+    btSoftBody& body = *bodies_.back();
+    for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_x.setX(body.m_nodes[n].m_x.x() * squeeze);
+    auto solved =
+        std::make_unique<contact_detail::ContactBody>(body, std::move(shape), false, static_cast<int>(bodies_.size()));
+    solved->read();
+    return solved;
+  }
+
+  btSoftBodyWorldInfo info_;
+  std::vector<std::unique_ptr<btSoftBody>> bodies_;
+};
 
 /// A plate of 1 x 0.12 x 1, in a cage of one layer of cubes.
 struct Plate {

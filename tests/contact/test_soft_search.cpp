@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/pair_search.h>
-#include <tetskin/contact/src/soft/soft_contact_rows.h>
 
 #include <random>
 #include <set>
@@ -14,21 +13,7 @@ namespace {
 
 using namespace contact_detail;
 
-/// Two balls, one of them squeezed, not stepped by any world.
-class SoftSearch : public testing::Test {
- protected:
-  std::unique_ptr<ContactBody> include(const Eigen::Vector3d& offset, double squeeze = 1.0) {
-    bodies_.push_back(createSoftBody(ball().at(offset), info_).value());
-    btSoftBody& body = *bodies_.back();
-    for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_x.setX(body.m_nodes[n].m_x.x() * squeeze);
-    auto solved = std::make_unique<ContactBody>(body, ball().shape, false, static_cast<int>(bodies_.size()));
-    solved->read();
-    return solved;
-  }
-
-  btSoftBodyWorldInfo info_;
-  std::vector<std::unique_ptr<btSoftBody>> bodies_;
-};
+class SoftSearch : public StillBalls {};
 
 /// Samples of the first body in tets of the second, found by testing all pairs, and only those that are inside by more
 /// than `margin`.
@@ -80,36 +65,6 @@ TEST_F(SoftSearch, TellsDepthAndNormalOfTwoBalls) {
                                      [](const Touch& a, const Touch& b) { return a.distance < b.distance; });
   EXPECT_NEAR(deep->distance, 0.8 - 2 * Ball::kRadius, 0.005);
   EXPECT_LT(deep->normal.x(), -0.97) << "out of the second";
-}
-
-TEST_F(SoftSearch, CandidatesHoldWhileBodiesMoveTogether) {
-  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.5, 0.5, 0.1));
-  const btScalar dt = btScalar(0.004);
-  PairCandidates candidates;
-  candidates.update(*first, *second, dt);
-  EXPECT_EQ(candidates.age(), 0);
-  for (const auto& body : bodies_) body->translate(btVector3(5, 0, 0));
-  for (ContactBody* body : {first.get(), second.get()}) body->read();
-  candidates.update(*first, *second, dt);
-  EXPECT_EQ(candidates.age(), 1) << "both have moved by as much";
-  candidates.update(*first, *second, dt);
-  EXPECT_EQ(candidates.age(), 1) << "nothing has been read since";
-  bodies_[1]->m_nodes[7].m_x += btVector3(0, btScalar(0.2), 0);
-  second->read();
-  candidates.update(*first, *second, dt);
-  EXPECT_EQ(candidates.age(), 0) << "a node has gone farther than the slack";
-}
-
-TEST_F(SoftSearch, CandidatesHoldWhileBodiesTurnTogether) {
-  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.5, 0.5, 0.1));
-  PairCandidates candidates;
-  const btQuaternion turn(btVector3(1, 2, 0).normalized(), btScalar(0.02));
-  for (int step = 0; step < 10; ++step) {
-    candidates.update(*first, *second, btScalar(0.004));
-    EXPECT_EQ(candidates.age(), step);
-    for (const auto& body : bodies_) body->transform(btTransform(turn));
-    for (ContactBody* body : {first.get(), second.get()}) body->read();
-  }
 }
 
 /// Both balls also tumble, as one: candidates live longer, and must still be complete.
@@ -248,37 +203,6 @@ TEST_F(SoftSearch, ANodeKeepsTheSampleItTouchedWithBesideADeeperOne) {
   EXPECT_EQ(pairsIn(fromNothing, {}), 0);
 }
 
-TEST_F(SoftSearch, BodiesApartHaveNoCandidates) {
-  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(3, 0, 0));
-  PairCandidates candidates;
-  candidates.update(*first, *second, btScalar(0.004));
-  EXPECT_TRUE(candidates.empty());
-}
-
-/// What leaves may be thrown back within the step, by the elastic forces of a light node.
-TEST(SoftContactRows, KeepWhatLeavesUnlessItIsFartherThanItGoesInAStep) {
-  auto world = worldWith(btVector3(0, 0, 0));
-  btDeformableMultiBodyDynamicsWorld& deformable = world->deformable();
-  const double gap = 0.006;  // more than a tenth of a cell of the grid
-  std::unique_ptr<btSoftBody> bodies[2] = {
-      createSoftBody(ball().at(Eigen::Vector3d(0, 0, 0)), deformable.getWorldInfo()).value(),
-      createSoftBody(ball().at(Eigen::Vector3d(2 * Ball::kRadius + gap, 0, 0)), deformable.getWorldInfo()).value()};
-  SoftContactRows rows({});
-  for (const auto& body : bodies) {
-    deformable.addSoftBody(body.get());
-    rows.include(*body, ball().shape, false);
-  }
-  const auto contactsAt = [&](btScalar speed) {
-    bodies[1]->setVelocity(btVector3(speed, 0, 0));
-    return rows.contacts(btScalar(1.0 / 240), nullptr)->size();
-  };
-  EXPECT_GT(contactsAt(-2), 0U);
-  EXPECT_GT(contactsAt(2), 0U);
-  EXPECT_EQ(contactsAt(btScalar(0.3)), 0U);
-  EXPECT_EQ(contactsAt(btScalar(-0.3)), 0U);
-  for (const auto& body : bodies) deformable.removeSoftBody(body.get());
-}
-
 TEST(BodyPairs, AreThoseThatTestingAllBoxesFinds) {
   std::mt19937 random(3);
   for (const btVector3& spread : {btVector3(9, 1, 1), btVector3(1, 1, 9), btVector3(3, 3, 3), btVector3(0, 0, 0)}) {
@@ -301,49 +225,6 @@ TEST(BodyPairs, AreThoseThatTestingAllBoxesFinds) {
     EXPECT_EQ(overlappingBoxPairs(boxes), all);
   }
   EXPECT_TRUE(overlappingBoxPairs({}).empty());
-}
-
-TEST(ContactSides, ASampleBeyondTheMiddleGoesBackAsItCame) {
-  const DistanceGrid& grid = dataOf(*plate().shape).grid;
-  const btScalar top = btScalar(0.1 + Plate::kHalfThickness);
-  ContactSides sides;
-  for (btScalar depth = btScalar(-0.02); depth < btScalar(0.1); depth += btScalar(0.01)) {
-    const btVector3 rest(btScalar(0.5), top - depth, btScalar(0.5));
-    sides.beginStep();
-    GridDistance nearest;
-    ASSERT_TRUE(grid.at(rest, nearest));
-    SideDistance found;
-    ASSERT_TRUE(findSide(grid, rest, nearest, btVector3(0, 0, 0), sides.find(3, rest, 1), found)) << depth;
-    EXPECT_NEAR(found.distance, -depth, 0.5 * grid.spacing()) << "the nearer side is below from 0.06 on";
-    EXPECT_GT(found.side.normal.y(), 0.9);
-    found.side.sample = 3;
-    sides.keep(found.side);
-  }
-}
-
-TEST(ContactSides, ASampleSeenLateHasComeFromBehind) {
-  const DistanceGrid& grid = dataOf(*plate().shape).grid;
-  const btVector3 rest(btScalar(0.5), btScalar(0.075), btScalar(0.5)), motion(0, btScalar(-0.12), 0);
-  GridDistance nearest;
-  ASSERT_TRUE(grid.at(rest, nearest));
-  SideDistance found;
-  ASSERT_TRUE(findSide(grid, rest, nearest, motion, nullptr, found));
-  EXPECT_GT(found.side.normal.y(), 0.9) << "though the nearest side is below";
-  EXPECT_NEAR(found.distance, 0.075 - 0.16, 0.005);
-  ASSERT_TRUE(findSide(grid, rest, nearest, -motion, nullptr, found));
-  EXPECT_LT(found.side.normal.y(), -0.9);
-}
-
-TEST(ContactSides, ASampleThatGoesAroundAnEdgeIsFree) {
-  const DistanceGrid& grid = dataOf(*plate().shape).grid;
-  ContactSide top;
-  top.point = btVector3(btScalar(0.5), btScalar(0.16), btScalar(0.5));
-  const btVector3 rest(btScalar(0.5), btScalar(0.18), btScalar(0.5));
-  GridDistance nearest;
-  ASSERT_TRUE(grid.at(rest, nearest));
-  SideDistance found;
-  ASSERT_TRUE(findSide(grid, rest, nearest, btVector3(0, 0, 0), &top, found));
-  EXPECT_GT(found.distance, 0);
 }
 
 }  // namespace

@@ -19,31 +19,6 @@ std::vector<int> all(const TriangleMesh& mesh) {
   return triangles;
 }
 
-TEST(DistanceGrid, IsThatOfTheTrianglesButForItsCubes) {
-  const Ball& model = ball();
-  const DistanceGrid& grid = dataOf(*model.shape).grid;
-  const Eigen::Vector3d centre(0.5, 0.5, 0.5);
-  const TriangleBvh tree(model.mesh);
-  const WindingTree solid(model.mesh);
-  for (const Eigen::Vector3d& p : randomPoints(500, around(model.cage, 1.0), 5)) {
-    GridDistance at;
-    ASSERT_TRUE(grid.at(toBullet(p), at));
-    const double distance = std::sqrt(tree.nearest(p).squaredDistance);
-    const double exact = solid.windingNumber(p) > kInside ? -distance : distance;
-    EXPECT_NEAR(at.distance, exact, 0.25 * grid.spacing());
-    if (std::abs(exact) > 0.2) continue;  // at the centre there is no direction
-    EXPECT_GT(toEigen(at.gradient).dot((p - centre).normalized()), 0.9);
-  }
-}
-
-TEST(DistanceGrid, KnowsNothingBeyondItsBox) {
-  GridDistance at;
-  const DistanceGrid& grid = dataOf(*ball().shape).grid;
-  EXPECT_FALSE(grid.at(btVector3(10, 0, 0), at));
-  EXPECT_FALSE(grid.at(btVector3(0, -10, 0), at));
-  EXPECT_FALSE(grid.at(btVector3(0, 0, std::numeric_limits<btScalar>::quiet_NaN()), at));
-}
-
 TEST(SurfaceSamples, AreAboutAsManyAsWishedForAndOnTheSurface) {
   for (const int rings : {4, 60}) {
     const TriangleMesh mesh = sphere(rings, 1.0, Eigen::Vector3d::Zero());
@@ -81,6 +56,74 @@ TEST(ContactShape, CarriesEachSampleInItsTet) {
     }
   }
   EXPECT_EQ(count, data.samples.size());
+}
+
+TEST(ContactShape, RunsBoundTheWeightsOfTheirSamples) {
+  const ShapeData& data = dataOf(*ball().shape);
+  btScalar largest = 1;
+  for (std::size_t r = 0; r < data.runs.size(); ++r) {
+    const TetSubregion& part = data.runRegions[r];
+    btScalar outside = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      btScalar least = 1;
+      for (int s = data.runs[r].first; s < data.runs[r].last; ++s) least = std::min(least, data.samples[s].weights[k]);
+      EXPECT_LT(part.minimum[k], least);
+      EXPECT_GT(part.minimum[k], least - btScalar(0.01));
+      outside += std::max(btScalar(0), -part.minimum[k]);
+    }
+    EXPECT_NEAR(part.spread(), 1 + 2 * outside, 1e-5);
+    largest = std::max(largest, part.spread());
+  }
+  EXPECT_EQ(data.largestSpread, largest);
+}
+
+TEST(ContactShape, NeighboursOfARunAreThoseThatTestingAllTetsFinds) {
+  const ShapeData& data = dataOf(*ball().shape);
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < data.runs.size(); ++r) {
+    std::set<int> near, all;
+    for (const NearGroup& group : data.nearGroups[r]) {
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        if (group.near[k]) near.insert(data.groups[group.group][k]);
+      }
+    }
+    for (const TetGroup& group : data.groups) {
+      for (const int tet : group) {
+        if (tet < 0) continue;
+        const btScalar apart = (data.centroids[tet] - data.centroids[data.runs[r].tet]).length();
+        if (apart < 2 * data.edge) all.insert(tet);
+      }
+    }
+    EXPECT_EQ(near, all);
+    count += all.size();
+  }
+  EXPECT_GT(count, data.runs.size());
+}
+
+TEST(ContactShape, ATreeVisitsTheLeavesThatTestingAllTetsFinds) {
+  const ShapeData& data = dataOf(*ball().shape);
+  std::vector<ContactBox> boxes;
+  data.tetTree.tree.fit(boxes, [&](int index) {
+    ContactBox box;
+    for (const int n : data.tets[data.tetTree.tree.item(index)]) box.extend(data.nodes[n]);
+    return box;
+  });
+  for (const Eigen::Vector3d& p : randomPoints(100, around(ball().cage, 1.0), 8)) {
+    ContactBox sought;
+    sought.extend(toBullet(p));
+    std::set<int> visited, all;
+    data.tetTree.visitLeaves([&](std::size_t node) { return boxes[node].collides(sought); },
+                             [&](std::size_t node) { visited.insert(data.tetTree.leafOf[node]); });
+    for (std::size_t g = 0; g < data.groups.size(); ++g) {
+      ContactBox box;
+      for (const int tet : data.groups[g]) {
+        if (tet < 0) continue;
+        for (const int n : data.tets[tet]) box.extend(data.nodes[n]);
+      }
+      if (box.collides(sought)) all.insert(static_cast<int>(g));
+    }
+    EXPECT_EQ(visited, all);
+  }
 }
 
 TEST(ContactShape, FilledPartsHoldAllThatIsInside) {

@@ -20,8 +20,7 @@ const Box3 kSampledBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
 TEST(EmbedReport, ReportNamesTheWorstVertex) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   const Points vertices{{0.5, 0.5, 0.5}, {0.5, 1.5, 0.5}, {0.5, 0.5, -2.0}, {1.1, 0.5, 0.5}};
-  Embedding embedding;
-  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices));
   EXPECT_EQ(report.inside, 1u);
   EXPECT_EQ(report.outside, 3u);
   EXPECT_EQ(report.maxDistanceVertex, 2u);
@@ -36,8 +35,7 @@ TEST(EmbedReport, ReportNamesTheWorstVertex) {
 TEST(EmbedReport, NamesNoFarthestVertexWhereNoneIsOutside) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   const Points vertices{{0.5, 0.5, 0.5}};
-  Embedding embedding;
-  const std::string text = embedInto(cage, viewOf(vertices), {}, embedding).describe();
+  const std::string text = embedInto(cage, viewOf(vertices)).describe();
   EXPECT_EQ(text.find("1 vertices: 1 inside, 0 outside the cage\n"), 0u) << text;
   EXPECT_EQ(text.find("farthest"), std::string::npos) << text;
 }
@@ -69,10 +67,9 @@ TEST(EmbedReport, RefusesVerticesBeyondTheLargestDistanceAndNamesTheWorst) {
 
 TEST(EmbedReport, RestErrorIsSmallInsideAndOutside) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
-  Embedding embedding;
   const Points vertices =
       test::randomPoints(2000, {Eigen::Vector3d::Constant(-0.25), Eigen::Vector3d::Constant(1.25)}, 25);
-  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices));
   EXPECT_GT(report.restErrorMax, 0.0);
   EXPECT_LT(report.restErrorMax, 1e-6);
 }
@@ -80,12 +77,11 @@ TEST(EmbedReport, RestErrorIsSmallInsideAndOutside) {
 TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const Points metres = test::randomPoints(200, kSampledBox, 26);
-  Embedding embedding;
-  EXPECT_FALSE(embedInto(cage, viewOf(metres), {}, embedding).unitsDiffer());
-  EXPECT_EQ(embedInto(cage, viewOf(metres), {}, embedding).unitsMessage(), "");
+  EXPECT_FALSE(embedInto(cage, viewOf(metres)).unitsDiffer());
+  EXPECT_EQ(embedInto(cage, viewOf(metres)).unitsMessage(), "");
   for (const double scale : {1e-3, 0.0254, 39.37, 1e3}) {
     const Points others = test::scaledAndMoved(metres, scale, Eigen::Vector3d::Zero());
-    const Fit report = embedInto(cage, viewOf(others), {}, embedding);
+    const Fit report = embedInto(cage, viewOf(others));
     EXPECT_TRUE(report.ok());
     EXPECT_TRUE(report.unitsDiffer()) << scale;
     EXPECT_NE(report.unitsMessage().find("different units"), std::string::npos);
@@ -96,18 +92,16 @@ TEST(EmbedReport, ReportSaysWhenMeshAndCageAreInDifferentUnits) {
 TEST(EmbedReport, ReportSaysWhenMeshAndCageLieApart) {
   const TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
   const Points vertices = test::scaledAndMoved(test::randomPoints(10, kSampledBox, 27), 1.0, {5, 0, 0});
-  Embedding embedding;
-  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices));
   EXPECT_TRUE(report.unitsDiffer());
   EXPECT_EQ(report.outside, 10u);
 }
 
 TEST(EmbedReport, NamesTheLargestWeight) {
   const TetMesh cage = test::singleTet();
-  Embedding embedding;
-  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.2, 0.2, 0.2}}), {}, embedding).maxWeight, 1.0);
-  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.5, 0.5, -0.5}}), {}, embedding).maxWeight, 1.0);
-  const Fit report = embedInto(cage, viewOf(Points{{-2.0, -3.0, 0.0}}), {}, embedding);
+  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.2, 0.2, 0.2}})).maxWeight, 1.0);
+  EXPECT_EQ(embedInto(cage, viewOf(Points{{0.5, 0.5, -0.5}})).maxWeight, 1.0);
+  const Fit report = embedInto(cage, viewOf(Points{{-2.0, -3.0, 0.0}}));
   EXPECT_EQ(report.maxWeight, 6.0);
   EXPECT_EQ(report.reassignedByWeight, 0u);  // there is no other tet
   EXPECT_NE(report.describe().find("largest weight 6"), std::string::npos) << report.describe();
@@ -179,8 +173,7 @@ TEST(EmbedReport, VerticesComputedToLieOnAFaceAreInside) {
       TetMesh cage = kind.make(4);
       cage.nodes = test::scaledAndMoved(cage.nodes, 0.7, offset);
       for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
-        Embedding embedding;
-        const Fit report = embedInto(cage, viewOf(onBoundary(cage)), {rule, 0.0}, embedding);
+        const Fit report = embedInto(cage, viewOf(onBoundary(cage)), {rule, 0.0});
         EXPECT_TRUE(report.ok()) << kind.name << ": " << report.status.message;
         EXPECT_EQ(report.outside, 0u) << kind.name;
         EXPECT_EQ(report.maxDistance, 0.0);
@@ -198,8 +191,7 @@ TEST(EmbedReport, VerticesAHairOffAFaceAreOutside) {
     vertices.push_back((a + b + c) / 3.0 + 1e-14 * (b - a).cross(c - a).normalized());
   }
   for (const OutsideRule rule : {OutsideRule::Nearest, OutsideRule::Barycentric}) {
-    Embedding embedding;
-    EXPECT_EQ(embedInto(cage, viewOf(vertices), {rule}, embedding).inside, 0u);
+    EXPECT_EQ(embedInto(cage, viewOf(vertices), {rule}).inside, 0u);
   }
 }
 

@@ -39,8 +39,7 @@ TEST(Embed, CoincidentVerticesGetIdenticalBitsAndAreEmbeddedOnce) {
 TEST(Embed, WeightsSumToOne) {
   const TetMesh cage = test::randomTets(50, 0.5, 23);
   const Points vertices = test::randomPoints(2000, around(cage, 1.5), 24);
-  Embedding embedding;
-  ASSERT_TRUE(embedInto(cage, viewOf(vertices), {}, embedding).ok());
+  const Embedding embedding = embed(cage, viewOf(vertices)).value();
   for (const VertexBinding& b : embedding.bindings()) {
     const double largest = std::max({std::abs(b.weights[0]), std::abs(b.weights[1]), std::abs(b.weights[2]), 1.0f});
     const double sum = static_cast<double>(b.weights[0]) + b.weights[1] + b.weights[2] + b.weights[3];
@@ -83,8 +82,7 @@ TEST(Embedding, MovedFromIsStillThere) {
 TEST(Embedding, ClosestWeightsAreThoseOfTheClosestPoint) {
   const TetMesh cage = test::latticeCage(3, 3, 3, 0.3);
   const Points vertices = test::randomPoints(500, around(cage, 1.3), 29);
-  Embedding embedding;
-  ASSERT_TRUE(embedInto(cage, viewOf(vertices), {}, embedding).ok());
+  const Embedding embedding = embed(cage, viewOf(vertices)).value();
   ASSERT_LT(embedding.insideCount(), 400u);
   const auto bindings = embedding.bindings();
   for (std::size_t slot = embedding.insideCount(); slot < embedding.vertexCount(); ++slot) {

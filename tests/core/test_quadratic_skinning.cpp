@@ -254,19 +254,24 @@ TEST(QuadraticOutside, ContinuesTheMapToFirstOrderFromTheClosestPoint) {
   EXPECT_GT((raw[3] - 2 * raw[2] + raw[1]).norm(), 1e-4);  // the raw line bends
 }
 
+/// Of a layer one cell thick.
+void expectNoWorseThanLinear(CarriedPoints<double>& points, const TetMesh& cage) {
+  for (const test::SmoothMap& map : test::smoothMaps({0.75, 0.125, 0.75})) {
+    points.move(map(cage.nodes));
+    const Points expected = map(points.rest);
+    EXPECT_LE(distances(points.quadratic(), expected).rms, distances(points.linear(), expected).rms) << map.name;
+    EXPECT_LE(distances(points.quadratic(), expected).longest, distances(points.linear(), expected).longest)
+        << map.name;
+  }
+}
+
 TEST(QuadraticReport, CountsTheNodesOfACageOneCellThick) {
   for (const TetMesh& cage : {test::latticeCage(6, 1, 6, 0.25), test::plainLatticeCage(6, 1, 6, 0.25)}) {
     const std::vector<int> tets = allTets(cage);
     CarriedPoints<double> points(cage, test::pointsIn(cage, tets, 58), tets);
     EXPECT_EQ(points.stencils.thinCount(), cage.nodeCount());
     EXPECT_EQ(points.stencils.plainCount(), 0u);
-    for (const test::SmoothMap& map : test::smoothMaps({0.75, 0.125, 0.75})) {
-      points.move(map(cage.nodes));
-      const Points expected = map(points.rest);
-      EXPECT_LE(distances(points.quadratic(), expected).rms, distances(points.linear(), expected).rms) << map.name;
-      EXPECT_LE(distances(points.quadratic(), expected).longest, distances(points.linear(), expected).longest)
-          << map.name;
-    }
+    expectNoWorseThanLinear(points, cage);
   }
 }
 
@@ -280,13 +285,7 @@ TEST(QuadraticReport, AnUnevenCageOneCellThickIsNoWorseThanLinear) {
         const std::vector<int> tets = allTets(cage);
         CarriedPoints<double> points(cage, test::pointsIn(cage, tets, 61), tets);
         EXPECT_GT(points.stencils.thinCount(), 0u);
-        for (const test::SmoothMap& map : test::smoothMaps({0.75, 0.125, 0.75})) {
-          points.move(map(cage.nodes));
-          const Points expected = map(points.rest);
-          EXPECT_LE(distances(points.quadratic(), expected).rms, distances(points.linear(), expected).rms) << map.name;
-          EXPECT_LE(distances(points.quadratic(), expected).longest, distances(points.linear(), expected).longest)
-              << map.name;
-        }
+        expectNoWorseThanLinear(points, cage);
       }
     }
   }

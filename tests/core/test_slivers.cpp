@@ -229,8 +229,7 @@ TEST(Slivers, AVertexStaysWithAnotherPartWhereItsOwnIsAllSlivers) {
   };
   cage.tets.erase(std::remove_if(cage.tets.begin(), cage.tets.end(), belowTheSkin), cage.tets.end());
   const TriangleMesh mesh = sheetAt({-5e-6, -4e-6, 0.06, 0.07});
-  Embedding embedding;
-  const Fit report = embedInto(cage, mesh, {}, embedding);
+  const Fit report = embedInto(cage, mesh);
   EXPECT_EQ(report.inside, 14u);
   EXPECT_EQ(report.reassignedByConnectivity, 0u);
   EXPECT_LT(report.maxWeight, kMaxWeight);

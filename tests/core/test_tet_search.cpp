@@ -95,8 +95,7 @@ TEST(Embed, MatchesBruteForceInACageThatOverlapsItself) {
   const TetMesh cage = test::overlappingCage();
   const Points vertices = test::randomPoints(1500, around(cage, 1.1), 3);
   expectBruteForceUnderBothRules(cage, vertices);
-  Embedding embedding;
-  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices));
   // Both lattices are unit cubes; about half of each overlaps the other.
   EXPECT_GT(report.overlapping, report.vertexCount / 4);
   EXPECT_LT(report.overlapping, report.inside);
@@ -106,8 +105,7 @@ TEST(Embed, SharedFacesAreNoOverlap) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   Points vertices = cage.nodes;
   for (const auto& e : uniqueEdges(cage)) vertices.push_back((cage.nodes[e[0]] + cage.nodes[e[1]]) / 2.0);
-  Embedding embedding;
-  EXPECT_EQ(embedInto(cage, viewOf(vertices), {}, embedding).overlapping, 0u);
+  EXPECT_EQ(embedInto(cage, viewOf(vertices)).overlapping, 0u);
 }
 
 TEST(Embed, VerticesOnSharedFacesEdgesAndNodesGoToTheLowestTet) {
@@ -124,8 +122,7 @@ TEST(Embed, MatchesBruteForceAtTheDragonsSize) {
   // A closed surface of 30,000 vertices, most of it inside the cage and a little of it outside.
   TriangleMesh mesh = test::sphere(172, 0.51 * box.sizes().minCoeff(), box.center());
   ASSERT_GT(mesh.vertexCount(), 29000u);
-  Embedding embedding;
-  const Fit report = embedInto(cage, viewOf(mesh.positions), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(mesh.positions));
   EXPECT_GT(report.outside, 100u);
   EXPECT_LT(candidatesPerVertex(report), 60.0);
   Points sample;  // brute force for all vertices would take a minute
@@ -178,11 +175,10 @@ TEST(Embed, MatchesBruteForceAtAnyDistanceOutside) {
 TEST(Embed, AFewFarVerticesCostNextToNothing) {
   const TetMesh cage = test::latticeCage(8, 8, 8, 0.125);
   Points vertices = test::randomPoints(20000, around(cage, 0.99), 10);
-  Embedding embedding;
-  const std::size_t without = embedInto(cage, viewOf(vertices), {}, embedding).candidates;
+  const std::size_t without = embedInto(cage, viewOf(vertices)).candidates;
   vertices.emplace_back(1250, 0, 0);  // 10,000 tet sizes away
   vertices.emplace_back(0, -1250, 3);
-  const std::size_t with = embedInto(cage, viewOf(vertices), {}, embedding).candidates;
+  const std::size_t with = embedInto(cage, viewOf(vertices)).candidates;
   EXPECT_LT(with, without + without / 10);
 }
 
@@ -285,15 +281,13 @@ TEST(Embed, MatchesBruteForceWithATableForcedToCollide) {
 TEST(Embed, SearchTestsFewCandidatesOfManyTets) {
   const TetMesh cage = test::latticeCage(20, 20, 20, 0.05);  // 48,000 tets
   const Points vertices = test::randomPoints(30000, around(cage, 1.0), 15);
-  Embedding embedding;
-  EXPECT_LT(candidatesPerVertex(embedInto(cage, viewOf(vertices), {}, embedding)), 60.0);
+  EXPECT_LT(candidatesPerVertex(embedInto(cage, viewOf(vertices))), 60.0);
 }
 
 TEST(Embed, SearchStaysLinearWhenTheCageIsFinerThanTheMesh) {
   const TetMesh cage = test::latticeCage(20, 20, 20, 0.05);
   const Points vertices = test::randomPoints(200, around(cage, 1.0), 16);
-  Embedding embedding;
-  const Fit report = embedInto(cage, viewOf(vertices), {}, embedding);
+  const Fit report = embedInto(cage, viewOf(vertices));
   EXPECT_LT(report.candidates, 10 * cage.tetCount());
 }
 

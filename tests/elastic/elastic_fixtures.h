@@ -21,10 +21,20 @@
 
 namespace tetskin::test {
 
-using Points = std::vector<Eigen::Vector3d>;
-using elastic_detail::BlockMatrix;
-using elastic_detail::CorotatedTets;
-using elastic_detail::Lame;
+using namespace elastic_detail;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Points = std::vector<Vector3d>;
+
+/// Base of the tests that are made in both precisions.
+template <class S>
+class WithScalar : public testing::Test {
+ protected:
+  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
+};
+using Scalars = testing::Types<float, double>;
 
 /// Calls visit() with each instruction set that this processor has.
 template <class Visit>
@@ -179,5 +189,14 @@ struct AssembledBody : DeformedBody {
  private:
   std::size_t wideIndex(std::size_t i) const { return matrix.wideOf(i / 3) + i % 3 * kernels::kGroup; }
 };
+
+/// The matrix as a dense one, found column by column.
+template <class S>
+MatrixXd columnsOf(const AssembledBody<S>& body) {
+  const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
+  MatrixXd columns(size, size);
+  for (Eigen::Index k = 0; k < size; ++k) columns.col(k) = body.times(VectorXd::Unit(size, k));
+  return columns;
+}
 
 }  // namespace tetskin::test

@@ -11,8 +11,6 @@
 
 namespace tetskin::test {
 
-using elastic_detail::ConjugateGradient;
-using elastic_detail::SolveLimits;
 using Solver = ConjugateGradient<double>;
 
 inline TetMesh smallCage() {
@@ -40,6 +38,15 @@ void begin(AssembledBody<S>& body, const Eigen::MatrixXd& a, const Eigen::Vector
 
 inline Eigen::VectorXd rightSide(const AssembledBody<double>& body, unsigned seed = 41) {
   return Random(seed).vector(3 * body.nodes.size());
+}
+
+/// What the solver finds from this start.
+inline VectorXd solvedFrom(const VectorXd& start, AssembledBody<double>& body, const MatrixXd& a, const VectorXd& b) {
+  begin(body, a, b, start);
+  Solver solver;
+  solver.start({&body.matrix}, closely(), nullptr, nullptr);
+  EXPECT_TRUE(solver.iterate(500, nullptr));
+  return solutionOf(body);
 }
 
 inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {

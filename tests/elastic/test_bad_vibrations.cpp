@@ -6,11 +6,10 @@
 
 #include <cmath>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::makeBox;
 
 const TetMesh& box() {
   static const TetMesh mesh = makeBox({3, 2, 2}, Vector3d(3, 2, 2));
@@ -155,4 +154,4 @@ TEST_F(SavedModes, SayWhichVersionTheyAreOf) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -9,38 +9,19 @@
 #include "support/odd_meshes.h"
 #include "support/shuffled_threads.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using elastic_detail::BlockMatrix;
-using test::AssembledBody;
-using test::onEachInstructionSet;
-
 TetMesh cageForMatrix() {
-  return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+  return jittered(latticeCage(3, 2, 1), 0.15, 3);
 }
 
 template <class S>
-class BlockMatrixOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class BlockMatrixOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(BlockMatrixOf, Scalars);
 
-/// The matrix as a dense one, found column by column.
-template <class S>
-Eigen::MatrixXd columnsOf(const AssembledBody<S>& body) {
-  const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
-  Eigen::MatrixXd columns(size, size);
-  for (Eigen::Index k = 0; k < size; ++k) columns.col(k) = body.times(VectorXd::Unit(size, k));
-  return columns;
-}
-
 TYPED_TEST(BlockMatrixOf, IsThatOfThePaperAndSymmetric) {
-  for (const TetMesh& cage : {cageForMatrix(), test::singleTet(), test::bodyCentredCage(2, 1, 2)}) {
+  for (const TetMesh& cage : {cageForMatrix(), singleTet(), bodyCentredCage(2, 1, 2)}) {
     onEachInstructionSet([&] {
       AssembledBody<TypeParam> body(cage);
       body.hold(1);
@@ -91,7 +72,7 @@ TYPED_TEST(BlockMatrixOf, OneRowIsThatOfTheProduct) {
     AssembledBody<TypeParam> body(cageForMatrix());
     const TypeParam across[6] = {4, 0, 0, 0, 0, 4};  // the y axis
     body.matrix.resist(3, across);
-    const VectorXd x = test::Random(34).vector(3 * body.nodes.size());
+    const VectorXd x = Random(34).vector(3 * body.nodes.size());
     const VectorXd image = body.times(x);
     body.toWide(x, body.matrix.solution());
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
@@ -117,10 +98,10 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
         if (m == n) diagonal.block<3, 3>(i, j) = dense.block<3, 3>(i, j);
       }
     }
-    const VectorXd r = test::Random(35).vector(3 * body.nodes.size());
+    const VectorXd r = Random(35).vector(3 * body.nodes.size());
     body.toWide(r, matrix.residual());
     const double norm = matrix.lower(nullptr);
-    const VectorXd expected = test::solved(lower, r);
+    const VectorXd expected = solved(lower, r);
     EXPECT_LT((body.fromWide(matrix.residual()) - expected).norm(), 15.0 * this->kEpsilon * expected.norm());
     EXPECT_NEAR(norm / expected.dot(diagonal * expected), 1.0, 10.0 * this->kEpsilon);
   });
@@ -129,7 +110,7 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
 TYPED_TEST(BlockMatrixOf, ReturnsTheNormOfTheResidualWhichStays) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(cageForMatrix());
-    body.toWide(test::Random(35).vector(3 * body.nodes.size()), body.matrix.residual());
+    body.toWide(Random(35).vector(3 * body.nodes.size()), body.matrix.residual());
     const VectorXd r = body.fromWide(body.matrix.residual());
     const double norm = body.matrix.squaredResidual(nullptr);
     EXPECT_EQ(body.fromWide(body.matrix.residual()), r);
@@ -144,8 +125,8 @@ TYPED_TEST(BlockMatrixOf, MultipliesADifferenceOfWhatIsNotPinned) {
     body.assemble();
     BlockMatrix<TypeParam>& matrix = body.matrix;
     std::vector<TypeParam> first(matrix.wideSize()), second = first, difference = first, image = first;
-    const VectorXd x = test::Random(37).vector(3 * body.nodes.size());
-    const VectorXd y = test::Random(38).vector(3 * body.nodes.size());
+    const VectorXd x = Random(37).vector(3 * body.nodes.size());
+    const VectorXd y = Random(38).vector(3 * body.nodes.size());
     body.toWide(x, first.data());
     body.toWide(y, second.data());
     for (const bool both : {false, true}) {
@@ -164,9 +145,9 @@ TYPED_TEST(BlockMatrixOf, MultipliesADifferenceOfWhatIsNotPinned) {
 }
 
 TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
-  const TetMesh cage = test::latticeCage(120, 7, 7);  // several parts
+  const TetMesh cage = latticeCage(120, 7, 7);  // several parts
   const AssembledBody<TypeParam> fresh(cage);
-  const VectorXd x = test::Random(36).vector(3 * cage.nodeCount());
+  const VectorXd x = Random(36).vector(3 * cage.nodeCount());
   const auto everything = [&](ParallelFor* threads) {
     AssembledBody<TypeParam> body = fresh;  // its rotations have not been updated
     BlockMatrix<TypeParam>& matrix = body.matrix;
@@ -194,7 +175,7 @@ TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
   const VectorXd expected = everything(nullptr);
   ASSERT_TRUE(expected.allFinite());
   for (const int count : {1, 2, 3}) {
-    test::ShuffledThreads threads(count);
+    ShuffledThreads threads(count);
     EXPECT_EQ(everything(&threads), expected);
     EXPECT_GT(threads.maxTasks, 4u);
     EXPECT_GE(threads.runs, 9) << "the parts of a sweep, and its separators";
@@ -202,4 +183,4 @@ TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -12,25 +12,21 @@
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using Eigen::Vector3d;
-using elastic_detail::BlockMatrix;
-using elastic_detail::BlockPattern;
 using kernels::kGroup;
 
 /// The cages for the tests of the pattern; one of them has nodes that no tet uses.
 std::vector<TetMesh> patternCages() {
-  std::vector<TetMesh> cages{test::singleTet(), test::latticeCage(3, 2, 1), test::bodyCentredCage(3, 3, 2),
-                             test::latticeCage(12, 12, 12), test::latticeCage(120, 7, 7)};
+  std::vector<TetMesh> cages{singleTet(), latticeCage(3, 2, 1), bodyCentredCage(3, 3, 2), latticeCage(12, 12, 12),
+                             latticeCage(120, 7, 7)};
   cages[1].nodes.insert(cages[1].nodes.end(), 3, Vector3d(5, 5, 5));
   return cages;
 }
 
 BlockPattern patternOf(const TetMesh& cage) {
-  return BlockMatrix<double>(cage.nodeCount(), cage.tets, test::CorotatedTets<double>::noTet(cage.tetCount()))
-      .pattern();
+  return BlockMatrix<double>(cage.nodeCount(), cage.tets, CorotatedTets<double>::noTet(cage.tetCount())).pattern();
 }
 
 /// By slot: its node, -1 where there is none.
@@ -134,7 +130,7 @@ TEST(BlockPattern, NoTasksOfOnePhaseAreNeighbours) {
 }
 
 TEST(BlockPattern, LargeBodiesHavePartsOfSimilarSizeAndFewSeparators) {
-  const BlockPattern pattern = patternOf(test::latticeCage(120, 7, 7));
+  const BlockPattern pattern = patternOf(latticeCage(120, 7, 7));
   ASSERT_EQ(pattern.phases.size(), 3u);
   const std::size_t parts = pattern.phases[1];
   ASSERT_GE(parts, 3u);
@@ -152,7 +148,7 @@ TEST(BlockPattern, EveryTetHasATermInEachOfItsBlocks) {
   for (const TetMesh& cage : patternCages()) {
     const BlockPattern pattern = patternOf(cage);
     const std::vector<int> nodes = nodesOf(pattern);
-    const std::size_t none = 4 * test::CorotatedTets<double>::noTet(cage.tetCount());
+    const std::size_t none = 4 * CorotatedTets<double>::noTet(cage.tetCount());
     const auto nodeAt = [&](std::uint32_t corner) { return cage.tets[corner / 4][corner % 4]; };
     std::size_t terms = 0;
     for (std::size_t chunk = 0; chunk < pattern.chunkCount(); ++chunk) {
@@ -177,4 +173,4 @@ TEST(BlockPattern, EveryTetHasATermInEachOfItsBlocks) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

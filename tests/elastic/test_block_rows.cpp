@@ -5,7 +5,7 @@
 
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -17,7 +17,7 @@ using elastic_detail::Fields;
 constexpr double kPoissonOfRows = 0.3;
 
 TetMesh jitteredBox() {
-  return test::jittered(test::latticeCage(3, 2, 2), 0.2, 3);
+  return jittered(latticeCage(3, 2, 2), 0.2, 3);
 }
 
 std::vector<double> variedScale(const TetMesh& mesh) {
@@ -84,4 +84,4 @@ TEST(BlockRows, MultiplyAnyNumberOfFields) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,18 +10,11 @@
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using elastic_detail::BodyDynamics;
-using test::AssembledBody;
-using test::onEachInstructionSet;
-using test::Points;
-
 TetMesh cageForDynamics() {
-  return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+  return jittered(latticeCage(3, 2, 1), 0.15, 3);
 }
 
 constexpr double kSeconds = 0.2, kDamping = 0.3, kAlpha = kSeconds * (kDamping + kSeconds);
@@ -43,11 +36,7 @@ BodyDynamics<S> dynamicsOf(const AssembledBody<S>& body, const VectorXd& velocit
 }
 
 template <class S>
-class BodyDynamicsOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class BodyDynamicsOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(BodyDynamicsOf, Scalars);
 
 TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatDeviatesFromIt) {
@@ -55,7 +44,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
     AssembledBody<TypeParam> body(cageForDynamics(), 0.1, kAlpha);
     // The drift is so fast that rounding errors in its stiffness forces would be noticed.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
-    const VectorXd v = test::Random(51).vector(3 * body.nodes.size()) + VectorXd::Constant(size, 100.0);
+    const VectorXd v = Random(51).vector(3 * body.nodes.size()) + VectorXd::Constant(size, 100.0);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
     dynamics.predict(kSeconds, nullptr);
     EXPECT_NEAR(dynamics.alpha(), kAlpha, 1e-15);
@@ -91,8 +80,8 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
 
 TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
   AssembledBody<TypeParam> body(cageForDynamics(), 0.0, kAlpha);
-  for (test::Lame& lame : body.material) lame = {1e6, 1e6};
-  const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
+  for (Lame& lame : body.material) lame = {1e6, 1e6};
+  const VectorXd v = Random(51).vector(3 * body.nodes.size());
   for (const bool pinned : {false, true}) {
     if (pinned) body.hold(3);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
@@ -119,7 +108,7 @@ TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
 TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(cageForDynamics(), 0.1, kAlpha);
-    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, 1e-3 * test::Random(51).vector(3 * body.nodes.size()));
+    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, 1e-3 * Random(51).vector(3 * body.nodes.size()));
     dynamics.prepare(kSeconds, nullptr);
     dynamics.predict(kSeconds, nullptr);  // the matrix is the previous one: it has hardly turned
     dynamics.start(kSeconds, nullptr);
@@ -129,7 +118,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
       dynamics.rightSide(n, r);
       for (std::size_t k = 0; k < 3; ++k) right[static_cast<Eigen::Index>(3 * n + k)] = r[k];
     }
-    const VectorXd x = test::Random(52).vector(3 * body.nodes.size());
+    const VectorXd x = Random(52).vector(3 * body.nodes.size());
     body.toWide(x, dynamics.matrix().solution());
     dynamics.restart(nullptr);
     const VectorXd image = body.dense() * x;
@@ -146,11 +135,11 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
 TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChangesNothingElse) {
   AssembledBody<TypeParam> body(cageForDynamics());
   for (const double speed : {0.0, 1.0, 20.0}) {  // the last is beyond a turn of 90 degrees per step
-    const VectorXd v = speed * test::Random(51).vector(3 * body.nodes.size());
+    const VectorXd v = speed * Random(51).vector(3 * body.nodes.size());
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
     dynamics.predict(kSeconds, nullptr);
     dynamics.start(kSeconds, nullptr);
-    const VectorXd some = test::Random(53).vector(3 * body.nodes.size());
+    const VectorXd some = Random(53).vector(3 * body.nodes.size());
     const Vector3d impulse(0.3, -0.2, 0.5);
     body.toWide(some, dynamics.matrix().solution());
     dynamics.removeMomentum([&](std::size_t) { return std::array<double, 3>{impulse.x(), impulse.y(), impulse.z()}; });
@@ -185,7 +174,7 @@ bool changesTheMatrix(Change&& change) {
   AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
   BodyDynamics<double> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
   for (int k = 0; k < 3; ++k) dynamics.prepare(kSeconds, nullptr);
-  const std::vector<double> x = body.toPoints(test::Random(54).vector(3 * body.nodes.size()));
+  const std::vector<double> x = body.toPoints(Random(54).vector(3 * body.nodes.size()));
   const VectorXd before = body.fromWide(dynamics.times(x.data()));
   const double seconds = change(dynamics, body);
   dynamics.prepare(seconds, nullptr);
@@ -193,7 +182,7 @@ bool changesTheMatrix(Change&& change) {
 }
 
 double turned(BodyDynamics<double>& dynamics, const AssembledBody<double>& body, double degrees) {
-  const Points nodes = test::mapped(body.nodes, test::turnBy(degrees, {1, 2, 3}), {0, 0, 0});
+  const Points nodes = mapped(body.nodes, turnBy(degrees, {1, 2, 3}), {0, 0, 0});
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     for (std::size_t k = 0; k < 3; ++k) dynamics.point(n)[k] = nodes[n][static_cast<Eigen::Index>(k)];
   }
@@ -214,7 +203,7 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
     return kSeconds;
   }));
   EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body& body) {
-    dynamics.setMaterial(std::vector<test::Lame>(body.cage.tetCount(), {5.0, 5.0}));
+    dynamics.setMaterial(std::vector<Lame>(body.cage.tetCount(), {5.0, 5.0}));
     return kSeconds;
   }));
   EXPECT_FALSE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 0.3); })) << "hardly";
@@ -225,7 +214,7 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
 struct SingleTetBesideMany {
   explicit SingleTetBesideMany(double stiffness)
       : cage(withTet()), dynamics(elastic_detail::restTets(cage), cage.nodeCount()) {
-    dynamics.setMaterial(std::vector<test::Lame>(cage.tetCount(), {stiffness, stiffness}));
+    dynamics.setMaterial(std::vector<Lame>(cage.tetCount(), {stiffness, stiffness}));
     dynamics.setDamping(kDamping);
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
       dynamics.setMass(n, 1.0);
@@ -237,16 +226,16 @@ struct SingleTetBesideMany {
   bool isMadeAnewFor(double degrees) {
     const std::vector<double> before = block();
     for (std::size_t n = cage.nodeCount() - 4; n < cage.nodeCount(); ++n) {
-      place(n, test::turnBy(degrees, {1, 2, 3}) * cage.nodes[n]);
+      place(n, turnBy(degrees, {1, 2, 3}) * cage.nodes[n]);
     }
     return block() != before;
   }
 
  private:
   static TetMesh withTet() {
-    TetMesh cage = test::latticeCage(6, 6, 6);
+    TetMesh cage = latticeCage(6, 6, 6);
     const auto first = static_cast<int>(cage.nodeCount());
-    for (const Vector3d& p : test::singleTet().nodes) cage.nodes.push_back(p + Vector3d(20, 0, 0));
+    for (const Vector3d& p : singleTet().nodes) cage.nodes.push_back(p + Vector3d(20, 0, 0));
     cage.tets.push_back({first, first + 1, first + 2, first + 3});
     return cage;
   }
@@ -313,7 +302,7 @@ TetMesh twoComponents(TetMesh cage) {
 TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAreTaken) {
   AssembledBody<TypeParam> body(twoComponents(cageForDynamics()));
   body.hold(3);  // belongs to the first component
-  const VectorXd v = test::Random(51).vector(3 * body.nodes.size());
+  const VectorXd v = Random(51).vector(3 * body.nodes.size());
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
   dynamics.predict(kSeconds, nullptr);
   ASSERT_EQ(dynamics.componentCount(), 2u);
@@ -336,7 +325,7 @@ TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAre
     }
     ++found;
     for (std::size_t n = 0; n < moved.size(); ++n) {
-      const Eigen::Matrix<double, 3, 6> expected = test::rigidVelocityAt(moved[n], centroid);
+      const Eigen::Matrix<double, 3, 6> expected = rigidVelocityAt(moved[n], centroid);
       for (Eigen::Index k = 0; k < 6; ++k) {
         const TypeParam* at = &motions[k][4 * dynamics.matrix().slotOf(n)];
         const Vector3d wanted = n < half ? Vector3d::Zero().eval() : expected.col(k).eval();
@@ -355,7 +344,7 @@ TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
     const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
     dynamics.predict(kSeconds, nullptr);
-    VectorXd some = test::Random(53).vector(3 * body.nodes.size());
+    VectorXd some = Random(53).vector(3 * body.nodes.size());
     for (const std::size_t n : pinned) some.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
     body.toWide(some, dynamics.matrix().solution());
     dynamics.projectToRigidMotion();
@@ -406,8 +395,8 @@ TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
     std::vector<double> masses = body.masses;
     for (std::size_t n = 0; n < masses.size(); ++n) masses[n] *= n / half == first / half ? 1.0 : 0.0;
     const Vector3d point = body.nodes[first + 2] + Vector3d(0.1, 0.4, -0.2), direction = Vector3d(1, 2, -2) / 3.0;
-    const Eigen::Matrix<double, 6, 1> push = test::rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
-    const double expected = push.dot(test::solved(test::rigidMass(body.nodes, masses, {0, 0, 0}), push));
+    const Eigen::Matrix<double, 6, 1> push = rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
+    const double expected = push.dot(solved(rigidMass(body.nodes, masses, {0, 0, 0}), push));
     const double found = dynamics.rigidCompliance(first + 2, {point.x(), point.y(), point.z()},
                                                   {direction.x(), direction.y(), direction.z()});
     EXPECT_NEAR(found, expected, 500.0 * this->kEpsilon * expected);
@@ -419,4 +408,4 @@ TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

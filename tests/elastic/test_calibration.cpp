@@ -14,7 +14,7 @@
 #include "support/component_models.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
@@ -25,7 +25,7 @@ constexpr double kPoisson = 0.3;
 
 /// A beam four times as long as it is wide, with `cubes` cubes across.
 TetMesh beam(int cubes) {
-  return test::latticeCage(4 * cubes, cubes, cubes, 0.5 / cubes);
+  return latticeCage(4 * cubes, cubes, cubes, 0.5 / cubes);
 }
 
 std::vector<double> ones(const TetMesh& mesh) {
@@ -33,11 +33,11 @@ std::vector<double> ones(const TetMesh& mesh) {
 }
 
 TEST(ElasticModes, AreTheSoftestOfADenseSolver) {
-  const TetMesh mesh = test::jittered(test::latticeCage(4, 2, 1), 0.1, 5);
+  const TetMesh mesh = jittered(latticeCage(4, 2, 1), 0.1, 5);
   const RestBody body(mesh, kPoisson, ones(mesh), elastic_detail::lumpedVolumes(mesh, ones(mesh)));
   const auto size = body.masses.size();
   const Eigen::MatrixXd dense = body.stiffness.selfadjointView<Eigen::Lower>() * Eigen::MatrixXd::Identity(size, size);
-  const VectorXd all = test::eigenvaluesOf(dense, body.masses);
+  const VectorXd all = eigenvaluesOf(dense, body.masses);
   const elastic_detail::DirectSolver solver(body);
   ASSERT_TRUE(solver.ok());
   const Eigen::MatrixXd modes = elastic_detail::softestModes(body, solver, 4);
@@ -76,7 +76,7 @@ TEST(RefinedBodies, SolveAsADirectSolverDoes) {
 /// One layer of cubes whose lower half is filled: a beam of half the height bends eight times as far as a full one, but
 /// its volume fraction alone accounts for no more than a factor of two.
 TEST(Calibration, SeesTheFill) {
-  Cage half = test::latticeCage(8, 1, 1);
+  Cage half = latticeCage(8, 1, 1);
   half.volumeFraction.assign(half.mesh.tetCount(), 0.5);
   const double blind = factorOf(half);
   const TetMesh fine = refineUniformly(refineUniformly(half.mesh).mesh).mesh;
@@ -93,7 +93,7 @@ TEST(Calibration, SeesTheFill) {
 Cage splitJaw() {
   CageOptions options;
   options.targetTets = 300;
-  Cage cage = createCage(test::jaw(0.12).mesh, options).value();
+  Cage cage = createCage(jaw(0.12).mesh, options).value();
   EXPECT_TRUE(cage.hasDuplicates());
   EXPECT_FALSE(cage.volumeFraction.empty());
   return cage;
@@ -133,7 +133,7 @@ TEST(Calibration, StartsFromScratchWhateverTheFactorsWere) {
 
 /// A beam with additional tets that share this many nodes with it.
 Cage beamWithScraps(int sharedNodes) {
-  Cage cage = test::latticeCage(4, 2, 2, 0.5);
+  Cage cage = latticeCage(4, 2, 2, 0.5);
   const std::vector<std::array<int, 3>> faces = boundaryFaces(cage.mesh);
   for (std::size_t k = 0; k < 6; ++k) {
     const std::array<int, 3>& face = faces[5 * k];
@@ -205,7 +205,7 @@ TEST(Calibration, FinerCagesNeedLess) {
 }
 
 TEST(Calibration, DoesNotDependOnUnitPlaceOrOrder) {
-  const TetMesh cage = test::jittered(beam(2), 0.02, 7);
+  const TetMesh cage = jittered(beam(2), 0.02, 7);
   TetMesh moved = cage;
   for (Vector3d& p : moved.nodes) p = 1000.0 * p + Vector3d(5e3, -2e4, 1e3);
   moved.nodes.emplace_back(0, 0, 0);  // used by no tet
@@ -216,13 +216,13 @@ TEST(Calibration, DoesNotDependOnUnitPlaceOrOrder) {
 
 TEST(Calibration, RefinesNoMoreThanItMay) {
   for (const auto& [length, refinements] : {std::pair{2, 2}, std::pair{10, 1}}) {
-    Cage cage = test::latticeCage(length, 9, 9);
+    Cage cage = latticeCage(length, 9, 9);
     const Result<CalibrationReport> report = calibrate(cage);
     ASSERT_TRUE(report.ok());
     EXPECT_EQ(report.value().refinements, refinements);
     EXPECT_LE(report.value().refinedTets, Limits::kMaxRefinedTets);
   }
-  Cage large = test::latticeCage(20, 20, 20);
+  Cage large = latticeCage(20, 20, 20);
   const CalibrationReport none = calibrate(large).value();
   EXPECT_EQ(none.refinements, 0);
   EXPECT_EQ(none.stiffnessFactor, 1.0);
@@ -230,7 +230,7 @@ TEST(Calibration, RefinesNoMoreThanItMay) {
 }
 
 TEST(Calibration, TakesASingleTet) {
-  const double factor = factorOf(test::singleTet());
+  const double factor = factorOf(singleTet());
   EXPECT_GT(factor, 0.0);
   EXPECT_LE(factor, 1.0);
 }
@@ -242,20 +242,20 @@ TEST(Calibration, RefusesBadInput) {
     return report.status().code;
   };
   EXPECT_EQ(refusal(TetMesh()), StatusCode::Empty);
-  TetMesh flat = test::latticeCage(1, 1, 1);
+  TetMesh flat = latticeCage(1, 1, 1);
   flat.nodes.push_back(flat.nodes[0]);
   flat.tets.push_back({0, 1, 2, static_cast<int>(flat.nodeCount()) - 1});
   EXPECT_EQ(refusal(flat), StatusCode::Degenerate);
-  TetMesh infinite = test::singleTet();
+  TetMesh infinite = singleTet();
   infinite.nodes[1].x() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(refusal(infinite), StatusCode::NonFinite);
   CalibrationOptions options;
   options.poissonRatio = 0.5;
-  EXPECT_EQ(refusal(test::singleTet(), options), StatusCode::InvalidOption);
+  EXPECT_EQ(refusal(singleTet(), options), StatusCode::InvalidOption);
   options = {};
   options.modeCount = 0;
-  EXPECT_EQ(refusal(test::singleTet(), options), StatusCode::InvalidOption);
+  EXPECT_EQ(refusal(singleTet(), options), StatusCode::InvalidOption);
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

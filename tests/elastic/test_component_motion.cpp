@@ -11,15 +11,8 @@
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using elastic_detail::ComponentMoments;
-using elastic_detail::ComponentMotion;
-using elastic_detail::PinnedNodes;
-using test::Points;
 
 constexpr double kSeconds = 1.0 / 60;
 
@@ -70,9 +63,9 @@ struct Component {
 };
 
 Component spinning(double rate, unsigned seed) {
-  test::Random random(seed);
+  Random random(seed);
   Component part;
-  part.nodes = test::jittered(test::latticeCage(3, 2, 1), 0.3, seed).nodes;
+  part.nodes = jittered(latticeCage(3, 2, 1), 0.3, seed).nodes;
   const Vector3d omega = rate * random.vector().normalized(), drift = random.vector();
   for (const Vector3d& p : part.nodes) {
     part.masses.push_back(1.5 + random());
@@ -148,7 +141,7 @@ TEST(ComponentMotion, OfAHeldLineTurnsAboutItAndFollowsIt) {
 
 TEST(ComponentMotion, OfWhatIsHeldByMoreGoesWhereItIsLed) {
   Component part = spinning(10.0, 4);
-  const Matrix3d turn = test::turnBy(3.0, {1, 2, 3});
+  const Matrix3d turn = turnBy(3.0, {1, 2, 3});
   const Vector3d shift(0.01, -0.02, 0.03);
   Points led;
   for (const Vector3d& p : part.nodes) led.push_back(turn * p + shift);
@@ -165,16 +158,16 @@ TEST(ComponentMotion, OfWhatIsHeldByMoreGoesWhereItIsLed) {
 
 /// The change in velocity at a point, in a direction, for a unit impulse there, by sums over all nodes.
 double freeCompliance(const Component& part, const Vector3d& point, const Vector3d& direction) {
-  const Eigen::Matrix<double, 6, 1> push = test::rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
-  return push.dot(test::solved(test::rigidMass(part.nodes, part.masses, {0, 0, 0}), push));
+  const Eigen::Matrix<double, 6, 1> push = rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
+  return push.dot(solved(rigidMass(part.nodes, part.masses, {0, 0, 0}), push));
 }
 
 Matrix3d inertiaAbout(const Component& part, const Vector3d& about) {
-  return test::rigidMass(part.nodes, part.masses, about).bottomRightCorner<3, 3>();
+  return rigidMass(part.nodes, part.masses, about).bottomRightCorner<3, 3>();
 }
 
 TEST(ComponentMotion, YieldsToAnImpulseAsFarAsItIsFree) {
-  test::Random random(71);
+  Random random(71);
   for (int k = 0; k < 10; ++k) {
     const Vector3d point = 2.0 * random.vector(), direction = random.vector().normalized();
     Component part = spinning(3.0, 2);
@@ -199,7 +192,7 @@ TEST(ComponentMotion, YieldsToAnImpulseAsFarAsItIsFree) {
 }
 
 TEST(ComponentMotion, WithAMomentumHasItAsFarAsItIsFree) {
-  test::Random random(72);
+  Random random(72);
   elastic_detail::ComponentMomentum own;
   for (int k = 0; k < 3; ++k) own.momentum[k] = random(), own.spin[k] = random();
   const Vector3d momentum(own.momentum[0], own.momentum[1], own.momentum[2]),
@@ -241,4 +234,4 @@ TEST(ComponentMotion, OfWhatIsNotFiniteIsNone) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,23 +10,8 @@
 #include "gradient_fixtures.h"
 #include "support/shuffled_threads.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using test::apart;
-using test::AssembledBody;
-using test::begin;
-using test::closely;
-using test::ConjugateGradient;
-using test::kClose;
-using test::onEachInstructionSet;
-using test::rightSide;
-using test::smallCage;
-using test::solutionOf;
-using test::SolveLimits;
-using test::Solver;
 
 TEST(ConjugateGradient, SolvesAsADenseSolverDoes) {
   onEachInstructionSet([&] {
@@ -39,7 +24,7 @@ TEST(ConjugateGradient, SolvesAsADenseSolverDoes) {
       solver.start({&body.matrix}, closely(), nullptr, nullptr);
       EXPECT_FALSE(solver.converged());
       EXPECT_TRUE(solver.iterate(500, nullptr));
-      EXPECT_LT(apart(solutionOf(body), test::solved(a, b)), kClose);
+      EXPECT_LT(apart(solutionOf(body), solved(a, b)), kClose);
       EXPECT_GT(solver.iterations(), 5);
       EXPECT_LT(solver.iterations(), 60);
     }
@@ -50,14 +35,14 @@ TEST(ConjugateGradient, SolvesInFloatAsFarAsThatReaches) {
   onEachInstructionSet([&] {
     AssembledBody<float> body(smallCage());
     const MatrixXd a = body.dense();
-    const VectorXd b = test::Random(41).vector(3 * body.nodes.size());
+    const VectorXd b = Random(41).vector(3 * body.nodes.size());
     begin(body, a, b, VectorXd::Zero(b.size()));
     ConjugateGradient<float> solver;
     SolveLimits limits = closely();
     limits.tolerance = 1e-5;
     solver.start({&body.matrix}, limits, nullptr, nullptr);
     EXPECT_TRUE(solver.iterate(500, nullptr));
-    EXPECT_LT(apart(solutionOf(body), test::solved(a, b)), 2e-5);
+    EXPECT_LT(apart(solutionOf(body), solved(a, b)), 2e-5);
   });
 }
 
@@ -65,7 +50,7 @@ TEST(ConjugateGradient, ComesNearerWithEveryIteration) {
   onEachInstructionSet([&] {
     AssembledBody<double> body(smallCage(), 0.1, 100.0);
     const MatrixXd a = body.dense();
-    const VectorXd b = rightSide(body), right = test::solved(a, b);
+    const VectorXd b = rightSide(body), right = solved(a, b);
     begin(body, a, b, VectorXd::Zero(b.size()));
     Solver solver;
     solver.start({&body.matrix}, closely(), nullptr, nullptr);
@@ -101,8 +86,8 @@ TEST(ConjugateGradient, GoesOnWhereItStopped) {
 }
 
 TEST(ConjugateGradient, HasTheSameBitsOnAnyThreads) {
-  AssembledBody<float> body(test::latticeCage(120, 7, 7));
-  const VectorXd b = test::Random(45).vector(3 * body.nodes.size());
+  AssembledBody<float> body(latticeCage(120, 7, 7));
+  const VectorXd b = Random(45).vector(3 * body.nodes.size());
   const auto solved = [&](ParallelFor* threads) {
     body.toWide(VectorXd::Zero(b.size()), body.matrix.solution());
     body.toWide(b, body.matrix.residual());
@@ -113,7 +98,7 @@ TEST(ConjugateGradient, HasTheSameBitsOnAnyThreads) {
   };
   const VectorXd alone = solved(nullptr);
   for (const int count : {1, 2}) {
-    test::ShuffledThreads threads(count);
+    ShuffledThreads threads(count);
     EXPECT_EQ(solved(&threads), alone);
     EXPECT_GT(threads.runs, 10);  // five per iteration
   }
@@ -185,4 +170,4 @@ TEST(ConjugateGradient, ThereIsNothingToDoWithoutResidual) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

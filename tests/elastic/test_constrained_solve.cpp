@@ -9,27 +9,13 @@
 
 #include "gradient_fixtures.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using test::apart;
-using test::AssembledBody;
-using test::begin;
-using test::closely;
-using test::kClose;
-using test::onEachInstructionSet;
-using test::rightSide;
-using test::smallCage;
-using test::solutionOf;
-using test::Solver;
 
 /// The solution of a x = b in the span of `basisOfTheFree`; all other components stay as they are at the start.
 VectorXd solveWithin(const MatrixXd& a, const VectorXd& b, const VectorXd& start, const MatrixXd& basisOfTheFree) {
   const MatrixXd& z = basisOfTheFree;
-  return start + z * test::solved(z.transpose() * a * z, z.transpose() * (b - a * start));
+  return start + z * solved(z.transpose() * a * z, z.transpose() * (b - a * start));
 }
 
 /// A basis of what is left free, in columns, from the fixed directions by node.
@@ -40,8 +26,7 @@ MatrixXd freeBasis(std::size_t nodes, const std::vector<std::pair<std::size_t, V
     const auto at = static_cast<Eigen::Index>(3 * node);
     projection.block<3, 3>(at, at) -= n * n.transpose();
   }
-  return test::spectrumOf(projection, VectorXd::Ones(size))
-      .vectors.rightCols(size - static_cast<Eigen::Index>(fixed.size()));
+  return spectrumOf(projection, VectorXd::Ones(size)).vectors.rightCols(size - static_cast<Eigen::Index>(fixed.size()));
 }
 
 TEST(ConjugateGradient, HeldNodesStayAsTheyWereAtTheStart) {
@@ -55,11 +40,7 @@ TEST(ConjugateGradient, HeldNodesStayAsTheyWereAtTheStart) {
     body.assemble();
     const MatrixXd a = body.dense();
     const VectorXd b = rightSide(body), from = rightSide(body, 42);
-    begin(body, a, b, from);
-    Solver solver;
-    solver.start({&body.matrix}, closely(), nullptr, nullptr);
-    EXPECT_TRUE(solver.iterate(500, nullptr));
-    const VectorXd x = solutionOf(body);
+    const VectorXd x = solvedFrom(from, body, a, b);
     for (const std::size_t node : {0u, 4u, 7u}) {
       EXPECT_EQ(x.segment<3>(static_cast<Eigen::Index>(3 * node)),
                 from.segment<3>(static_cast<Eigen::Index>(3 * node)));
@@ -86,11 +67,7 @@ TEST(ConjugateGradient, FixedDirectionsStayAsTheyWereAtTheStart) {
                                                               {12, Vector3d::UnitZ()}};
     const MatrixXd a = body.dense();
     const VectorXd b = rightSide(body), from = rightSide(body, 42);
-    begin(body, a, b, from);
-    Solver solver;
-    solver.start({&body.matrix}, closely(), nullptr, nullptr);
-    EXPECT_TRUE(solver.iterate(500, nullptr));
-    const VectorXd x = solutionOf(body);
+    const VectorXd x = solvedFrom(from, body, a, b);
     for (const auto& [node, direction] : fixed) {
       const auto at = static_cast<Eigen::Index>(3 * node);
       EXPECT_NEAR(direction.dot(x.segment<3>(at)), direction.dot(from.segment<3>(at)), 1e-13);
@@ -109,13 +86,9 @@ TEST(ConjugateGradient, ResistanceIsPartOfTheMatrix) {
     MatrixXd a = body.dense();
     a.block<3, 3>(18, 18) += plane;
     const VectorXd b = rightSide(body);
-    begin(body, a, b, VectorXd::Zero(b.size()));
-    Solver solver;
-    solver.start({&body.matrix}, closely(), nullptr, nullptr);
-    EXPECT_TRUE(solver.iterate(500, nullptr));
-    EXPECT_LT(apart(solutionOf(body), test::solved(a, b)), kClose);
+    EXPECT_LT(apart(solvedFrom(VectorXd::Zero(b.size()), body, a, b), solved(a, b)), kClose);
   });
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

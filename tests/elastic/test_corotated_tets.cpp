@@ -10,16 +10,8 @@
 #include "support/odd_meshes.h"
 #include "support/shuffled_threads.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using elastic_detail::CorotatedTets;
-using elastic_detail::Lame;
-using test::onEachInstructionSet;
-using test::Points;
-using test::turnBy;
 
 /// The tets of a cage alone, with nodes in slots of another order, and with spare slots.
 template <class S>
@@ -70,7 +62,7 @@ class Tets {
 
 /// The number of tets is no multiple of eight, and no two tets are alike.
 TetMesh oddCage() {
-  return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+  return jittered(latticeCage(3, 2, 1), 0.15, 3);
 }
 
 double largest(const Points& vectors) {
@@ -89,16 +81,14 @@ double farthest(const Points& a, const Points& b) {
 }
 
 template <class S>
-class CorotatedTetsOf : public testing::Test {
+class CorotatedTetsOf : public WithScalar<S> {
  protected:
   static constexpr bool kDouble = sizeof(S) == sizeof(double);
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
 };
-using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(CorotatedTetsOf, Scalars);
 
 void expectForcesAreTheSlopeOfTheEnergy(const TetMesh& cage, const Points& nodes) {
-  Tets<double> tets(cage, test::variedMaterial(cage.tetCount()));
+  Tets<double> tets(cage, variedMaterial(cage.tetCount()));
   tets.settle(nodes);
   const Points forces = tets.forces(nodes);
   constexpr double kStep = 1e-6;
@@ -118,8 +108,8 @@ TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergy) {
   const TetMesh cage = oddCage();
   onEachInstructionSet([&] {
     for (const unsigned seed : {1u, 2u, 3u}) {
-      const Points turned = test::mapped(cage.nodes, turnBy(40.0 * seed, {1, 2, -1}), {1, 2, 3});
-      expectForcesAreTheSlopeOfTheEnergy(cage, test::scattered(turned, 0.1 * seed, seed));
+      const Points turned = mapped(cage.nodes, turnBy(40.0 * seed, {1, 2, -1}), {1, 2, 3});
+      expectForcesAreTheSlopeOfTheEnergy(cage, scattered(turned, 0.1 * seed, seed));
     }
   });
 }
@@ -134,7 +124,7 @@ double exactEnergy(const TetMesh& cage, const std::vector<Lame>& material, const
       now.col(k) = nodes[cage.tets[t][k + 1]] - nodes[cage.tets[t][0]];
     }
     const Matrix3d f = now * rest.inverse();
-    Vector3d strain = test::singularValuesOf(f);
+    Vector3d strain = singularValuesOf(f);
     if (f.determinant() < 0.0) strain[2] = -strain[2];
     strain.array() -= 1.0;
     total += std::abs(rest.determinant()) / 6.0 *
@@ -146,8 +136,8 @@ double exactEnergy(const TetMesh& cage, const std::vector<Lame>& material, const
 /// A body at rest that is turned at once is free of forces, and a deformed one keeps its energy.
 TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
   const TetMesh cage = oddCage();
-  const std::vector<Lame> material = test::variedMaterial(cage.tetCount());
-  test::Random random(61);
+  const std::vector<Lame> material = variedMaterial(cage.tetCount());
+  Random random(61);
   std::vector<Vector3d> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 2, 3}};
   for (int k = 0; k < 10; ++k) axes.push_back(random.vector());
   onEachInstructionSet([&] {
@@ -156,8 +146,8 @@ TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
         for (const double stretch : {1.0, 1.3, -0.7}) {  // along x; with the last value it is inside out
           const Matrix3d gradient = Vector3d(stretch, 1.1, 0.8).asDiagonal();
           Tets<TypeParam> tets(cage, material);
-          tets.settle(test::mapped(cage.nodes, gradient, {0, 0, 0}));
-          const Points turned = test::mapped(cage.nodes, turnBy(degrees, axis) * gradient, {1, 2, 3});
+          tets.settle(mapped(cage.nodes, gradient, {0, 0, 0}));
+          const Points turned = mapped(cage.nodes, turnBy(degrees, axis) * gradient, {1, 2, 3});
           const double exact = exactEnergy(cage, material, turned);
           tets.forces(turned);
           EXPECT_NEAR(tets.energy(turned), exact, (this->kDouble ? 1e-9 : 1e-4) * exact)
@@ -169,17 +159,17 @@ TYPED_TEST(CorotatedTetsOf, FindTheirRotationsAtOnceHoweverFarTheyHaveTurned) {
 }
 
 TYPED_TEST(CorotatedTetsOf, FindTheRotationsOfAnyGradientFromAnyOther) {
-  const TetMesh cage = test::singleTet();
-  const std::vector<Lame> material = test::variedMaterial(1);
+  const TetMesh cage = singleTet();
+  const std::vector<Lame> material = variedMaterial(1);
   onEachInstructionSet([&] {
-    test::Random random(62);
+    Random random(62);
     Tets<TypeParam> tets(cage, material);
     int inverted = 0;
     for (int k = 0; k < 500; ++k) {
       Matrix3d gradient;
       for (int i = 0; i < 9; ++i) gradient(i / 3, i % 3) = random();
       inverted += gradient.determinant() < 0.0;
-      const Points nodes = test::mapped(cage.nodes, gradient, {0, 0, 0});
+      const Points nodes = mapped(cage.nodes, gradient, {0, 0, 0});
       tets.forces(nodes);  // starts from the rotation of the previous gradient
       EXPECT_NEAR(tets.energy(nodes), exactEnergy(cage, material, nodes), 3e-3) << gradient;
     }
@@ -192,7 +182,7 @@ TEST(CorotatedTets, ForcesAreTheSlopeOfTheEnergyInsideOut) {
   Matrix3d mirror = Vector3d(1.3, 0.9, -0.7).asDiagonal();
   onEachInstructionSet([&] {
     expectForcesAreTheSlopeOfTheEnergy(
-        cage, test::scattered(test::mapped(cage.nodes, turnBy(30.0, {1, 2, -1}) * mirror, {1, 2, 3}), 0.03, 5));
+        cage, scattered(mapped(cage.nodes, turnBy(30.0, {1, 2, -1}) * mirror, {1, 2, 3}), 0.03, 5));
   });
 }
 
@@ -200,8 +190,8 @@ TYPED_TEST(CorotatedTetsOf, AreFreeOfForceAtRestAndAfterRigidMotions) {
   const TetMesh cage = oddCage();
   onEachInstructionSet([&] {
     for (const double degrees : {0.0, 1.0, 30.0, 90.0, 135.0}) {
-      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
-      const Points nodes = test::mapped(cage.nodes, turnBy(degrees, {0.3, -1, 0.8}), {0.5, -1, 2});
+      Tets<TypeParam> tets(cage, variedMaterial(cage.tetCount()));
+      const Points nodes = mapped(cage.nodes, turnBy(degrees, {0.3, -1, 0.8}), {0.5, -1, 2});
       const double force = largest(tets.forces(nodes)), energy = tets.energy(nodes);
       EXPECT_LT(force, 150.0 * this->kEpsilon);
       EXPECT_LT(energy, 1000.0 * this->kEpsilon * this->kEpsilon);
@@ -213,8 +203,8 @@ TYPED_TEST(CorotatedTetsOf, FindARotationByAlmostHalfATurn) {
   const TetMesh cage = oddCage();
   onEachInstructionSet([&] {
     for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(0.3, -1, 0.8)}) {
-      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
-      const Points nodes = test::mapped(cage.nodes, turnBy(179.0, axis), {0, 0, 0});
+      Tets<TypeParam> tets(cage, variedMaterial(cage.tetCount()));
+      const Points nodes = mapped(cage.nodes, turnBy(179.0, axis), {0, 0, 0});
       int calls = 1;
       while (calls < 20 && !(largest(tets.forces(nodes)) < 150.0 * this->kEpsilon)) ++calls;
       EXPECT_LE(calls, 3);
@@ -226,9 +216,8 @@ TYPED_TEST(CorotatedTetsOf, PushAndTurnNothingAsAWhole) {
   const TetMesh cage = oddCage();
   onEachInstructionSet([&] {
     for (const unsigned seed : {1u, 2u, 3u}) {
-      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
-      const Points nodes =
-          test::scattered(test::mapped(cage.nodes, turnBy(50.0, {1, 1, 0}), {0, 1, 0}), 0.15 * seed, seed);
+      Tets<TypeParam> tets(cage, variedMaterial(cage.tetCount()));
+      const Points nodes = scattered(mapped(cage.nodes, turnBy(50.0, {1, 1, 0}), {0, 1, 0}), 0.15 * seed, seed);
       tets.settle(nodes);
       const Points forces = tets.forces(nodes);
       Vector3d push = Vector3d::Zero(), turn = Vector3d::Zero();
@@ -257,7 +246,7 @@ std::vector<std::size_t> innerNodes(const TetMesh& cage) {
 }
 
 TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
-  const TetMesh cage = test::jittered(test::latticeCage(4, 3, 3), 0.15, 4);
+  const TetMesh cage = jittered(latticeCage(4, 3, 3), 0.15, 4);
   const std::vector<std::size_t> inner = innerNodes(cage);
   ASSERT_EQ(inner.size(), 12u);
   Matrix3d strain;
@@ -266,8 +255,7 @@ TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
   const double density = material.mu * strain.squaredNorm() + 0.5 * material.lambda * strain.trace() * strain.trace();
   onEachInstructionSet([&] {
     Tets<TypeParam> tets(cage, std::vector<Lame>(cage.tetCount(), material));
-    const Points nodes =
-        test::mapped(cage.nodes, turnBy(70.0, {1, 2, 3}) * (Matrix3d::Identity() + strain), {0.1, 0.2, 0.3});
+    const Points nodes = mapped(cage.nodes, turnBy(70.0, {1, 2, 3}) * (Matrix3d::Identity() + strain), {0.1, 0.2, 0.3});
     tets.settle(nodes);
     const Points forces = tets.forces(nodes);
     ASSERT_GT(largest(forces), 0.05);
@@ -280,8 +268,8 @@ TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
 
 TYPED_TEST(CorotatedTetsOf, ForcesAreInProportionToTheStiffnessOfEachTet) {
   const TetMesh cage = oddCage();
-  const Points nodes = test::scattered(cage.nodes, 0.2, 8);
-  const std::vector<Lame> material = test::variedMaterial(cage.tetCount());
+  const Points nodes = scattered(cage.nodes, 0.2, 8);
+  const std::vector<Lame> material = variedMaterial(cage.tetCount());
   onEachInstructionSet([&] {
     Tets<TypeParam> tets(cage, material);
     tets.settle(nodes);
@@ -315,8 +303,8 @@ TYPED_TEST(CorotatedTetsOf, FlatCollapsedAndMirroredTetsHaveFiniteForces) {
   onEachInstructionSet([&] {
     for (const Matrix3d& gradient : {flat, thread, mirror, Matrix3d(-Matrix3d::Identity()), Matrix3d(Matrix3d::Zero()),
                                      Matrix3d(1e-20 * mirror), Matrix3d(1e6 * mirror)}) {
-      Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
-      const Points nodes = test::mapped(cage.nodes, gradient, {0.1, 0.2, 0.3});
+      Tets<TypeParam> tets(cage, variedMaterial(cage.tetCount()));
+      const Points nodes = mapped(cage.nodes, gradient, {0.1, 0.2, 0.3});
       for (int k = 0; k < 5; ++k) {
         const double force = largest(tets.forces(nodes));
         EXPECT_TRUE(std::isfinite(force)) << gradient;
@@ -333,11 +321,11 @@ TYPED_TEST(CorotatedTetsOf, FlatCollapsedAndMirroredTetsHaveFiniteForces) {
 
 TYPED_TEST(CorotatedTetsOf, InstructionSetsAgreeToRounding) {
   const TetMesh cage = oddCage();
-  const Points nodes = test::scattered(test::mapped(cage.nodes, turnBy(100.0, {1, 2, -1}), {1, 2, 3}), 0.1, 9);
+  const Points nodes = scattered(mapped(cage.nodes, turnBy(100.0, {1, 2, -1}), {1, 2, 3}), 0.1, 9);
   Points expected;
   double energy = 0.0;
   onEachInstructionSet([&] {
-    Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+    Tets<TypeParam> tets(cage, variedMaterial(cage.tetCount()));
     tets.settle(nodes);
     const Points forces = tets.forces(nodes);
     if (expected.empty()) {
@@ -350,14 +338,14 @@ TYPED_TEST(CorotatedTetsOf, InstructionSetsAgreeToRounding) {
 }
 
 TYPED_TEST(CorotatedTetsOf, HaveTheSameBitsOnAnyThreads) {
-  const TetMesh cage = test::jittered(test::latticeCage(10, 10, 10), 0.15, 10);
-  const Points nodes = test::scattered(test::mapped(cage.nodes, turnBy(20.0, {1, 2, -1}), {1, 2, 3}), 0.2, 11);
-  Tets<TypeParam> alone(cage, test::variedMaterial(cage.tetCount()));
+  const TetMesh cage = jittered(latticeCage(10, 10, 10), 0.15, 10);
+  const Points nodes = scattered(mapped(cage.nodes, turnBy(20.0, {1, 2, -1}), {1, 2, 3}), 0.2, 11);
+  Tets<TypeParam> alone(cage, variedMaterial(cage.tetCount()));
   const Points forces = alone.forces(nodes);
   const double energy = alone.energy(nodes), turn = alone.tets().meanTurn();
   for (const int count : {1, 2, 3}) {
-    test::ShuffledThreads threads(count);
-    Tets<TypeParam> shared(cage, test::variedMaterial(cage.tetCount()));
+    ShuffledThreads threads(count);
+    Tets<TypeParam> shared(cage, variedMaterial(cage.tetCount()));
     EXPECT_EQ(shared.forces(nodes, &threads), forces);
     EXPECT_EQ(shared.energy(nodes, &threads), energy);
     EXPECT_EQ(shared.tets().meanTurn(), turn);
@@ -369,10 +357,10 @@ TYPED_TEST(CorotatedTetsOf, HaveTheSameBitsOnAnyThreads) {
 TYPED_TEST(CorotatedTetsOf, TellByHowMuchTheyHaveTurned) {
   const TetMesh cage = oddCage();
   onEachInstructionSet([&] {
-    Tets<TypeParam> tets(cage, test::variedMaterial(cage.tetCount()));
+    Tets<TypeParam> tets(cage, variedMaterial(cage.tetCount()));
     for (const double degrees : {1.0, 5.0, 20.0, -70.0}) {
-      const Points before = test::mapped(cage.nodes, turnBy(40.0, {1, 2, -1}), {1, 2, 3});
-      const Points after = test::mapped(before, turnBy(degrees, {0, 1, 3}), {1, 2, 3});
+      const Points before = mapped(cage.nodes, turnBy(40.0, {1, 2, -1}), {1, 2, 3});
+      const Points after = mapped(before, turnBy(degrees, {0, 1, 3}), {1, 2, 3});
       const double angle = std::abs(degrees) * 3.14159265358979323846 / 180.0;
       tets.settle(before);
       static_cast<void>(tets.tets().cornersForMatrix(1, nullptr));
@@ -388,4 +376,4 @@ TYPED_TEST(CorotatedTetsOf, TellByHowMuchTheyHaveTurned) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

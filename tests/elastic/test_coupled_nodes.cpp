@@ -11,16 +11,8 @@
 
 #include "gradient_fixtures.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using test::AssembledBody;
-using test::onEachInstructionSet;
-using test::smallCage;
 
 /// A point in a tet that resists its motion, as a contact point does: sum w_i w_j H.
 struct PointRow {
@@ -80,19 +72,7 @@ MatrixXd addAll(AssembledBody<S>& body) {
 }
 
 template <class S>
-MatrixXd columnsOf(const AssembledBody<S>& body) {
-  const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
-  MatrixXd columns(size, size);
-  for (Eigen::Index k = 0; k < size; ++k) columns.col(k) = body.times(VectorXd::Unit(size, k));
-  return columns;
-}
-
-template <class S>
-class CoupledNodesOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class CoupledNodesOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(CoupledNodesOf, Scalars);
 
 TYPED_TEST(CoupledNodesOf, HaveTheirBlocksInProductsAndInBothRows) {
@@ -173,12 +153,12 @@ TEST(CoupledNodes, AreSolvedForByTheConjugateGradient) {
         row.stiffness *= stiffer;
         a += add(row, body);
       }
-      const VectorXd b = test::rightSide(body);
-      test::begin(body, a, b, test::rightSide(body, 42));
-      test::Solver solver;
-      solver.start({&body.matrix}, test::closely(), nullptr, nullptr);
+      const VectorXd b = rightSide(body);
+      begin(body, a, b, rightSide(body, 42));
+      Solver solver;
+      solver.start({&body.matrix}, closely(), nullptr, nullptr);
       EXPECT_TRUE(solver.iterate(500, nullptr));
-      EXPECT_LT(test::apart(test::solutionOf(body), test::solved(a, b)), test::kClose * std::sqrt(stiffer));
+      EXPECT_LT(apart(solutionOf(body), solved(a, b)), kClose * std::sqrt(stiffer));
       // The sweeps include these blocks: stiff rows within a tet cost hardly any iterations.
       EXPECT_LT(solver.iterations(), 80) << stiffer;
     }
@@ -186,4 +166,4 @@ TEST(CoupledNodes, AreSolvedForByTheConjugateGradient) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

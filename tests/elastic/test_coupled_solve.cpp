@@ -10,23 +10,10 @@
 
 #include "gradient_fixtures.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 using kernels::kGroup;
-using test::apart;
-using test::AssembledBody;
-using test::begin;
-using test::closely;
-using test::kClose;
-using test::onEachInstructionSet;
-using test::rightSide;
-using test::smallCage;
-using test::solutionOf;
-using test::Solver;
 
 /// A matrix of springs that is added to those of several bodies, whose unknowns are concatenated.
 class Springs : public Solver::CouplingOperator {
@@ -106,13 +93,13 @@ TEST(ConjugateGradient, SolvesWithAnotherOperatorAdded) {
     solver.start({&body.matrix}, closely(), &springs, nullptr);
     EXPECT_TRUE(solver.iterate(500, nullptr));
     EXPECT_EQ(springs.calls, solver.iterations());
-    EXPECT_LT(apart(solutionOf(body), test::solved(a, b)), kClose);
+    EXPECT_LT(apart(solutionOf(body), solved(a, b)), kClose);
   });
 }
 
 TEST(ConjugateGradient, SolvesBodiesThatAreCoupled) {
   onEachInstructionSet([&] {
-    AssembledBody<double> first(smallCage()), second(test::bodyCentredCage(1, 2, 1), 0.05, 2.0);
+    AssembledBody<double> first(smallCage()), second(bodyCentredCage(1, 2, 1), 0.05, 2.0);
     const auto size = static_cast<Eigen::Index>(3 * first.nodes.size());
     const auto total = size + static_cast<Eigen::Index>(3 * second.nodes.size());
     MatrixXd springs = MatrixXd::Zero(total, total);
@@ -126,7 +113,7 @@ TEST(ConjugateGradient, SolvesBodiesThatAreCoupled) {
     MatrixXd a = springs;
     a.topLeftCorner(size, size) += first.dense();
     a.bottomRightCorner(total - size, total - size) += second.dense();
-    const VectorXd b = test::Random(44).vector(static_cast<std::size_t>(total));
+    const VectorXd b = Random(44).vector(static_cast<std::size_t>(total));
     for (AssembledBody<double>* body : {&first, &second}) {
       const VectorXd part = body == &first ? b.head(size) : b.tail(total - size);
       body->toWide(VectorXd::Zero(part.size()), body->matrix.solution());
@@ -138,7 +125,7 @@ TEST(ConjugateGradient, SolvesBodiesThatAreCoupled) {
     EXPECT_TRUE(solver.iterate(500, nullptr));
     VectorXd x(total);
     x << solutionOf(first), solutionOf(second);
-    EXPECT_LT(apart(x, test::solved(a, b)), kClose);
+    EXPECT_LT(apart(x, solved(a, b)), kClose);
   });
 }
 
@@ -164,4 +151,4 @@ TEST(ConjugateGradient, AnAdditionThatIsNotPositiveLeavesWhatHasBeenReached) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,26 +10,13 @@
 #include "elastic_motion.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::Vector3d;
-using test::fill;
-using test::lumped;
-using test::made;
-using test::pinTheEnd;
-using test::Points;
-using test::pointsOf;
-using test::soft;
 
 constexpr double kPi = 3.14159265358979323846;
 
 template <class S>
-class ElasticBarsOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class ElasticBarsOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(ElasticBarsOf, Scalars);
 
 /// The mean displacement of the nodes at the free end.
@@ -53,7 +40,7 @@ void settle(ElasticBody<S>& body, const std::array<double, 3>& acceleration, int
 
 TYPED_TEST(ElasticBarsOf, AHangingBarIsAsLongAsTheTextbookSays) {
   constexpr double kLength = 2.0, kGravity = 9.8;
-  const TetMesh cage = test::latticeCage(16, 2, 2, kLength / 16);
+  const TetMesh cage = latticeCage(16, 2, 2, kLength / 16);
   ElasticOptions options = soft();
   options.tolerance = 1e-4;
   options.poissonRatio = 0.0;  // the pinned end cannot get thinner
@@ -67,7 +54,7 @@ TYPED_TEST(ElasticBarsOf, AHangingBarIsAsLongAsTheTextbookSays) {
 
 TYPED_TEST(ElasticBarsOf, APulledBarIsAsLongAsTheTextbookSays) {
   constexpr double kLength = 2.0;
-  const TetMesh cage = test::latticeCage(16, 2, 2, kLength / 16);
+  const TetMesh cage = latticeCage(16, 2, 2, kLength / 16);
   const double area = 0.0625, force = 20.0;
   // All mass is at the free end, so that gravity pulls only there.
   ElasticOptions options = soft();
@@ -103,7 +90,7 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
   const double expected = weight * gravity * std::pow(kLength, 4) / (8.0 * options.youngsModulus * inertia);
   double before = 0.0;
   for (const int across : {1, 2, 4}) {
-    const TetMesh cage = test::latticeCage(8 * across, across, across, kHeight / across);
+    const TetMesh cage = latticeCage(8 * across, across, across, kHeight / across);
     ElasticBody<double> body = made<double>(cage, options);
     pinTheEnd(body, cage);
     settle(body, {0, 0, -gravity}, 20);
@@ -118,7 +105,7 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
 
 /// What a solve leaves is small beside gravity in each step, and must not add up to a wrong sag, or to a creeping one.
 TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
-  const TetMesh cage = test::latticeCage(20, 3, 3, 0.1);
+  const TetMesh cage = latticeCage(20, 3, 3, 0.1);
   const auto settled = [&](double tolerance) {
     ElasticOptions options = soft();
     options.youngsModulus = 1e4;
@@ -153,7 +140,7 @@ TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
 
 TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {
   constexpr double kLength = 2.0;
-  const TetMesh cage = test::latticeCage(16, 1, 1, kLength / 16);
+  const TetMesh cage = latticeCage(16, 1, 1, kLength / 16);
   ElasticOptions options = soft();
   options.poissonRatio = 0.0;
   options.tolerance = 1e-4;
@@ -178,7 +165,7 @@ TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {
 
 TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
   constexpr double kLength = 1.0, kTime = 0.32;
-  const TetMesh cage = test::latticeCage(4, 1, 1, kLength / 4);
+  const TetMesh cage = latticeCage(4, 1, 1, kLength / 4);
   ElasticOptions options = soft();
   options.youngsModulus = 2e4;
   options.tolerance = 1e-8;
@@ -204,4 +191,4 @@ TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -11,31 +11,13 @@
 #include "elastic_motion.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using test::fill;
-using test::kInfinity;
-using test::lumped;
-using test::made;
-using test::Motion;
-using test::motionOf;
-using test::onEachInstructionSet;
-using test::Points;
-using test::pointsOf;
-using test::soft;
-using test::turnBy;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 template <class S>
-class ElasticBodyOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class ElasticBodyOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(ElasticBodyOf, Scalars);
 
 /// Options that are refused.
@@ -46,7 +28,7 @@ struct Refused {
 };
 
 TYPED_TEST(ElasticBodyOf, NamesTheOptionThatIsWrong) {
-  const TetMesh cage = test::latticeCage(1, 1, 1);
+  const TetMesh cage = latticeCage(1, 1, 1);
   std::vector<Refused> refused;
   for (const double value : {0.0, -1.0, kNan, kInfinity}) {
     refused.push_back({"Young's modulus", [=](auto& o) { o.youngsModulus = value; }});
@@ -90,13 +72,13 @@ TYPED_TEST(ElasticBodyOf, NamesTheOptionThatIsWrong) {
 TYPED_TEST(ElasticBodyOf, RefusesCagesThatCannotBeUsed) {
   const auto codeOf = [](const TetMesh& cage) { return ElasticBody<TypeParam>::create(cage, soft()).status().code; };
   EXPECT_EQ(codeOf({}), StatusCode::Empty);
-  TetMesh cage = test::latticeCage(1, 1, 1);
+  TetMesh cage = latticeCage(1, 1, 1);
   cage.tets[2][1] = 99;
   EXPECT_EQ(codeOf(cage), StatusCode::IndexOutOfRange);
-  cage = test::latticeCage(1, 1, 1);
+  cage = latticeCage(1, 1, 1);
   cage.nodes[5].y() = kNan;
   EXPECT_EQ(codeOf(cage), StatusCode::NonFinite);
-  cage = test::latticeCage(1, 1, 1);
+  cage = latticeCage(1, 1, 1);
   cage.tets.push_back({0, 1, 2, 3});  // one face of a cube
   Result<ElasticBody<TypeParam>> flat = ElasticBody<TypeParam>::create(cage, soft());
   EXPECT_EQ(flat.status().code, StatusCode::Degenerate);
@@ -108,7 +90,7 @@ TYPED_TEST(ElasticBodyOf, RefusesCagesThatCannotBeUsed) {
 TYPED_TEST(ElasticBodyOf, IsEmptyUnlessItIsMade) {
   ElasticBody<TypeParam> nothing;
   EXPECT_EQ(nothing.nodeCount(), 0u);
-  ElasticBody<TypeParam> body = made<TypeParam>(test::singleTet(), soft());
+  ElasticBody<TypeParam> body = made<TypeParam>(singleTet(), soft());
   EXPECT_EQ(body.nodeCount(), 4u);
   nothing = std::move(body);
   EXPECT_EQ(nothing.nodeCount(), 4u);
@@ -124,7 +106,7 @@ TYPED_TEST(ElasticBodyOf, IsEmptyUnlessItIsMade) {
 }
 
 TYPED_TEST(ElasticBodyOf, IsAtRestWhereTheCageIs) {
-  TetMesh cage = test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+  TetMesh cage = jittered(latticeCage(3, 2, 1), 0.15, 3);
   for (std::size_t t = 0; t < cage.tetCount(); t += 2) std::swap(cage.tets[t][0], cage.tets[t][1]);  // negative tets
   ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
@@ -141,7 +123,7 @@ TYPED_TEST(ElasticBodyOf, IsAtRestWhereTheCageIs) {
 }
 
 TYPED_TEST(ElasticBodyOf, StoresTheEnergyOfItsStrain) {
-  const TetMesh cage = test::jittered(test::latticeCage(2, 2, 2), 0.15, 3);
+  const TetMesh cage = jittered(latticeCage(2, 2, 2), 0.15, 3);
   Matrix3d strain;
   strain << 0.02, 0.01, -0.03, 0.01, -0.04, 0.02, -0.03, 0.02, 0.03;
   for (const double poisson : {0.0, 0.3, 0.49}) {
@@ -153,15 +135,14 @@ TYPED_TEST(ElasticBodyOf, StoresTheEnergyOfItsStrain) {
     const double lambda = modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
     const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    fill(body.positions(),
-         test::mapped(cage.nodes, turnBy(50, {1, 2, 3}) * (Matrix3d::Identity() + strain), {1, 2, 3}));
+    fill(body.positions(), mapped(cage.nodes, turnBy(50, {1, 2, 3}) * (Matrix3d::Identity() + strain), {1, 2, 3}));
     // At a Poisson's ratio of 0.49, the rounding of volumes has fifty times the effect.
     EXPECT_NEAR(body.energy() / (totalVolume(cage) * density), 1.0, 300.0 * this->kEpsilon);
   }
 }
 
 TYPED_TEST(ElasticBodyOf, FallsFreely) {
-  const TetMesh cage = test::jittered(test::latticeCage(3, 2, 2), 0.15, 3);
+  const TetMesh cage = jittered(latticeCage(3, 2, 2), 0.15, 3);
   ElasticOptions options = soft();
   options.nodeMasses.assign(cage.nodeCount(), 1.0);
   for (std::size_t n = 0; n < cage.nodeCount(); n += 3) options.nodeMasses[n] = 50.0;
@@ -182,7 +163,7 @@ TYPED_TEST(ElasticBodyOf, FallsFreely) {
 }
 
 TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
-  const TetMesh cage = test::jittered(test::latticeCage(4, 2, 2, 0.25), 0.03, 3);
+  const TetMesh cage = jittered(latticeCage(4, 2, 2, 0.25), 0.03, 3);
   const std::vector<double> masses = lumped(cage);
   Vector3d centre = Vector3d::Zero();
   for (std::size_t n = 0; n < masses.size(); ++n) centre += masses[n] * cage.nodes[n] / totalVolume(cage);
@@ -192,9 +173,9 @@ TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
   onEachInstructionSet([&] {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
     const Vector3d spin(1.0, 2.0, 8.0), drift(0.02, -0.01, 0.03);
-    Points velocities, positions = test::scattered(cage.nodes, 0.02, 12);
+    Points velocities, positions = scattered(cage.nodes, 0.02, 12);
     for (const Vector3d& p : cage.nodes) velocities.push_back(spin.cross(p - centre) + drift);
-    velocities = test::scattered(velocities, 0.2, 13);
+    velocities = scattered(velocities, 0.2, 13);
     fill(body.positions(), positions);
     fill(body.velocities(), velocities);
     const Motion start = motionOf(body, masses);
@@ -220,7 +201,7 @@ TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
 }
 
 TEST(ElasticBody, DampingTakesTheVibrationAndLeavesTheTurning) {
-  const TetMesh cage = test::latticeCage(3, 2, 2, 0.25);
+  const TetMesh cage = latticeCage(3, 2, 2, 0.25);
   const std::vector<double> masses = lumped(cage);
   Vector3d centre = Vector3d::Zero();
   for (std::size_t n = 0; n < masses.size(); ++n) centre += masses[n] * cage.nodes[n] / totalVolume(cage);
@@ -232,7 +213,7 @@ TEST(ElasticBody, DampingTakesTheVibrationAndLeavesTheTurning) {
     Points velocities;
     for (const Vector3d& p : cage.nodes) velocities.push_back(Vector3d(0, 0, 1).cross(p - centre));
     fill(body.velocities(), velocities);
-    fill(body.positions(), test::mapped(cage.nodes, Vector3d(1.05, 0.98, 1.0).asDiagonal(), Vector3d::Zero()));
+    fill(body.positions(), mapped(cage.nodes, Vector3d(1.05, 0.98, 1.0).asDiagonal(), Vector3d::Zero()));
     const Motion start = motionOf(body, masses);
     for (int k = 0; k < 1000; ++k) body.step(1e-4);
     const Motion end = motionOf(body, masses);
@@ -246,7 +227,7 @@ TEST(ElasticBody, DampingTakesTheVibrationAndLeavesTheTurning) {
 }
 
 TYPED_TEST(ElasticBodyOf, HeldNodesMoveAsTheyAreToldAndByNothingElse) {
-  const TetMesh cage = test::latticeCage(3, 1, 1);
+  const TetMesh cage = latticeCage(3, 1, 1);
   onEachInstructionSet([&] {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
     body.setPinned(0);
@@ -280,4 +261,4 @@ TYPED_TEST(ElasticBodyOf, HeldNodesMoveAsTheyAreToldAndByNothingElse) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,30 +10,18 @@
 #include "elastic_motion.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::Vector3d;
-using test::fastest;
-using test::fill;
-using test::lumped;
-using test::made;
-using test::Motion;
-using test::motionOf;
-using test::onEachInstructionSet;
-using test::Points;
-using test::pointsOf;
-using test::turnBy;
 
 /// A slender bar about 1 m long, aligned with no axis of the world.
 TetMesh obliqueBar() {
-  TetMesh bar = test::jittered(test::latticeCage(6, 1, 1), 0.1, 3);
+  TetMesh bar = jittered(latticeCage(6, 1, 1), 0.1, 3);
   for (Vector3d& p : bar.nodes) p = turnBy(33.0, {1, 2, 3}) * (p / 6.0);
   return bar;
 }
 
 TetMesh block() {
-  TetMesh cube = test::jittered(test::latticeCage(3, 3, 3), 0.1, 4);
+  TetMesh cube = jittered(latticeCage(3, 3, 3), 0.1, 4);
   for (Vector3d& p : cube.nodes) p /= 3.0;
   return cube;
 }
@@ -46,13 +34,11 @@ void spin(ElasticBody<S>& body, const Vector3d& rate, const Vector3d& drift) {
 }
 
 template <class S>
-class ElasticClaimsOf : public testing::Test {
+class ElasticClaimsOf : public WithScalar<S> {
  protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
   /// The rounding of positions appears as this fraction of E V.
   static constexpr double kRounding = sizeof(S) == sizeof(float) ? 1e-11 : 1e-27;
 };
-using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(ElasticClaimsOf, Scalars);
 
 TYPED_TEST(ElasticClaimsOf, SpinningFreelyKeepsMomentumAndGainsNoEnergyFromSoftToStiff) {
@@ -116,7 +102,7 @@ TYPED_TEST(ElasticClaimsOf, KeepsAngularMomentumBeyondOneRadianPerStep) {
 
 TYPED_TEST(ElasticClaimsOf, ABodyTurnedAtOnceStaysAtRest) {
   const TetMesh cage = block();
-  test::Random random(71);
+  Random random(71);
   std::vector<Vector3d> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}};
   for (int k = 0; k < 4; ++k) axes.push_back(random.vector());
   onEachInstructionSet([&] {
@@ -140,7 +126,7 @@ TYPED_TEST(ElasticClaimsOf, ABodyTurnedAtOnceStaysAtRest) {
 }
 
 TYPED_TEST(ElasticClaimsOf, ABodyOnAnAxleGoesOnTurningAtAnyStiffness) {
-  const TetMesh cage = test::latticeCage(2, 2, 2);  // turns about its middle, along z
+  const TetMesh cage = latticeCage(2, 2, 2);  // turns about its middle, along z
   for (const double youngsModulus : {1e4, 1e9}) {
     ElasticOptions options;
     options.youngsModulus = youngsModulus;
@@ -168,13 +154,13 @@ TYPED_TEST(ElasticClaimsOf, ABodyOnAnAxleGoesOnTurningAtAnyStiffness) {
 
 /// The body is turned by its pinned nodes, through a full turn.
 TYPED_TEST(ElasticClaimsOf, ABodyThatIsTurnedByItsHeldNodesFollowsUnstrained) {
-  const TetMesh cage = test::latticeCage(3, 1, 1);
+  const TetMesh cage = latticeCage(3, 1, 1);
   for (const double youngsModulus : {1e4, 1e9}) {
     ElasticOptions options;
     options.youngsModulus = youngsModulus;
     options.stiffnessDamping = 0.02;
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    test::pinTheEnd(body, cage);
+    pinTheEnd(body, cage);
     const double degrees = 3.0;
     for (int k = 1; k <= 120; ++k) {
       const auto at = [&](int step, const Vector3d& p) -> Vector3d { return turnBy(degrees * step, {0, 0, 1}) * p; };
@@ -247,10 +233,10 @@ TYPED_TEST(ElasticClaimsOf, StandsStillInAStepThatIsNone) {
   spin(body, {0, 0, 1}, {1, 0, 0});
   const Points before = pointsOf(body.positions());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double seconds : {0.0, -1.0, nan, test::kInfinity}) EXPECT_EQ(body.step(seconds), 0);
+  for (const double seconds : {0.0, -1.0, nan, kInfinity}) EXPECT_EQ(body.step(seconds), 0);
   EXPECT_EQ(body.step(0.01, {0, nan, 0}), 0);
   EXPECT_EQ(pointsOf(body.positions()), before);
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,27 +10,11 @@
 #include "support/odd_meshes.h"
 #include "support/shuffled_threads.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using Eigen::Vector3d;
-using test::fastest;
-using test::fill;
-using test::lumped;
-using test::made;
-using test::onEachInstructionSet;
-using test::pinTheEnd;
-using test::Points;
-using test::pointsOf;
-using test::smallestVolume;
-using test::soft;
-
 template <class S>
-class ElasticHardCasesOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class ElasticHardCasesOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(ElasticHardCasesOf, Scalars);
 
 /// Ways to damage a body, from which it must recover.
@@ -49,8 +33,7 @@ TYPED_TEST(ElasticHardCasesOf, ComesBackFromBeingFlatCollapsedOrInsideOut) {
   };
   ElasticOptions options = soft();
   options.stiffnessDamping = 0.01;
-  for (const TetMesh& cage :
-       {test::singleTet(), test::latticeCage(2, 1, 1), test::jittered(test::latticeCage(3, 2, 2), 0.1, 3)}) {
+  for (const TetMesh& cage : {singleTet(), latticeCage(2, 1, 1), jittered(latticeCage(3, 2, 2), 0.1, 3)}) {
     onEachInstructionSet([&] {
       for (const Damaged& direction : damaged) {
         ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
@@ -71,10 +54,10 @@ TYPED_TEST(ElasticHardCasesOf, ComesBackFromBeingFlatCollapsedOrInsideOut) {
 TYPED_TEST(ElasticHardCasesOf, ComesBackFromAWildMess) {
   ElasticOptions options = soft();
   options.stiffnessDamping = 0.01;
-  const TetMesh cage = test::latticeCage(3, 2, 2);
+  const TetMesh cage = latticeCage(3, 2, 2);
   onEachInstructionSet([&] {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    fill(body.positions(), test::scattered(cage.nodes, 1.0, 14));
+    fill(body.positions(), scattered(cage.nodes, 1.0, 14));
     ASSERT_LT(smallestVolume(cage, pointsOf(body.positions())), -0.5);
     for (int k = 0; k < 300; ++k) body.step(1.0 / 60.0);
     EXPECT_GT(smallestVolume(cage, pointsOf(body.positions())), 0.95);
@@ -82,13 +65,13 @@ TYPED_TEST(ElasticHardCasesOf, ComesBackFromAWildMess) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, HoldsTogetherWhenVeryStiffAndThrownHard) {
-  const TetMesh cage = test::jittered(test::latticeCage(3, 2, 1), 0.1, 3);
+  const TetMesh cage = jittered(latticeCage(3, 2, 1), 0.1, 3);
   ElasticOptions options = soft();
   options.youngsModulus = 1e9;
   options.density = 1.0;
   onEachInstructionSet([&] {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    fill(body.velocities(), test::scattered(Points(cage.nodeCount(), Vector3d(500, -300, 800)), 50.0, 15));
+    fill(body.velocities(), scattered(Points(cage.nodeCount(), Vector3d(500, -300, 800)), 50.0, 15));
     for (int k = 0; k < 300; ++k) {
       EXPECT_LE(body.step(1.0 / 60.0, {0, 0, -9.8}), options.maxIterations);
       ASSERT_LT(fastest(body), 1200.0) << k;
@@ -98,13 +81,13 @@ TYPED_TEST(ElasticHardCasesOf, HoldsTogetherWhenVeryStiffAndThrownHard) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, ComesToRestWhenVeryStiffAndStruckHardWhereItIsHeld) {
-  const TetMesh cage = test::latticeCage(3, 2, 1);
+  const TetMesh cage = latticeCage(3, 2, 1);
   ElasticOptions options = soft();
   options.youngsModulus = 1e9;
   options.density = 1.0;
   onEachInstructionSet([&] {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    Points velocities = test::scattered(Points(cage.nodeCount(), Vector3d(500, -300, 800)), 500.0, 15);
+    Points velocities = scattered(Points(cage.nodeCount(), Vector3d(500, -300, 800)), 500.0, 15);
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
       if (cage.nodes[n].x() == 0.0) velocities[n].setZero();
     }
@@ -132,18 +115,18 @@ Points swung(const TetMesh& cage, int steps, ParallelFor* threads = nullptr, dou
 }
 
 TYPED_TEST(ElasticHardCasesOf, HasTheSameBitsAgainAndOnAnyThreads) {
-  const TetMesh cage = test::latticeCage(14, 12, 12, 0.1);
+  const TetMesh cage = latticeCage(14, 12, 12, 0.1);
   const Points alone = swung<TypeParam>(cage, 4);
   EXPECT_EQ(swung<TypeParam>(cage, 4), alone);
   for (const int count : {1, 2}) {
-    test::ShuffledThreads threads(count);
+    ShuffledThreads threads(count);
     EXPECT_EQ(swung<TypeParam>(cage, 4, &threads), alone);
     EXPECT_GT(threads.maxTasks, 8u);
   }
 }
 
 TEST(ElasticHardCases, FloatIsNearDouble) {
-  const TetMesh cage = test::latticeCage(6, 2, 2, 0.25);
+  const TetMesh cage = latticeCage(6, 2, 2, 0.25);
   onEachInstructionSet([&] {
     const Points twice = swung<double>(cage, 30, nullptr, 1e-5), single = swung<float>(cage, 30, nullptr, 1e-5);
     ASSERT_LT(twice[6].z() - cage.nodes[6].z(), -0.3);
@@ -154,7 +137,7 @@ TEST(ElasticHardCases, FloatIsNearDouble) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, InstructionSetsMoveItAlike) {
-  const TetMesh cage = test::latticeCage(6, 2, 2, 0.25);
+  const TetMesh cage = latticeCage(6, 2, 2, 0.25);
   Points expected;
   onEachInstructionSet([&] {
     const Points nodes = swung<TypeParam>(cage, 30, nullptr, 1e-5);
@@ -166,7 +149,7 @@ TYPED_TEST(ElasticHardCasesOf, InstructionSetsMoveItAlike) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, StaysAtRestOnceItIs) {
-  const TetMesh cage = test::latticeCage(3, 1, 1);
+  const TetMesh cage = latticeCage(3, 1, 1);
   ElasticOptions options = soft();
   options.youngsModulus = 1e5;
   options.density = 1.0;
@@ -184,7 +167,7 @@ TYPED_TEST(ElasticHardCasesOf, StaysAtRestOnceItIs) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, GainsNoEnergyWhenItTurnsAboutANode) {
-  const TetMesh cage = test::latticeCage(3, 1, 1);
+  const TetMesh cage = latticeCage(3, 1, 1);
   const std::vector<double> masses = lumped(cage);
   ElasticOptions options = soft();
   options.youngsModulus = 1e5;
@@ -208,14 +191,14 @@ TYPED_TEST(ElasticHardCasesOf, GainsNoEnergyWhenItTurnsAboutANode) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, KeepsItsMomentumBesideANodeOfNoTet) {
-  TetMesh cage = test::jittered(test::latticeCage(3, 2, 1), 0.1, 3);
+  TetMesh cage = jittered(latticeCage(3, 2, 1), 0.1, 3);
   cage.nodes.emplace_back(9, 9, 9);
   const std::vector<double> masses = lumped(cage);
   ElasticOptions options = soft();
   options.youngsModulus = 500.0;
   options.density = 1.0;
   ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-  Points velocities = test::scattered(Points(cage.nodeCount(), Vector3d::Zero()), 1.0, 16);
+  Points velocities = scattered(Points(cage.nodeCount(), Vector3d::Zero()), 1.0, 16);
   velocities.back().setZero();
   fill(body.velocities(), velocities);
   const auto angular = [&] {
@@ -230,19 +213,19 @@ TYPED_TEST(ElasticHardCasesOf, KeepsItsMomentumBesideANodeOfNoTet) {
 }
 
 TYPED_TEST(ElasticHardCasesOf, IsElasticAgainAfterANodeWasNotFinite) {
-  const TetMesh cage = test::latticeCage(2, 1, 1);
+  const TetMesh cage = latticeCage(2, 1, 1);
   ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
   body.positions()[3][1] = std::numeric_limits<TypeParam>::quiet_NaN();
   body.step(1.0 / 60.0);
   fill(body.velocities(), Points(cage.nodeCount(), Vector3d::Zero()));
   fill(body.positions(), cage.nodes);
   EXPECT_LT(body.energy(), 1e-6);
-  fill(body.positions(), test::mapped(cage.nodes, Vector3d(1.1, 1.0, 1.0).asDiagonal(), Vector3d::Zero()));
+  fill(body.positions(), mapped(cage.nodes, Vector3d(1.1, 1.0, 1.0).asDiagonal(), Vector3d::Zero()));
   EXPECT_GT(body.energy(), 1.0);
 }
 
 TEST(ElasticHardCases, RefusesWhatIsBeyondTheRangeOfTheScalars) {
-  TetMesh cage = test::latticeCage(1, 1, 1);
+  TetMesh cage = latticeCage(1, 1, 1);
   ElasticOptions options = soft();
   options.youngsModulus = 1e30;
   options.stiffnessScale.assign(cage.tetCount(), 1e30);
@@ -255,4 +238,4 @@ TEST(ElasticHardCases, RefusesWhatIsBeyondTheRangeOfTheScalars) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

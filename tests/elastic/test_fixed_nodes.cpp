@@ -11,30 +11,21 @@
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using elastic_detail::BlockMatrix;
 using kernels::kGroup;
-using test::AssembledBody;
-using test::onEachInstructionSet;
 
 TetMesh flatCage() {
-  return test::jittered(test::latticeCage(3, 2, 1), 0.15, 3);
+  return jittered(latticeCage(3, 2, 1), 0.15, 3);
 }
 
 template <class S>
-class FixedNodesOf : public testing::Test {
- protected:
-  static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-};
-using Scalars = testing::Types<float, double>;
+class FixedNodesOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(FixedNodesOf, Scalars);
 
-Matrix3d symmetric(const double* m) {
+template <class S>
+Matrix3d symmetric(const S (&m)[6]) {
   Matrix3d result;
   result << m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[5];
   return result;
@@ -44,16 +35,14 @@ template <class S>
 Matrix3d diagonalOf(const BlockMatrix<S>& matrix, std::size_t node) {
   S m[6];
   matrix.diagonal(node, m);
-  const double d[6] = {m[0], m[1], m[2], m[3], m[4], m[5]};
-  return symmetric(d);
+  return symmetric(m);
 }
 
 template <class S>
 Matrix3d freeInverseOf(const BlockMatrix<S>& matrix, std::size_t node) {
   S m[6];
   matrix.freeInverse(node, m);
-  const double d[6] = {m[0], m[1], m[2], m[3], m[4], m[5]};
-  return symmetric(d);
+  return symmetric(m);
 }
 
 /// What the sweeps use as the inverse of a node's block: their result for a residual that is 0 at all other nodes.
@@ -192,4 +181,4 @@ TYPED_TEST(FixedNodesOf, AHeldNodeStaysHeld) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,25 +10,14 @@
 
 #include "gradient_fixtures.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using elastic_detail::InitialGuess;
-using test::apart;
-using test::AssembledBody;
-using test::closely;
-using test::onEachInstructionSet;
-using test::solutionOf;
-using test::SolveLimits;
-using test::Solver;
 
 constexpr int kManyIterations = 100;
 
 /// A body of which two nodes are pinned, with a linear system and solutions of steps before.
 struct HeldBody {
-  HeldBody() : body(test::smallCage()) {
+  HeldBody() : body(smallCage()) {
     for (const std::size_t n : {std::size_t{2}, std::size_t{9}}) body.hold(n);
     body.assemble();
     a = body.dense();
@@ -37,8 +26,8 @@ struct HeldBody {
       if (body.masses[n] == 0.0) continue;
       for (std::size_t k = 0; k < 3; ++k) unknowns.push_back(static_cast<int>(3 * n + k));
     }
-    b = test::Random(41).vector(size);
-    start = test::Random(42).vector(size);
+    b = Random(41).vector(size);
+    start = Random(42).vector(size);
   }
 
   MatrixXd freeMatrix() const { return a(unknowns, unknowns); }
@@ -46,7 +35,7 @@ struct HeldBody {
   VectorXd freePart(const VectorXd& v) const { return v(unknowns); }
   /// The solution with pinned nodes as they are at the start.
   VectorXd exact() const {
-    const VectorXd correction = test::solved(freeMatrix(), freePart(b - a * start));
+    const VectorXd correction = solved(freeMatrix(), freePart(b - a * start));
     VectorXd x = start;
     x(unknowns) += correction;
     return x;
@@ -56,7 +45,7 @@ struct HeldBody {
     guess.remember(body.matrix);
   }
   SolveLimits improve(InitialGuess<double>& guess) {
-    test::begin(body, a, b, start);
+    begin(body, a, b, start);
     SolveLimits limits = closely();
     guess.improve(body.matrix, limits, nullptr);
     return limits;
@@ -83,7 +72,7 @@ InitialGuess<double> usedGuess() {
 TEST(InitialGuess, HasTheLeastErrorOfTheCombinationsOfEarlierSolutions) {
   onEachInstructionSet([&] {
     HeldBody held;
-    const VectorXd older = test::Random(43).vector(held.b.size()), last = test::Random(44).vector(held.b.size());
+    const VectorXd older = Random(43).vector(held.b.size()), last = Random(44).vector(held.b.size());
     for (const bool both : {false, true}) {
       InitialGuess<double> guess = usedGuess();
       if (both) held.remember(guess, older);
@@ -97,7 +86,7 @@ TEST(InitialGuess, HasTheLeastErrorOfTheCombinationsOfEarlierSolutions) {
       const MatrixXd products = directions.transpose() * held.freeMatrix() * directions;
       const VectorXd rest = held.freePart(held.b - held.a * held.start);
       VectorXd expected = held.start;
-      expected(held.unknowns) += directions * test::solved(products, directions.transpose() * rest);
+      expected(held.unknowns) += directions * solved(products, directions.transpose() * rest);
       EXPECT_LT(apart(found, expected), 1e-10);
       EXPECT_LT(held.errorOf(found), 0.99 * held.errorOf(held.start));
       const VectorXd residual = held.freePart(held.b - held.a * found);
@@ -124,7 +113,7 @@ TEST(InitialGuess, IsTheSolutionWhereItIsThatOfTheStepBefore) {
 TEST(InitialGuess, ExtrapolatesSteadyMotion) {
   HeldBody held;
   InitialGuess<double> guess = usedGuess();
-  VectorXd change = test::Random(45).vector(held.b.size());
+  VectorXd change = Random(45).vector(held.b.size());
   for (const int pinned : {2, 9}) change.segment<3>(3 * pinned).setZero();
   held.remember(guess, held.exact() - 2.0 * change);
   held.remember(guess, held.exact() - change);
@@ -135,7 +124,7 @@ TEST(InitialGuess, ExtrapolatesSteadyMotion) {
 TEST(InitialGuess, LimitsAreRelativeToTheResidualWithoutIt) {
   HeldBody held;
   InitialGuess<double> guess = usedGuess();
-  test::begin(held.body, held.a, held.b, held.start);
+  begin(held.body, held.a, held.b, held.start);
   Solver without;
   without.start({&held.body.matrix}, closely(), nullptr, nullptr);
   held.remember(guess, held.exact() + 1e-3 * held.start);
@@ -198,4 +187,4 @@ TEST(InitialGuess, IsUsedWhereSolvesTakeManyIterationsAndItSavesSome) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

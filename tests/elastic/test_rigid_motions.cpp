@@ -7,7 +7,7 @@
 #include "dense_reference.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,8 +17,8 @@ using elastic_detail::RigidMotions;
 
 /// A box, and a different one apart from it.
 struct TwoComponents {
-  TwoComponents() : mesh(test::jittered(test::latticeCage(2, 1, 1), 0.1, 4)), split(mesh.nodeCount()) {
-    const TetMesh second = test::bodyCentredCage(2, 2, 2);
+  TwoComponents() : mesh(jittered(latticeCage(2, 1, 1), 0.1, 4)), split(mesh.nodeCount()) {
+    const TetMesh second = bodyCentredCage(2, 2, 2);
     const auto offset = static_cast<int>(split);
     for (const Vector3d& p : second.nodes) mesh.nodes.push_back(p + Vector3d(10, 0, 0));
     for (const Tet& t : second.tets) mesh.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
@@ -77,7 +77,7 @@ TEST(RigidMotions, LeaveWhatIsOrthogonalToThemByMassAsItWas) {
   EXPECT_LT((again - deformation).norm(), 1e-12 * before.norm());
   // What has been removed is a rigid motion.
   const Fields taken = before - deformation;
-  const Eigen::MatrixXd found = test::solved(motions.transpose() * motions, motions.transpose() * taken);
+  const Eigen::MatrixXd found = solved(motions.transpose() * motions, motions.transpose() * taken);
   EXPECT_LT((motions * found - taken).norm(), 1e-12 * before.norm());
 }
 
@@ -94,4 +94,4 @@ TEST(RigidMotions, OfBalancedLoadsAreNotAccelerated) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -9,7 +9,7 @@
 #include "support/component_models.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::VectorXd;
@@ -38,9 +38,8 @@ Cage built(const TriangleMesh& mesh, bool split) {
 }
 
 TEST(SplitStiffness, SplitCagesHaveNoHinges) {
-  for (const test::ComponentModel& model :
-       {test::twoPlates(0.15), test::jaw(0.12), test::claw(0.1), test::chain(2, 0.15), test::coil(2, 0.1),
-        test::jaw(0.03), test::crossedBoxes()}) {
+  for (const ComponentModel& model :
+       {twoPlates(0.15), jaw(0.12), claw(0.1), chain(2, 0.15), coil(2, 0.1), jaw(0.03), crossedBoxes()}) {
     const double whole = softest(built(model.mesh, false)), split = softest(built(model.mesh, true));
     EXPECT_GT(split, kHinge * whole) << model.name << " " << model.gap;
   }
@@ -48,7 +47,7 @@ TEST(SplitStiffness, SplitCagesHaveNoHinges) {
 
 /// Two beams end to end, or connected only by an edge or a node.
 Cage joinedBeams(int sharedNodes) {
-  Cage beams = test::latticeCage(4, 1, 1);
+  Cage beams = latticeCage(4, 1, 1);
   const Cage second = beams;
   const auto count = static_cast<int>(second.mesh.nodeCount());
   std::vector<int> number(second.mesh.nodeCount(), -1);
@@ -76,4 +75,4 @@ TEST(SplitStiffness, AHingeWouldBeSeen) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

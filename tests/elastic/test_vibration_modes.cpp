@@ -15,13 +15,12 @@
 
 #include "dense_reference.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using test::makeBox;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -187,7 +186,7 @@ TEST(VibrationModes, OfACantileverApproachTimoshenkosWithOrderTwo) {
 /// Compares with the dense solver's modes of a free body with the default material.
 void expectThoseOfADenseSolver(const TetMesh& mesh, const VibrationModes& modes) {
   const MatrixXd stiffness = stiffnessOf(mesh, modes.poissonRatio, std::vector<double>(mesh.tetCount(), 1.0));
-  const test::Spectrum dense = test::spectrumOf(stiffness, massesOf(modes));
+  const Spectrum dense = spectrumOf(stiffness, massesOf(modes));
   expectAsDense(mesh, modes, dense.vectors, dense.values, 6);
 }
 
@@ -220,7 +219,7 @@ TEST(VibrationModes, WithPinnedNodesAndStiffnessesAndMassesOfTheirOwnAreThoseOfA
       for (const std::vector<double>& shape : modes.shapes) EXPECT_EQ(shape[static_cast<std::size_t>(k)], 0.0);
     }
   }
-  const test::Spectrum dense = test::spectrumOf(stiffness, massesOf(modes));
+  const Spectrum dense = spectrumOf(stiffness, massesOf(modes));
   expectAsDense(mesh, modes, dense.vectors, dense.values, 0);
 }
 
@@ -255,7 +254,7 @@ TEST(VibrationModes, OfARoundSectionComeInPairsThatAreBothFound) {
   options.modeCount = 14;
   const VibrationModes modes = modesOf(bar, options);
   const MatrixXd stiffness = stiffnessOf(bar, options.poissonRatio, std::vector<double>(bar.tetCount(), 1.0));
-  const VectorXd dense = test::eigenvaluesOf(stiffness, massesOf(modes));
+  const VectorXd dense = eigenvaluesOf(stiffness, massesOf(modes));
   for (std::size_t k = 0; k < modes.modeCount(); ++k) {
     EXPECT_NEAR(modes.eigenvalues[k] / dense[static_cast<Eigen::Index>(6 + k)], 1.0, 1e-8) << k;
   }
@@ -308,4 +307,4 @@ TEST(VibrationModes, OfALargeBodyOfWhichNearlyAllIsPinned) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

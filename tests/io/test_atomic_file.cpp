@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "full_disk.h"
 #include "temp_folder.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <tetskin/io/src/text/atomic_file.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 
 namespace tetskin::io {
@@ -64,16 +63,7 @@ TEST(WriteFile, WritesIntoAPipeWithoutReplacingIt) {
 TEST(WriteFile, KeepsTheOldFileIfTheNewOneDoesNotFit) {
   const TempFolder folder;
   const std::string path = folder.write("a.txt", "old");
-  // A limit on the size of files stands in for a full disk.
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  rlimit small = before;
-  small.rlim_cur = 1000;
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &small);
-  const Status status = writeFile(path, std::string(5000, 'x'));
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  const Status status = test::onAFullDisk(1000, [&] { return writeFile(path, std::string(5000, 'x')); });
   expectError(status, StatusCode::FileNotWritable, {path, "cannot be written"});
   EXPECT_EQ(TempFolder::read(path), "old");
   EXPECT_EQ(folder.fileCount(), 1u);

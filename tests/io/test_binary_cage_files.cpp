@@ -9,13 +9,8 @@
 #include <cstdint>
 #include <initializer_list>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::bigAll;
-using test::expectError;
-using test::loadCageText;
-using test::with;
 
 /// Integers of 32 bits, the highest byte first.
 std::string bigWords(std::initializer_list<double> values) {
@@ -90,4 +85,4 @@ TEST(BinaryCageFiles, SurvivesBinaryDataCutShortAnywhere) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,17 +10,8 @@
 #include <functional>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::kTwoTets;
-using test::loadCageText;
-using test::platesOfCopies;
-using test::smallCage;
-using test::TempFolder;
-using test::textOf;
-using test::with;
 
 void expectSame(const Cage& a, const Cage& b) {
   EXPECT_EQ(a.mesh.nodes, b.mesh.nodes);
@@ -101,7 +92,7 @@ TEST(CageFiles, ExtremeNumbersReadBackExactly) {
 
 TEST(CageFiles, ABareCageMakesTheFileOfItsTets) {
   const TempFolder folder;
-  const Cage cage(test::latticeCage(2, 1, 1));
+  const Cage cage(latticeCage(2, 1, 1));
   for (const char* name : {"c.vtk", "c.msh", "c.ele"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
     const std::string text = TempFolder::read(folder.path(name));
@@ -201,4 +192,4 @@ TEST(CageFiles, AMeshThatIsNotTheCagesIsKnown) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

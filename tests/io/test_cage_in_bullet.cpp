@@ -10,13 +10,13 @@
 
 #include <memory>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 TEST(CageInBullet, BulletReadsTheSameNodesAndTets) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   for (const double joinedUntil : {-1.0, 1.0}) {
-    Cage cage = test::platesOfCopies(joinedUntil).cage;
+    Cage cage = platesOfCopies(joinedUntil).cage;
     for (Eigen::Vector3d& p : cage.mesh.nodes) p = 0.1 * p + Eigen::Vector3d(1.0 / 3.0, 0, -7);
     const Status saved = saveCage(cage, folder.path("c.vtk"));
     ASSERT_TRUE(saved.ok()) << saved.message;
@@ -40,4 +40,4 @@ TEST(CageInBullet, BulletReadsTheSameNodesAndTets) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -8,16 +8,8 @@
 
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::kTwoTets;
-using test::loadCageText;
-using test::smallCage;
-using test::TempFolder;
-using test::textOf;
-using test::with;
 
 TEST(DamagedCageFiles, RefusesToWriteCagesThatAreNotInOrder) {
   const TempFolder folder;
@@ -144,4 +136,4 @@ TEST(DamagedCageFiles, SurvivesDamagedBytes) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

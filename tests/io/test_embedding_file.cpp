@@ -7,21 +7,19 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
 
 class EmbeddingFile : public testing::Test {
  protected:
   EmbeddingFile() {
-    const auto vertices = test::randomPoints(500, {Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(1.1)}, 1);
+    const auto vertices = randomPoints(500, {Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(1.1)}, 1);
     EXPECT_TRUE(embedInto(cage, viewOf(vertices), {}, embedding).ok());
   }
 
-  TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
+  TetMesh cage = latticeCage(3, 3, 3, 1.0 / 3.0);
   Embedding embedding;
-  test::TempFolder folder;
+  TempFolder folder;
 };
 
 TEST_F(EmbeddingFile, IsTheSameAfterSavingAndLoading) {
@@ -47,8 +45,8 @@ TEST_F(EmbeddingFile, FaultsNameTheFile) {
   expectError(loadEmbedding(path, cage).status(), StatusCode::FileNotFound, {path});
   expectError(saveEmbedding(embedding, cage, folder.path("no/such/folder")), StatusCode::FileNotWritable, {"folder"});
   ASSERT_TRUE(saveEmbedding(embedding, cage, path).ok());
-  expectError(loadEmbedding(path, test::latticeCage(2, 2, 2)).status(), StatusCode::CageMismatch, {path, "64 nodes"});
-  std::string bytes = test::TempFolder::read(path);
+  expectError(loadEmbedding(path, latticeCage(2, 2, 2)).status(), StatusCode::CageMismatch, {path, "64 nodes"});
+  std::string bytes = TempFolder::read(path);
   bytes[100] = static_cast<char>(bytes[100] ^ 1);
   expectError(loadEmbedding(folder.write("bad", bytes), cage).status(), StatusCode::Malformed, {"bad", "damaged"});
   expectError(loadEmbedding(folder.write("other", "v 0 0 0\n"), cage).status(), StatusCode::UnsupportedFormat,
@@ -56,4 +54,4 @@ TEST_F(EmbeddingFile, FaultsNameTheFile) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,34 +1,30 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "full_disk.h"
 #include "glb_model.h"
 #include "support/bars.h"
 #include "support/smooth_maps.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/io/animation.h>
 
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::expectError;
-using test::GlbModel;
-using test::TempFolder;
 using Points = std::vector<Vector3d>;
 
 /// A bar of 2 x 1 x 1 in a cage, a surface of two materials in it, with texture coordinates.
 struct CagedBar {
   explicit CagedBar(double reach = 0.0, const Vector3d& at = Vector3d::Zero()) {
-    cage.mesh = test::makeBox({4, 2, 2}, {2.0, 1.0, 1.0});
+    cage.mesh = makeBox({4, 2, 2}, {2.0, 1.0, 1.0});
     for (Vector3d& node : cage.mesh.nodes) node += at;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -94,8 +90,8 @@ std::string written(const TempFolder& folder, const CagedBar& bar, Interpolation
 std::vector<Points> framesOf(const CagedBar& bar) {
   std::vector<Points> frames = {bar.cage.mesh.nodes};
   const Vector3d centre = boundingBox(bar.cage.mesh.nodes).center();
-  for (const test::SmoothMap& map : test::smoothMaps(centre)) {
-    frames.push_back(test::partOf(map, 0.3)(bar.cage.mesh.nodes));
+  for (const SmoothMap& map : smoothMaps(centre)) {
+    frames.push_back(partOf(map, 0.3)(bar.cage.mesh.nodes));
   }
   const auto scaled = [&](const Vector3d& factors) {
     Points nodes = bar.cage.mesh.nodes;
@@ -138,9 +134,9 @@ TEST(GlbWriter, OutsideItsCageAQuadraticSurfaceGoesOnFromTheClosestPoint) {
   const TempFolder folder;
   const CagedBar bar(0.1);
   ASSERT_LT(bar.embedding.insideCount(), bar.mesh.vertexCount() - 20);
-  std::vector<Points> frames = {bar.cage.mesh.nodes, test::affineMap(3)(bar.cage.mesh.nodes)};
+  std::vector<Points> frames = {bar.cage.mesh.nodes, affineMap(3)(bar.cage.mesh.nodes)};
   const Vector3d centre = boundingBox(bar.cage.mesh.nodes).center();
-  for (const double part : {0.1, 0.2}) frames.push_back(test::partOf(test::smoothMaps(centre)[0], part)(frames[0]));
+  for (const double part : {0.1, 0.2}) frames.push_back(partOf(smoothMaps(centre)[0], part)(frames[0]));
   const GlbModel file(written(folder, bar, Interpolation::Quadratic, frames));
   file.expectValid();
   const auto error = [&](std::size_t f) {
@@ -173,7 +169,7 @@ TEST(GlbWriter, IsAsExactFarFromTheOrigin) {
   const TempFolder folder;
   const Vector3d away(1e6, -2e6, 5e5);
   const CagedBar bar(0.0, away);
-  const Points bent = test::partOf(test::smoothMaps(away)[0], 0.2)(bar.cage.mesh.nodes);
+  const Points bent = partOf(smoothMaps(away)[0], 0.2)(bar.cage.mesh.nodes);
   for (const Interpolation kind : {Interpolation::Linear, Interpolation::Quadratic}) {
     const GlbModel file(written(folder, bar, kind, {bar.cage.mesh.nodes, bent}));
     file.expectValid();
@@ -255,7 +251,7 @@ TEST(GlbWriter, RotationsChangeLittleFromFrameToFrame) {
   std::vector<Points> frames;
   const Vector3d centre = boundingBox(bar.cage.mesh.nodes).center();
   for (int f = 0; f <= 100; ++f) {
-    Points nodes = test::partOf(test::smoothMaps(centre)[0], 0.002 * f)(bar.cage.mesh.nodes);
+    Points nodes = partOf(smoothMaps(centre)[0], 0.002 * f)(bar.cage.mesh.nodes);
     for (Vector3d& node : nodes) node = centre + Eigen::AngleAxisd(0.06 * f, Vector3d::UnitX()) * (node - centre);
     frames.push_back(nodes);
   }
@@ -342,20 +338,11 @@ TEST(GlbWriter, LeavesTheOldFileUntilTheNewOneIsComplete) {
   { const GlbWriter abandoned = begun(); }
   EXPECT_EQ(TempFolder::read(path), "old");
   GlbWriter writer = begun();
-  // A limit on the size of files stands in for a full disk.
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  rlimit small = before;
-  small.rlim_cur = 1000;
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &small);
-  const Status status = writer.finish();
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  const Status status = onAFullDisk(1000, [&] { return writer.finish(); });
   expectError(status, StatusCode::FileNotWritable, {path, "cannot be written"});
   EXPECT_EQ(TempFolder::read(path), "old");
   EXPECT_EQ(folder.fileCount(), 1u);
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,19 +10,10 @@
 #include <filesystem>
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::base64;
-using test::Document;
-using test::expectError;
-using test::loadMeshText;
-using test::meshOf;
-using test::primitive;
-using test::raw;
-using test::TempFolder;
-using test::triangle;
-using namespace test::gltf_types;
+using namespace gltf_types;
 using Triangle = std::array<int, 3>;
 
 /// Two meshes of the same triangle in the plane z = 1: "lit" has slanted normals and texture coordinates, "plain" has
@@ -384,4 +375,4 @@ TEST(LoadGltf, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

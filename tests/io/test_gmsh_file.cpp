@@ -8,13 +8,8 @@
 
 #include <algorithm>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::expectTwoTets;
-using test::loadTetMeshText;
-using test::raw;
 
 Result<TetMesh> loadGmsh(const std::string& text, TetFileReport* report = nullptr) {
   return loadTetMeshText("c.msh", text, report);
@@ -207,4 +202,4 @@ TEST(LoadGmsh, NamesTheLineOfACoordinateThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

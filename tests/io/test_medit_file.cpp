@@ -5,12 +5,8 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::expectTwoTets;
-using test::loadTetMeshText;
 
 Result<TetMesh> loadMedit(const std::string& text, TetFileReport* report = nullptr) {
   return loadTetMeshText("c.mesh", text, report);
@@ -62,4 +58,4 @@ TEST(LoadMedit, NamesTheLineOfAFault) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

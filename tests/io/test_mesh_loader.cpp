@@ -8,13 +8,9 @@
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/mesh/zip_entries.h>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::expectError;
-using test::loadMeshText;
-using test::raw;
-using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
 TEST(LoadMesh, KeepsTheThreeVerticesOfEveryStlTriangle) {
@@ -214,4 +210,4 @@ TEST(LoadMesh, NamesAFaceWithAnIndexOutOfRange) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

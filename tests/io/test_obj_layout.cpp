@@ -9,11 +9,8 @@
 #include <cmath>
 #include <filesystem>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::TempFolder;
 
 std::string formatted(const ObjLayout& layout, const std::vector<Eigen::Vector3f>& positions) {
   std::vector<char> buffer;
@@ -252,4 +249,4 @@ TEST(ObjLayout, FormatsTwiceWithoutAllocating) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,12 +10,9 @@
 #include <random>
 #include <set>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::expectError;
-using test::loadMeshText;
-using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
 Result<TriangleMesh> loadObj(const std::string& text) {
@@ -310,4 +307,4 @@ TEST(LoadObj, SurvivesDamagedFiles) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

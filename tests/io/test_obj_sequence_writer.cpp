@@ -10,11 +10,8 @@
 #include <filesystem>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::TempFolder;
 
 const std::string kModel =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\ng plate\nusemtl steel\n"
@@ -157,4 +154,4 @@ TEST(ObjSequenceWriter, ReportsAFolderThatVanishes) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -7,13 +7,9 @@
 
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::expectError;
-using test::kQuadCorners;
-using test::loadMeshText;
-using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
 Result<TriangleMesh> loadOff(const std::string& text) {
@@ -101,4 +97,4 @@ TEST(LoadOff, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "full_disk.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <tetskin/io/animation.h>
 
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::TempFolder;
 
 const std::vector<Eigen::Vector3f> kFloats = {{0.1f, -2.0f, 3.5f}, {1e18f, 1e-45f, -0.0f}};
 const std::vector<Eigen::Vector3d> kDoubles = {{1.0 / 3.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
@@ -69,16 +65,7 @@ TEST(Pc2Writer, LeavesTheOldFileUntilTheNewOneIsComplete) {
   }
   EXPECT_EQ(TempFolder::read(path), "old");
   Pc2Writer writer = pc2WriterOf(path);
-  // A limit on the size of files stands in for a full disk.
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  rlimit small = before;
-  small.rlim_cur = 40;
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &small);
-  const Status status = writer.addFrame(viewOf(kFloats));
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  const Status status = onAFullDisk(40, [&] { return writer.addFrame(viewOf(kFloats)); });
   expectError(status, StatusCode::FileNotWritable, {path, "cannot be written"});
   EXPECT_EQ(TempFolder::read(path), "old");
   EXPECT_EQ(folder.fileCount(), 1u) << "no part of it stays";
@@ -115,4 +102,4 @@ TEST(Pc2Writer, CallsAfterItsEndAreErrors) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

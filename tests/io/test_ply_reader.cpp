@@ -11,15 +11,9 @@
 #include <limits>
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::bytesOf;
-using test::bytesOfAll;
-using test::expectError;
-using test::kQuadCorners;
-using test::loadMeshText;
-using test::TempFolder;
 using Triangle = std::array<int, 3>;
 
 Result<TriangleMesh> loadPly(const std::string& text) {
@@ -267,4 +261,4 @@ TEST(LoadPly, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -9,12 +9,8 @@
 
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::TempFolder;
-using test::twoTets;
 
 TEST(LoadTetMesh, TellsTheFormatByTheExtensionInAnyCase) {
   const TempFolder folder;
@@ -135,4 +131,4 @@ TEST(LoadTetMesh, SurvivesDamagedBytes) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

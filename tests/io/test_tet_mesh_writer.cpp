@@ -8,11 +8,8 @@
 #include <limits>
 #include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::TempFolder;
 
 TetMesh awkwardMesh() {
   TetMesh mesh;
@@ -97,4 +94,4 @@ TEST(SaveTetMesh, NamesAFolderThatDoesNotExist) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

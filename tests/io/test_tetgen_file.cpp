@@ -8,12 +8,8 @@
 
 #include <algorithm>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::expectError;
-using test::expectTwoTets;
-using test::TempFolder;
 
 Result<TetMesh> loadTetgen(const std::string& node, const std::string& ele) {
   const TempFolder folder;
@@ -118,4 +114,4 @@ TEST(LoadTetgen, RefusesPlaneMeshesAndMeshesWithoutTets) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

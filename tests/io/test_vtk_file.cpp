@@ -10,14 +10,8 @@
 #include <cstdint>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::big;
-using test::bigAll;
-using test::expectError;
-using test::expectTwoTets;
-using test::loadTetMeshText;
 
 Result<TetMesh> loadVtk(const std::string& text, TetFileReport* report = nullptr) {
   return loadTetMeshText("c.vtk", text, report);
@@ -241,4 +235,4 @@ TEST(LoadVtk, RefusesAMeshWithoutTets) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -22,6 +22,13 @@ Fit embedInto(const TetMesh& cage, const Points& points, const EmbedOptions& opt
   return fit;
 }
 
+/// The report alone.
+template <class Points>
+Fit embedInto(const TetMesh& cage, const Points& points, const EmbedOptions& options = {}) {
+  Embedding embedding;
+  return embedInto(cage, points, options, embedding);
+}
+
 /// The part of the options that concerns one skin of a binding.
 inline const InstanceOptions& instanceOf(const SkinOptions& options) {
   return options;
