@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/solver/kinematic_paths.h>
+#include <tetskin/bullet/src/rows/kinematic_paths.h>
 
 #include "deformable_test.h"
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 constexpr btScalar kPathStep = btScalar(1) / 240;

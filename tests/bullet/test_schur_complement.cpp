@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/solver/schur_complement.h>
+#include <tetskin/bullet/src/system/schur_complement.h>
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 using Eigen::MatrixXd;

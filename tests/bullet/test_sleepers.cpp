@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/solver/sleepers.h>
+#include <tetskin/bullet/src/motion/sleepers.h>
 
 #include <functional>
 
 #include "deformable_test.h"
 
 namespace tetskin::test {
+
+using namespace bullet_detail;
+
 namespace {
 
 constexpr int kStepsAsleep = 5;

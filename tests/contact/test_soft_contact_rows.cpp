@@ -7,6 +7,7 @@
 namespace tetskin::test {
 namespace {
 
+using namespace bullet_detail;
 using namespace contact_detail;
 
 /// Balls in a world, whose contacts are found without a step. The tets of two differ, so that their weights do.
@@ -23,7 +24,7 @@ class SoftRows : public testing::Test {
     add(Eigen::Vector3d::Zero());
     add(Eigen::Vector3d(apart, 0, 0));
   }
-  const std::vector<SoftPointContact>& contacts() { return *rows.contacts(btScalar(1.0 / 240), nullptr); }
+  const PointContacts& contacts() { return *rows.contacts(btScalar(1.0 / 240), nullptr); }
   void sleep(int body) { bodies[body]->forceActivationState(ISLAND_SLEEPING); }
   void TearDown() override {
     for (const auto& body : bodies) world->deformable().removeSoftBody(body.get());
@@ -35,12 +36,9 @@ class SoftRows : public testing::Test {
 };
 
 /// Of both bodies.
-void expectOnePoint(const SoftPointContact& contact) {
-  btVector3 point(0, 0, 0), ofObject(0, 0, 0);
-  for (std::size_t k = 0; k < 4; ++k) {
-    point += contact.weights[k] * contact.body->m_nodes[contact.nodes[k]].m_x;
-    ofObject += contact.objectWeights[k] * btSoftBody::upcast(contact.object)->m_nodes[contact.objectNodes[k]].m_x;
-  }
+void expectOnePoint(const PointContact& contact) {
+  const btVector3 point = contact.at.position(*contact.body);
+  const btVector3 ofObject = contact.onObject.position(*btSoftBody::upcast(contact.object));
   EXPECT_LT((point - contact.position).length(), 1e-5);
   EXPECT_LT((ofObject - contact.position).length(), 1e-5);
 }
@@ -51,7 +49,7 @@ TEST_F(SoftRows, EachContactIsOnePointOfBothBodiesAsDeepAsItIsInTheOtherBall) {
   bodies[1]->m_cfg.kDF = btScalar(0.8);
   btVector3 normals(0, 0, 0);
   std::size_t of[2] = {0, 0};
-  for (const SoftPointContact& contact : contacts()) {
+  for (const PointContact& contact : contacts()) {
     const int other = contact.body == bodies[0].get() ? 1 : 0;
     ASSERT_EQ(contact.object, bodies[other].get());
     ++of[other];
@@ -69,9 +67,9 @@ TEST_F(SoftRows, ContactsWithASleepingBodyAreThoseOfTheBodyThatIsAwake) {
   addTwo();
   bodies[0]->setActivationState(WANTS_DEACTIVATION);
   bodies[0]->setDeactivationTime(1);
-  const std::vector<SoftPointContact> awake = contacts();
+  const PointContacts awake = contacts();
   sleep(1);
-  const std::vector<SoftPointContact>& now = contacts();
+  const PointContacts& now = contacts();
   ASSERT_EQ(now.size(), awake.size());
   EXPECT_FALSE(bodies[1]->isActive());
   int count = 0;
@@ -81,7 +79,7 @@ TEST_F(SoftRows, ContactsWithASleepingBodyAreThoseOfTheBodyThatIsAwake) {
     EXPECT_EQ(now[k].object, bodies[1].get());
     EXPECT_EQ(now[k].normal, turns ? -awake[k].normal : awake[k].normal);
     EXPECT_EQ(now[k].position, awake[k].position);
-    EXPECT_EQ(now[k].nodes[0], turns ? awake[k].objectNodes[0] : awake[k].nodes[0]);
+    EXPECT_EQ(now[k].at.nodes[0], turns ? awake[k].onObject.nodes[0] : awake[k].at.nodes[0]);
     EXPECT_EQ(now[k].point == awake[k].point, !turns);
     expectOnePoint(now[k]);
     count += turns ? 1 : 0;

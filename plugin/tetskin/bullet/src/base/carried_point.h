@@ -24,11 +24,12 @@ struct CarriedPoint {
   std::array<btScalar, kMaxPointNodes> weights{};  ///< sum 1; some may be below 0
 
   CarriedPoint() = default;
-  /// nodes, weights  `of` entries each
+  /// from, by  nodes and their weights, `nodeCount` of each
   template <class Nodes, class Weights>
-  CarriedPoint(std::size_t of, const Nodes& from, const Weights& by) : count(static_cast<std::uint32_t>(of)) {
-    assert(of <= kMaxPointNodes);
-    for (std::size_t k = 0; k < of; ++k) {
+  CarriedPoint(std::size_t nodeCount, const Nodes& from, const Weights& by)
+      : count(static_cast<std::uint32_t>(nodeCount)) {
+    assert(nodeCount <= kMaxPointNodes);
+    for (std::size_t k = 0; k < nodeCount; ++k) {
       nodes[k] = from[k];
       weights[k] = by[k];
     }
@@ -50,7 +51,7 @@ struct CarriedPoint {
   btVector3 velocity(const btSoftBody& body) const {
     return sum([&](int n) -> const btVector3& { return body.m_nodes[n].m_v; });
   }
-  /// Of its own nodes, so that little is lost in rounding far from the origin.
+  /// The sum is of offsets from its first node, so that little is lost in rounding far from the origin.
   btVector3 position(const btSoftBody& body) const {
     assert(count > 0);
     const btVector3 first = body.m_nodes[nodes[0]].m_x;

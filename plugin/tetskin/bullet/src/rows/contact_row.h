@@ -25,6 +25,7 @@ namespace tetskin::bullet_detail {
 
 /// One end of a row: a point that nodes of a soft body carry, or a point of a rigid object.
 struct RowEnd {
+  /// In place of an index: none has it.
   static constexpr std::size_t kNoBody = ~std::size_t{0};
   std::size_t body = kNoBody;  ///< in SolverBodies::bodies; of a rigid point: none
   RigidPoint rigid;            ///< of a rigid point

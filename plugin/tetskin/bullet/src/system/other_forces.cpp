@@ -26,8 +26,8 @@ void OtherForces::multiplySolutions(const SolvedSystem& system) {
     const auto& matrix = body.dynamics->matrix();
     for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
       const int number = body.first + static_cast<int>(n);
-      factor_[number] = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) -
-                        (*before_)[number];
+      factor_[number] =
+          fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n)) - (*before_)[number];
     }
   }
   multiply(system);
