@@ -96,26 +96,10 @@ TEST_F(BulletsBinding, DrawsABodyWithoutTetsAtTheOrigin) {
   EXPECT_FALSE(report.status().message.empty());
 }
 
-/// The weights that Bullet stores for a vertex without a tet were never set: they depend on which vertex came before.
-TEST_F(BulletsBinding, StoresWeightsThatWereNeverSet) {
-  make(test::singleTet());
-  const auto weightsOfAFarVertexAfter = [&](const Eigen::Vector3d& first) {
-    test::setRenderNodes(*body, {first, {3000.0, 0.5, 0.5}});
-    btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
-    EXPECT_EQ(body->m_renderNodesParents[1].size(), 0);
-    return body->m_renderNodesInterpolationWeights[1];
-  };
-  const btVector4 one = weightsOfAFarVertexAfter({0.1, 0.2, 0.3}), other = weightsOfAFarVertexAfter({0.3, 0.3, 0.1});
-  double difference = 0.0;
-  for (int k = 0; k < 4; ++k) difference = std::max(difference, static_cast<double>(btFabs(one[k] - other[k])));
-  figure("Bullet: weights of one far vertex, bound twice, differ by", difference);
-  EXPECT_GT(difference, 0.1);
-}
-
 /// The only tet of each body has no volume except for rounding, and Bullet divides by that volume.
 TEST_F(BulletsBinding, TakesFlatTetsAndStoresWeightsThatAreNotNumbers) {
   const int trials = 1000;
-  int bound = 0, inside = 0, notFinite = 0, lost = 0;
+  int bound = 0, notFinite = 0;
   const Points corners = test::randomPoints(3 * trials, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, 9);
   for (int trial = 0; trial < trials; ++trial) {
     // The fourth corner lies in the plane of the others, and the vertex lies at the fourth corner.
@@ -128,11 +112,9 @@ TEST_F(BulletsBinding, TakesFlatTetsAndStoresWeightsThatAreNotNumbers) {
     body->m_nodes[3].m_x = toBullet(d);
     test::setRenderNodes(*body, {test::inBulletsPrecision(d)});
     btSoftBodyHelpers::interpolateBarycentricWeights(body.get());
-    if (body->m_renderNodesParents[0].size() == 0) ++lost;
     if (body->m_renderNodesParents[0].size() == 0) continue;
     ++bound;
     const btVector4 w = body->m_renderNodesInterpolationWeights[0];
-    inside += w[0] >= 0 && w[1] >= 0 && w[2] >= 0 && w[3] >= 0;
     notFinite += !std::isfinite(w[0]) || !std::isfinite(w[1]) || !std::isfinite(w[2]) || !std::isfinite(w[3]);
     if (!skin.bind(*body, meshOf({d})).ok()) continue;  // refused because it is flat
     vertices = {d};
@@ -140,9 +122,7 @@ TEST_F(BulletsBinding, TakesFlatTetsAndStoresWeightsThatAreNotNumbers) {
     EXPECT_LT((ours(0) - d).norm(), 1e-5);
   }
   figure("flat tets taken, of 1,000", bound);
-  figure("of these, as if the vertex were inside", inside);
   figure("of these, with weights that are not finite", notFinite);
-  figure("vertices left without a tet", lost);
   EXPECT_GT(bound, 0);
   EXPECT_GT(notFinite, 0);
 }
@@ -313,24 +293,6 @@ TEST_F(BulletsFaces, TearTheSurfaceAtTheirEdgesWhenBent) {
   updateBoth();
   figure("ours", (ours(0) - ours(1)).norm());
   EXPECT_LT((ours(0) - ours(1)).norm(), 0.01);
-}
-
-/// A face that has collapsed has no normal, and Bullet divides by the normal's length.
-TEST_F(BulletsFaces, GiveVerticesThatAreNotNumbersWhenCollapsed) {
-  const btVector3 nodes[] = {btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0)};
-  body = std::make_unique<btSoftBody>(&info, 3, nodes, nullptr);
-  body->appendFace(0, 1, 2);
-  test::setRenderNodes(*body, {{0.25, 0.25, 0.5}});
-  btSoftBodyHelpers::extrapolateBarycentricWeights(body.get());
-  for (int n = 0; n < 3; ++n) body->m_nodes[n].m_x.setValue(1, 1, 1);
-  body->interpolateRenderMesh();
-  EXPECT_FALSE(bullets(0).allFinite());
-
-  make(test::singleTet());
-  bindBoth({{0.25, 0.25, 0.5}});
-  for (int n = 0; n < 4; ++n) body->m_nodes[n].m_x.setValue(1, 1, 1);
-  updateBoth();
-  EXPECT_LT((ours(0) - Eigen::Vector3d::Ones()).norm(), 1e-6);
 }
 
 }  // namespace

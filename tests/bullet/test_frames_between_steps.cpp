@@ -92,17 +92,6 @@ TEST_F(FramesBetweenSteps, AreToldNodeByNode) {
   EXPECT_EQ(skin.nodeAt(3, 0), now);
 }
 
-TEST_F(FramesBetweenSteps, AtOneAreTheBodyItselfToTheBit) {
-  bindAndKeepTwo();
-  using Limits = std::numeric_limits<btScalar>;
-  for (const btScalar alpha : {btScalar(1), btScalar(1.5), Limits::infinity(), Limits::quiet_NaN()}) {
-    EXPECT_NE(at(btScalar(0.5)), bent);
-    EXPECT_EQ(at(alpha), bent) << alpha;
-  }
-  EXPECT_EQ(at(btScalar(-0.5)), rest);
-  EXPECT_EQ(at(-Limits::infinity()), rest);
-}
-
 TEST_F(FramesBetweenSteps, MayBeDrawnInAnyOrderAndAnyNumber) {
   SkinOptions options;
   options.interpolation = Interpolation::Quadratic;

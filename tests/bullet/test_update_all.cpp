@@ -119,25 +119,6 @@ TEST_F(UpdateAll, AllocatesNothingAndNeedsNoStatuses) {
   EXPECT_EQ(SoftBodySkin::updateAll(nullptr, 0), 0u);
 }
 
-TEST_F(UpdateAll, NoticesEveryAffineMotionOfASleepingBody) {
-  make(1);
-  btSoftBody& body = *bodies[0];
-  body.forceActivationState(ISLAND_SLEEPING);
-  const auto expectNoticed = [&] {
-    EXPECT_EQ(SoftBodySkin::updateAll(pointers.data(), 1), 1u);
-    EXPECT_EQ(SoftBodySkin::updateAll(pointers.data(), 1), 0u);
-  };
-  EXPECT_EQ(SoftBodySkin::updateAll(pointers.data(), 1), 0u);
-  body.translate(btVector3(0, 0, btScalar(1e-3)));
-  expectNoticed();
-  for (const btVector3& axis : {btVector3(1, 0, 0), btVector3(0, 1, 0), btVector3(0, 0, 1)}) {
-    body.rotate(btQuaternion(axis, btScalar(0.01)));
-    expectNoticed();
-    body.scale(btVector3(1, 1, 1) + axis);
-    expectNoticed();
-  }
-}
-
 TEST_F(UpdateAll, NoticesATeleportOfAFlatBody) {
   bodies.emplace_back(createSoftBody(cage, info).value());
   for (int n = 0; n < bodies[0]->m_nodes.size(); ++n) bodies[0]->m_nodes[n].m_x.setY(0);

@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <memory>
-#include <optional>
 
 namespace tetskin::test {
 
@@ -195,37 +194,6 @@ TEST(BulletsContact, HasADistanceFieldTooCoarseForSmallBodies) {
   figure("error of the distance from a ball of radius 0.1", worst);
   EXPECT_GT(worst, 0.04);
   EXPECT_LT(worstOfOurs, 1e-6);
-}
-
-/// The distance field identifies a shape only by its address.
-TEST(BulletsContact, MeetsAShapeThatIsGoneWhereAnotherTookItsPlace) {
-  btSparseSdf<3> field;
-  field.Initialize();
-  std::optional<btSphereShape> ball;
-  btVector3 normal;
-  btScalar distance[2];
-  for (const int radius : {1, 3}) {
-    ball.emplace(btScalar(radius));
-    distance[radius == 3] = field.Evaluate(btVector3(4, 0, 0), &*ball, normal, 0);
-  }
-  EXPECT_NEAR(distance[0], 3, 0.1);
-  EXPECT_NEAR(distance[1], 3, 0.1) << "from the larger one it is 1";
-}
-
-using BulletsContactDeathTest = testing::Test;
-
-/// The consequence is that a body that has exploded near a box ends the program.
-TEST_F(BulletsContactDeathTest, CrashesFarFromADistanceField) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
-  btBoxShape box(btVector3(1, 1, 1));
-  EXPECT_DEATH(
-      {
-        btSparseSdf<3> field;
-        field.Initialize();
-        btVector3 normal;
-        (void)field.Evaluate(btVector3(btScalar(1e20), btScalar(1e20), 0), &box, normal, 0);
-      },
-      "");
 }
 
 }  // namespace

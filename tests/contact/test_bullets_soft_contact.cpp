@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How Bullet's own contact between soft bodies of a deformable world fails, and what else in such a world causes
-// problems, as far as this can be reproduced with the installed version. The table in tests/README.md names these
-// tests.
-#include <BulletSoftBody/btDeformableMousePickingForce.h>
-
+// How Bullet's own contact between soft bodies of a deformable world fails, as far as this can be reproduced with the
+// installed version. The table in tests/README.md names these tests.
 #include "bullets_figure.h"
 #include "soft_fixtures.h"
 
@@ -123,42 +120,6 @@ TEST(BulletsSoftContact, ExplodesWhereStiffBodiesMeetFast) {
   EXPECT_LT(maximum[2], 1.1);
 }
 
-/// A tet, point down, hits another of the same mass at 1 unit per second. Returns the largest rebound speed of its
-/// nodes.
-btScalar thrownBack(btScalar stiffness) {
-  const auto tetOf = [](double y, double half) {
-    TetMesh tet;
-    tet.nodes = {{0, y, 0}, {half, y + 0.9, 0}, {-half, y + 0.9, half}, {-half, y + 0.9, -half}};
-    tet.tets = {{0, 1, 2, 3}};
-    (void)repairTetMesh(tet);
-    return tet;
-  };
-  EmptyWorld world;
-  SoftBodyOptions options;
-  options.youngsModulus = 1;
-  options.forceModel = ForceModel::NeoHookean;
-  const auto lower = added(world, tetOf(5.0, 0.5), options), upper = added(world, tetOf(6.0, 0.3), options);
-  for (DeformableBody* body : {lower.get(), upper.get()}) {
-    EXPECT_TRUE(body->setGravity(btVector3(0, 0, 0)).ok());
-    body->body().m_cfg.collisions |= Collisions::VF_DD;
-    body->body().setSpringStiffness(stiffness);
-  }
-  upper->body().setVelocity(btVector3(0, -1, 0));
-  btScalar fastest = -1;
-  for (int k = 0; k < 120; ++k) {
-    world.deformable().stepSimulation(kStep, 0);
-    for (int n = 0; n < 4; ++n) fastest = std::max(fastest, upper->body().m_nodes[n].m_v.y());
-  }
-  return fastest;
-}
-
-TEST(BulletsSoftContact, ThrowsBackFasterThanItWasHit) {
-  const btScalar fastest = thrownBack(btScalar(1e6));
-  figure("speed of a node thrown back, hit at 1", static_cast<double>(fastest));
-  EXPECT_LT(thrownBack(btScalar(0.5)), 0) << "with the spring of the default";
-  EXPECT_GT(fastest, btScalar(1.1));
-}
-
 /// Contacts found by continuous detection are appended to one list, but the solver reads another.
 TEST(BulletsSoftContact, FindsFastContactsAndForgetsThem) {
   TwoCubes cubes(Collisions::VF_DD);
@@ -206,43 +167,6 @@ TEST(BulletsSoftContact, JumpsWhenItFallsAsleep) {
   }
   figure("jump of a node over the body's size", jump / 0.9);
   EXPECT_GT(jump / 0.9, 0.001);
-}
-
-TEST(BulletsSoftContact, IgnoresAddForce) {
-  EmptyWorld world;
-  SoftBodyOptions options;
-  options.forceModel = ForceModel::NeoHookean;
-  const auto body = added(world, cubeAt({0, 5, 0}), options);
-  EXPECT_TRUE(body->setGravity(btVector3(0, 0, 0)).ok());
-  for (int k = 0; k < 10; ++k) {
-    body->body().addForce(btVector3(100, 0, 0));
-    world.deformable().stepSimulation(kStep, 0);
-  }
-  EXPECT_NEAR(momentumOf(body->body()).x(), 0, 1e-6) << "of 267";
-}
-
-/// The force is applied twice in explicit steps.
-TEST(BulletsSoftContact, PicksTwiceAStep) {
-  EmptyWorld world;
-  SoftBodyOptions options;
-  options.youngsModulus = 1;
-  options.forceModel = ForceModel::NeoHookean;
-  const auto body = added(world, cubeAt({0, 5, 0}), options);
-  EXPECT_TRUE(body->setGravity(btVector3(0, 0, 0)).ok());
-  btSoftBody& soft = body->body();
-  const btSoftBody::Face& face = soft.m_faces[0];
-  const btVector3 mouse = face.m_n[0]->m_x + btVector3(1, 0, 0);
-  constexpr btScalar kStiffness = 10;
-  btDeformableMousePickingForce picking(kStiffness, 0, face, mouse, 1000);
-  btScalar once = 0;
-  for (const btSoftBody::Node* node : face.m_n) once += kStiffness * (mouse - node->m_x).x() * kStep;
-  world.deformable().addForce(&soft, &picking);
-  world.deformable().stepSimulation(kStep, 0);
-  const btScalar times = momentumOf(soft).x() / once;
-  world.deformable().removeForce(&soft, &picking);
-  figure("impulse of a picking force, over force times step", static_cast<double>(times));
-  EXPECT_GT(times, btScalar(1.8));
-  EXPECT_LT(times, btScalar(2.2));
 }
 
 }  // namespace

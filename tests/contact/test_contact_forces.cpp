@@ -41,29 +41,6 @@ TEST(ContactForces, AtRestTheSumIsTheWeight) {
   expectNear(forces->forcesOn(body.body->body()).total().force, -weightOf(1), 1e-3 * kWeight);
 }
 
-/// Two feet stand 0.45 to one side of the centre, and two 0.25 to the other.
-TEST(ContactForces, TwoSupportsShareTheWeightByTheLeverRule) {
-  TetskinWorld world;
-  TriangleMesh mesh = boxMesh(Vector3d(0.45, 0.35, 0.4));
-  for (Vector3d& p : mesh.positions) {
-    if (p.x() > 0 && p.y() < 0) p.x() = 0.25;
-  }
-  const auto half = [] { return std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.5), 1)); };
-  Obstacle left(world, half(), placeAt(btVector3(btScalar(-0.45), btScalar(1.5), 0)));
-  Obstacle right(world, half(), placeAt(btVector3(btScalar(0.25), btScalar(1.5), 0)));
-  SurfaceContactOptions feetAlone;
-  feetAlone.sampleSpacing = SurfaceContactOptions::kNoSamples;
-  TouchingBody body(world, mesh, btVector3(0, btScalar(2.36), 0), feetAlone, stiff());
-  body.body->body().setActivationState(DISABLE_DEACTIVATION);
-  const auto forces = forcesIn(world);
-  step(world, 240);
-  const btVector3 onLeft = forces->forcesOn(left.body()).total().force,
-                  onRight = forces->forcesOn(right.body()).total().force;
-  EXPECT_NEAR(-onLeft.y(), kWeight * 0.25 / 0.7, 0.01 * kWeight * 0.25 / 0.7);
-  EXPECT_NEAR(-onRight.y(), kWeight * 0.45 / 0.7, 0.01 * kWeight * 0.45 / 0.7);
-  expectNear(onLeft + onRight, weightOf(1), 1e-3 * kWeight);
-}
-
 /// Two kinematic plates close on a box in the air.
 TEST(ContactForces, AGripperHoldsByFriction) {
   TetskinWorld world;
@@ -214,21 +191,6 @@ TEST(ContactForces, OfABodyOnAnotherAreItsWeight) {
 
 // ---- what does not change them, and what ends them
 
-TEST(ContactForces, AreNotChangedByQueriesBetweenSteps) {
-  TetskinWorld world;
-  TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(0.36), 0));
-  const auto forces = forcesIn(world);
-  step(world, 60);
-  const AppliedForces before = forces->forcesOn(floorOf(world));
-  ASSERT_FALSE(isNothing(before));
-  IgnoredResults nothing;
-  world.world->contactTest(&floorOf(world), nothing);
-  world.world->contactTest(&body.body->body(), nothing);
-  world.world->contactPairTest(&floorOf(world), &body.body->body(), nothing);
-  EXPECT_EQ(forces->forcesOn(floorOf(world)).total().force, before.total().force);
-  EXPECT_EQ(forces->forcesOn(floorOf(world)).total().torque, before.total().torque);
-}
-
 TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
   Balls balls(btVector3(0, -10, 0));
   btSoftBody &a = balls.add(Vector3d(3, 1, 0)), &b = balls.add(Vector3d(3, 1.83, 0));
@@ -247,25 +209,6 @@ TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
   EXPECT_GT(told, 1U);
   EXPECT_GT(onB, 0);
   EXPECT_GT(onFloor, 0);
-}
-
-TEST(ContactForces, StayWhileABodySleepsAndGoWithWhatItLiesOn) {
-  TetskinWorld world;
-  auto table = std::make_unique<Obstacle>(world, std::make_unique<btBoxShape>(btVector3(1, btScalar(0.5), 1)),
-                                          placeAt(btVector3(0, 2, 0)));
-  TouchingBody body(world, boxMesh(Vector3d(0.35, 0.35, 0.35)), btVector3(0, btScalar(2.86), 0));
-  btSoftBody& soft = body.body->body();
-  const auto forces = forcesIn(world);
-  for (int f = 0; f < 1200 && soft.isActive(); ++f) step(world, 1);
-  ASSERT_FALSE(soft.isActive());
-  step(world, 10);
-  expectNear(forces->forcesOn(table->body()).total().force, weightOf(1), 0.01 * kWeight);
-  expectNear(forces->forcesOn(soft).total().force, -weightOf(1), 0.01 * kWeight);
-  table.reset();
-  EXPECT_TRUE(isNothing(forces->forcesOn(soft)));
-  soft.activate();
-  step(world, 1);
-  EXPECT_TRUE(isNothing(forces->forcesOn(soft)));
 }
 
 }  // namespace

@@ -32,23 +32,27 @@ class TouchSearchTest : public ::testing::Test {
       nodes_[n].predicted = nodes_[n].now + direction;
     }
   }
-  std::vector<ContactCandidate> find(PointCollider& search, const btCollisionShape& shape, const btVector3& at,
-                                     ShapeMemory& memory) {
+  PointContacts find(PointCollider& search, const btCollisionShape& shape, const btVector3& at, ShapeMemory& memory) {
     return find(search, shape, placeAt(at), memory);
   }
-  std::vector<ContactCandidate> find(PointCollider& search, const btCollisionShape& shape, const btTransform& at,
-                                     ShapeMemory& memory) {
+  PointContacts find(PointCollider& search, const btCollisionShape& shape, const btTransform& at, ShapeMemory& memory) {
     ExactProbe probe;
     probe.take(*ExactShape::exactShape(shape));
     search.begin(nodes_, kMargin, speculation_);
     return search.find(probe, {at, at}, memory);
   }
-  std::vector<ContactCandidate> findAnew(const btCollisionShape& shape, const btVector3& at) {
+  PointContacts findAnew(const btCollisionShape& shape, const btVector3& at) {
     PointCollider search = makeSearch();
     ShapeMemory memory;
     return find(search, shape, at, memory);
   }
 
+  /// The index of the patch that a point belongs to.
+  static std::size_t patchOf(std::uint32_t point, const ContactPatches& of) {
+    std::size_t k = 0;
+    while (point - of.patches[k].firstPoint >= of.patches[k].numberCount()) ++k;
+    return k;
+  }
   btVector3 pointOf(const ContactPatch& patch, std::uint32_t p) const {
     btVector3 point(0, 0, 0);
     const std::size_t first = patch.firstWeight + p * patch.nodeCount;
@@ -81,8 +85,8 @@ TEST_F(TouchSearchTest, FindsOfEachPatchInTouchTheDeepestPointAndAFewMore) {
         inTouch += distance < 0;
         deepest = std::min(deepest, distance);
       }
-      for (const ContactCandidate& touch : touches) {
-        if (touch.patch != k) continue;
+      for (const PointContact& touch : touches) {
+        if (patchOf(touch.point, patches_) != k) continue;
         ++told;
         deepestTold = std::min(deepestTold, touch.distance);
         EXPECT_GE(touch.point, patch.firstPoint);
@@ -96,7 +100,7 @@ TEST_F(TouchSearchTest, FindsOfEachPatchInTouchTheDeepestPointAndAFewMore) {
     }
     EXPECT_EQ(found, touches.size());
     all += found;
-    for (const ContactCandidate& touch : touches) {
+    for (const PointContact& touch : touches) {
       EXPECT_LT(touch.distance, 0);
       EXPECT_NEAR((touch.position - at).length() - btScalar(0.3) - kMargin, touch.distance, 1e-5);
       EXPECT_NEAR((touch.position - at).normalized().dot(touch.normal), 1, 1e-4);
@@ -110,7 +114,7 @@ TEST_F(TouchSearchTest, MeetsWhatIsPassedInOneStep) {
   moveBy(btVector3(0, 1, 0), btVector3(0, -2, 0));
   const auto touches = findAnew(plate, btVector3(0, 0, 0));
   ASSERT_FALSE(touches.empty());
-  for (const ContactCandidate& touch : touches) {
+  for (const PointContact& touch : touches) {
     EXPECT_NEAR(touch.normal.y(), 1, 1e-5);  // on the side from which the body comes
     EXPECT_NEAR(touch.distance, touch.position.y() - btScalar(0.005) - kMargin, 1e-3);
   }
@@ -124,7 +128,7 @@ TEST_F(TouchSearchTest, StopsPointsByBothSidesOfAnEdge) {
   PointCollider search = makeSearch();
   ShapeMemory memory;
   std::size_t left = 0, right = 0;
-  for (const ContactCandidate& touch : find(search, box, edge, memory)) {
+  for (const PointContact& touch : find(search, box, edge, memory)) {
     left += touch.normal.x() < btScalar(-0.5);
     right += touch.normal.x() > btScalar(0.5);
   }
@@ -143,7 +147,7 @@ TEST_F(TouchSearchTest, GoesOnWithThePointsOfTheStepBefore) {
       node.predicted.setY(node.predicted.y() + tilt * node.now.x());
     }
     std::set<std::uint32_t> points;
-    for (const ContactCandidate& touch : find(search, ground, placeAt(btVector3(0, -1, 0)), memory)) {
+    for (const PointContact& touch : find(search, ground, placeAt(btVector3(0, -1, 0)), memory)) {
       points.insert(touch.point);
     }
     return points;
@@ -177,8 +181,8 @@ TEST_F(TouchSearchTest, RemembersNothingThatIsNotSo) {
     const auto kept = find(search, shape, btVector3(0, 0, 0), memory), anew = findAnew(shape, btVector3(0, 0, 0));
     // The choice of points within a patch depends on those of the previous step.
     std::set<std::uint32_t> keptPatches, newPatches;
-    for (const ContactCandidate& touch : kept) keptPatches.insert(touch.patch);
-    for (const ContactCandidate& touch : anew) newPatches.insert(touch.patch);
+    for (const PointContact& touch : kept) keptPatches.insert(patchOf(touch.point, patches_));
+    for (const PointContact& touch : anew) newPatches.insert(patchOf(touch.point, patches_));
     ASSERT_EQ(keptPatches, newPatches) << step;
     touched += !kept.empty();
     now += direction;

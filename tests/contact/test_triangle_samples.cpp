@@ -89,9 +89,9 @@ class TriangleSamples : public ::testing::Test {
   std::vector<NodePath> nodes_;
 };
 
-btScalar deepest(const std::vector<ContactCandidate>& touches) {
+btScalar deepest(const PointContacts& touches) {
   btScalar least = BT_LARGE_FLOAT;
-  for (const ContactCandidate& touch : touches) least = std::min({least, touch.distance, touch.predicted});
+  for (const PointContact& touch : touches) least = std::min({least, touch.distance, touch.predicted});
   return least;
 }
 
@@ -119,11 +119,14 @@ TEST_F(TriangleSamples, TouchAsDeepAsALookAtEachOfThemFinds) {
     shape.getAabb(at, low, high);
     WorldBox around;
     around.extend(low.m_floats, high.m_floats);
-    const std::vector<ContactCandidate> touches = search.find(probe, {at, at}, memory, &around);
+    const PointContacts touches = search.find(probe, {at, at}, memory, &around);
     const btScalar all =
         deepestOfAll(search.patches(), [&](const btVector3& p) { return exact.distance(at.inverse() * p).distance; });
-    for (const ContactCandidate& touch : touches) {
-      const ContactPatch& patch = search.patches().patches[touch.patch];
+    for (const PointContact& touch : touches) {
+      const auto& patches = search.patches().patches;
+      const ContactPatch& patch = *std::find_if(patches.begin(), patches.end(), [&](const ContactPatch& of) {
+        return touch.point - of.firstPoint < of.numberCount();
+      });
       const NodePath path = pathOf(search.patches(), patch, touch.point - patch.firstPoint);
       EXPECT_LT((touch.position - path.now).length(), 1e-5);
     }

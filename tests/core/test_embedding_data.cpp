@@ -265,15 +265,5 @@ TEST_F(SavedEmbedding, HugeCountsAreRefused) {
   }
 }
 
-TEST_F(SavedEmbedding, RandomBytesAreRefused) {
-  std::mt19937 random(3);
-  for (int round = 0; round < 2000; ++round) {
-    Bytes noise(random() % 400);
-    for (unsigned char& byte : noise) byte = static_cast<unsigned char>(random());
-    if (round % 2 == 0) std::copy_n(bytes.begin(), std::min<std::size_t>(noise.size(), 24), noise.begin());
-    EXPECT_FALSE(load(noise, cage).ok());
-  }
-}
-
 }  // namespace
 }  // namespace tetskin

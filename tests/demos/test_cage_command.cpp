@@ -19,10 +19,7 @@ class CageCommand : public testing::Test {
   CommandResult cage(const std::vector<std::string>& arguments) const { return folder.run(TETSKIN_CAGE, arguments); }
 
   void expectRefused(const std::vector<std::string>& arguments, const std::string& word) const {
-    const CommandResult result = cage(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+    test::expectRefused(cage(arguments), word);
     EXPECT_FALSE(folder.exists("c.vtk"));
   }
 
@@ -91,14 +88,6 @@ TEST_F(CageCommand, TellsInOneLineWhatOfAMeshWasNotRead) {
       "or normals that do not exist (first in line 8)\n");
 }
 
-TEST_F(CageCommand, WritesEveryTetFormat) {
-  for (const char* name : {"c.vtk", "c.msh", "c.ele"}) {
-    ASSERT_EQ(cage({"--triangles", "2000", "--tets", "300", "--no-duplicate-elements", "-o", name, "--quiet"}).status,
-              0);
-    EXPECT_TRUE(loadTetMesh(folder.path(name)).ok()) << name;
-  }
-}
-
 TEST_F(CageCommand, CopiesNeedAFormatThatKeepsTheirMap) {
   const CommandResult refused = cage({"--model", "slotted_beam", "--tets", "1500", "-o", "c.msh", "--quiet"});
   test::expectRefused(refused, ".vtk");
@@ -117,14 +106,6 @@ TEST_F(CageCommand, LooseCagesHaveMoreVolumeAndOneShapeOfTet) {
   EXPECT_NEAR(loose["max_dihedral_deg"], 90, 1e-3);
 }
 
-TEST_F(CageCommand, FlatSheetGetsAThinCage) {
-  folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  const CommandResult result = cage({"--mesh", "sheet.obj", "--tets", "300", "-o", "c.vtk", "--json", "c.json"});
-  ASSERT_EQ(result.status, 0);
-  EXPECT_EQ(folder.json("c.json")["vertices_outside"], 0);
-  EXPECT_NE(result.out.find("\n1 component of the mesh, 1 of the cage"), std::string::npos) << result.out;
-}
-
 TEST_F(CageCommand, TellsOfVerticesThatNoTriangleUses) {
   folder.write("cut.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nv 0 0 50\nf 1 2 3 4\n");
   const CommandResult result = cage({"--mesh", "cut.obj", "--tets", "300", "-o", "c.vtk", "--json", "c.json"});
@@ -136,15 +117,11 @@ TEST_F(CageCommand, TellsOfVerticesThatNoTriangleUses) {
 }
 
 TEST_F(CageCommand, RefusesBadInput) {
-  folder.write("empty.obj", "# nothing\n");
   folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
-  folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1e31 0\nf 1 2 3\n");
   folder.write("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
   folder.write("ok.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expectRefused({"--mesh", "nowhere.obj", "-o", "c.vtk"}, "nowhere.obj");
-  expectRefused({"--mesh", "empty.obj", "-o", "c.vtk"}, "empty.obj");
   expectRefused({"--mesh", "nan.obj", "-o", "c.vtk"}, "nan.obj:2");
-  expectRefused({"--mesh", "far.obj", "-o", "c.vtk"}, "far.obj:3: vertex 2 has a coordinate beyond 1e18");
   expectRefused({"--mesh", "point.obj", "-o", "c.vtk"}, "point.obj");
   expectRefused({"--mesh", "ok.obj", "-o", "c.xyz"}, "c.xyz");
   expectRefused({"--mesh", "ok.obj", "-o", "no/such/c.vtk"}, "no/such/c.vtk");

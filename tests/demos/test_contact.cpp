@@ -56,6 +56,9 @@ TEST(Contact, HoldsWhatIsPromisedOfSoftBodiesAmongThemselves) {
         EXPECT_TRUE(figure["passed"].get<bool>()) << scene["scene"] << figure;
       }
       EXPECT_GT(promised, 0) << scene;
+      // A box glides along a pad that it touches only in some steps; without contact, the scene would prove nothing.
+      if (scenes != std::string("pad/weightless")) continue;
+      EXPECT_GT(figuresOf(scene).at("contact points")["value"].get<double>(), 0.05) << scene;
     }
   }
 }
@@ -82,16 +85,6 @@ TEST(Contact, LetsNodesSlideOverSeams) {
     ASSERT_EQ(result.status, 0) << result.out << result.err;
     const auto figures = figuresOf(folder.json("c.json")[0]);
     EXPECT_NEAR(figures.at("distance over v^2 / (2 mu g)")["value"].get<double>(), 1.0, 0.1) << scene;
-  }
-}
-
-/// A box glides along a slab that it touches only in some steps; without contact, the scene would prove nothing.
-TEST(Contact, TouchesTheSlabThatItGlidesAlong) {
-  const CommandFolder folder;
-  const CommandResult result = folder.run(TETSKIN_CONTACT, {"--only", "pad/weightless", "--json", "c.json"});
-  ASSERT_EQ(result.status, 0) << result.out << result.err;
-  for (const auto& scene : folder.json("c.json")) {
-    EXPECT_GT(figuresOf(scene).at("contact points")["value"].get<double>(), 0.05) << scene;
   }
 }
 

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 
 #include "command.h"
@@ -92,19 +91,6 @@ TEST_F(CrowdCommand, TellsWhatEachLeftOutPartSaves) {
     EXPECT_LT(count("linear", "bytes"), count("quadratic", "bytes"));
     EXPECT_LT(count("previous positions off", "bytes"), count("previous positions on", "bytes"));
   }
-}
-
-TEST_F(CrowdCommand, TakesAMeshOfTheUsersAndASingleBody) {
-  folder.write("box.obj",
-               "v 0 0 0\nv 900 0 0\nv 900 400 0\nv 0 400 0\nv 0 0 300\nv 900 0 300\nv 900 400 300\nv 0 400 300\n"
-               "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const CommandResult result = crowd(
-      {"--mesh", "box.obj", "--tets", "60", "--bodies", "1", "--repetitions", "1", "--json", "c.json", "--quiet"});
-  EXPECT_EQ(result.status, 0);
-  EXPECT_TRUE(result.out.empty()) << result.out;
-  EXPECT_TRUE(result.err.empty()) << result.err;
-  EXPECT_EQ(folder.json("c.json")["asleep"], 0);
-  EXPECT_EQ(folder.json("c.json")["vertices"], 8);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
-#include "drop_run.h"
+#include "command.h"
 
 namespace tetskin {
 namespace {
@@ -45,17 +45,6 @@ TEST(Drag, TheSerpentIsPickedWhereAHornEndsInOneVertex) {
       folder.run(TETSKIN_DRAG, {"--tets", "200", "--triangles", "4000", "--frames", "200", "--every", "199"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_GT(folder.json("out/drag/summary.json")["lag_swinging"], 0);
-}
-
-TEST(Drag, TakesAMeshOfTheUsers) {
-  const CommandFolder folder;
-  folder.write("box.obj", test::boxObj());
-  const CommandResult result =
-      folder.run(TETSKIN_DRAG, {"--mesh", "box.obj", "--tets", "60", "--frames", "200", "--every", "199"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto json = folder.json("out/drag/summary.json");
-  EXPECT_EQ(json["triangles"], 12);
-  EXPECT_GT(json["lag_swinging"], 0);
 }
 
 }  // namespace

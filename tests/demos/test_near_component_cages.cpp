@@ -42,24 +42,16 @@ Built build(const TriangleMesh& mesh, test::Plane plane, std::size_t target) {
   return built;
 }
 
-TEST(NearPartCages, KeepProngsApart) {
-  const TriangleMesh mesh = makeSlottedBeam(6000);
-  for (const std::size_t target : {2000, 6000}) {
-    const Built built = build(mesh, slottedBeamPlane(), target);
-    EXPECT_EQ(test::countComponentsBeyond(mesh, built.plane), 2);
-    EXPECT_EQ(test::countComponentsBeyond(built.cage.mesh, built.plane), 2);
-    EXPECT_TRUE(built.cage.hasDuplicates());
-  }
+void expectApart(const TriangleMesh& mesh, const test::Plane& plane, std::size_t target, int limbs) {
+  const Built built = build(mesh, plane, target);
+  EXPECT_EQ(test::countComponentsBeyond(mesh, built.plane), limbs);
+  EXPECT_EQ(test::countComponentsBeyond(built.cage.mesh, built.plane), limbs);
+  EXPECT_TRUE(built.cage.hasDuplicates());
 }
 
-TEST(NearPartCages, KeepFingersApart) {
-  const TriangleMesh mesh = makeHand(6000);
-  for (const std::size_t target : {1000, 3000}) {
-    const Built built = build(mesh, handPlane(), target);
-    EXPECT_EQ(test::countComponentsBeyond(mesh, built.plane), 5);
-    EXPECT_EQ(test::countComponentsBeyond(built.cage.mesh, built.plane), 5);
-    EXPECT_TRUE(built.cage.hasDuplicates());
-  }
+TEST(NearPartCages, KeepProngsAndFingersApart) {
+  for (const std::size_t target : {2000, 6000}) expectApart(makeSlottedBeam(6000), slottedBeamPlane(), target, 2);
+  for (const std::size_t target : {1000, 3000}) expectApart(makeHand(6000), handPlane(), target, 5);
 }
 
 /// Points on a finger's triangles are found in that finger's own tets.

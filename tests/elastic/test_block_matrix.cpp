@@ -67,23 +67,6 @@ TYPED_TEST(BlockMatrixOf, WithoutTetsIsTheMasses) {
   });
 }
 
-TYPED_TEST(BlockMatrixOf, OneRowIsThatOfTheProduct) {
-  onEachInstructionSet([&] {
-    AssembledBody<TypeParam> body(cageForMatrix());
-    const TypeParam across[6] = {4, 0, 0, 0, 0, 4};  // the y axis
-    body.matrix.resist(3, across);
-    const VectorXd x = Random(34).vector(3 * body.nodes.size());
-    const VectorXd image = body.times(x);
-    body.toWide(x, body.matrix.solution());
-    for (std::size_t n = 0; n < body.nodes.size(); ++n) {
-      TypeParam row[3];
-      body.matrix.rowTimesSolution(n, row);
-      const Vector3d difference = image.segment<3>(static_cast<Eigen::Index>(3 * n)) - Vector3d(row[0], row[1], row[2]);
-      EXPECT_LT(difference.norm(), 5.0 * this->kEpsilon * image.norm());
-    }
-  });
-}
-
 TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(cageForMatrix());

@@ -184,13 +184,9 @@ TYPED_TEST(ElasticClaimsOf, ABodyThatIsTurnedByItsHeldNodesFollowsUnstrained) {
 TYPED_TEST(ElasticClaimsOf, PartsThatShareNoNodeSpinByThemselves) {
   TetMesh cage = block();
   const auto first = static_cast<int>(cage.nodeCount());
-  const std::size_t tets = cage.tetCount();
+  const std::vector<Tet> tets = cage.tets;
   for (int n = 0; n < first; ++n) cage.nodes.push_back(cage.nodes[static_cast<std::size_t>(n)] + Vector3d(3, 0, 0));
-  for (std::size_t t = 0; t < tets; ++t) {
-    Tet tet = cage.tets[t];
-    for (int& n : tet) n += first;
-    cage.tets.push_back(tet);
-  }
+  for (const Tet& t : tets) cage.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
   ElasticOptions options;
   options.youngsModulus = 1e9;
   ElasticBody<TypeParam> body = made<TypeParam>(cage, options);

@@ -52,12 +52,29 @@ class TempFolder {
   std::filesystem::path root_;
 };
 
+inline constexpr StatusCode kMalformed = StatusCode::Malformed, kNonFinite = StatusCode::NonFinite,
+                            kIndexOutOfRange = StatusCode::IndexOutOfRange,
+                            kUnsupportedFormat = StatusCode::UnsupportedFormat,
+                            kFileNotFound = StatusCode::FileNotFound, kSizeMismatch = StatusCode::SizeMismatch;
+
+/// The bytes with one to three of them from `first` on set at random.
+inline std::string damaged(std::string bytes, std::mt19937& random, std::size_t first = 0) {
+  for (unsigned k = 0; k <= random() % 3; ++k) {
+    bytes[first + random() % (bytes.size() - first)] = static_cast<char>(random() % 256);
+  }
+  return bytes;
+}
+
 /// Expects the status to have this code, and its message to contain all these strings.
 inline void expectError(const Status& status, StatusCode code, std::initializer_list<std::string> components) {
   EXPECT_STREQ(toString(status.code), toString(code)) << status.message;
   for (const std::string& part : components) {
     EXPECT_NE(status.message.find(part), std::string::npos) << "'" << part << "' is not in: " << status.message;
   }
+}
+template <class Value>
+void expectError(const Result<Value>& result, StatusCode code, std::initializer_list<std::string> components) {
+  expectError(result.status(), code, components);
 }
 
 }  // namespace tetskin::test

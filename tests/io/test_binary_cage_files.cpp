@@ -57,8 +57,8 @@ TEST(BinaryCageFiles, ReadsOverStrings) {
   const Result<Cage> read = loadCageText(text);
   ASSERT_TRUE(read.ok()) << read.status().message;
   EXPECT_EQ(read.value().meshHash, 0xFFFFFFFF00000002u);
-  expectError(loadCageText(with(text, "names 1 5", "names 1 9999")).status(), StatusCode::Malformed, {});
-  expectError(loadCageText(with(text, bigWords({0x40000002}), bigWords({0x7FFFFFFF}))).status(), StatusCode::Malformed,
+  expectError(loadCageText(with(text, "names 1 5", "names 1 9999")), kMalformed, {});
+  expectError(loadCageText(with(text, bigWords({0x40000002}), bigWords({0x7FFFFFFF}))), kMalformed,
               {"c.vtk", "complete"});
 }
 
@@ -78,9 +78,8 @@ TEST(BinaryCageFiles, SurvivesBinaryDataCutShortAnywhere) {
   std::size_t read = 0;
   for (std::size_t length = 0; length < bytes.size(); ++length) read += loadCageText(bytes.substr(0, length)).ok();
   EXPECT_LT(read, 40u);
-  expectError(loadCageText(with(bytes, "mass float", "mass bit")).status(), StatusCode::Malformed,
-              {"'mass' of type 'bit'"});
-  expectError(loadCageText(with(bytes, "VECTORS v float", "VECTORS v bit")).status(), StatusCode::UnsupportedFormat,
+  expectError(loadCageText(with(bytes, "mass float", "mass bit")), kMalformed, {"'mass' of type 'bit'"});
+  expectError(loadCageText(with(bytes, "VECTORS v float", "VECTORS v bit")), kUnsupportedFormat,
               {"'bit'", "save it as ASCII"});
 }
 

@@ -131,10 +131,10 @@ TEST(CageFiles, OnlyVtkKeepsTheMapOfCopies) {
   const TempFolder folder;
   const Cage cage = platesOfCopies().cage;
   for (const char* name : {"c.msh", "c.ele", "c.node"}) {
-    expectError(saveCage(cage, folder.path(name)), StatusCode::UnsupportedFormat,
+    expectError(saveCage(cage, folder.path(name)), kUnsupportedFormat,
                 {folder.path(name), "which duplicate of a tet carries which vertex", "use .vtk"});
   }
-  expectError(saveCage(cage, folder.path("c.xyz")), StatusCode::UnsupportedFormat, {"use .vtk, .node, .ele or .msh"});
+  expectError(saveCage(cage, folder.path("c.xyz")), kUnsupportedFormat, {"use .vtk, .node, .ele or .msh"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 

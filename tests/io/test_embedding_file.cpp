@@ -42,15 +42,14 @@ TEST_F(EmbeddingFile, FitsACageThatWasSavedAndLoaded) {
 
 TEST_F(EmbeddingFile, FaultsNameTheFile) {
   const std::string path = folder.path("saved");
-  expectError(loadEmbedding(path, cage).status(), StatusCode::FileNotFound, {path});
+  expectError(loadEmbedding(path, cage), kFileNotFound, {path});
   expectError(saveEmbedding(embedding, cage, folder.path("no/such/folder")), StatusCode::FileNotWritable, {"folder"});
   ASSERT_TRUE(saveEmbedding(embedding, cage, path).ok());
-  expectError(loadEmbedding(path, latticeCage(2, 2, 2)).status(), StatusCode::CageMismatch, {path, "64 nodes"});
+  expectError(loadEmbedding(path, latticeCage(2, 2, 2)), StatusCode::CageMismatch, {path, "64 nodes"});
   std::string bytes = TempFolder::read(path);
   bytes[100] = static_cast<char>(bytes[100] ^ 1);
-  expectError(loadEmbedding(folder.write("bad", bytes), cage).status(), StatusCode::Malformed, {"bad", "damaged"});
-  expectError(loadEmbedding(folder.write("other", "v 0 0 0\n"), cage).status(), StatusCode::UnsupportedFormat,
-              {"other"});
+  expectError(loadEmbedding(folder.write("bad", bytes), cage), kMalformed, {"bad", "damaged"});
+  expectError(loadEmbedding(folder.write("other", "v 0 0 0\n"), cage), kUnsupportedFormat, {"other"});
 }
 
 }  // namespace

@@ -283,19 +283,19 @@ TEST(GlbWriter, RefusesWhatItCannotHold) {
   points.triangles.clear();
   points.groups.clear();
   const auto none = writer.addModel("points", bar.cage, points, bar.embedding, Interpolation::Linear);
-  expectError(none.status(), StatusCode::Empty, {"a.glb", "points, which has no triangles"});
+  expectError(none, StatusCode::Empty, {"a.glb", "points, which has no triangles"});
   writer.addBody(writer.addModel("bar", bar.cage, bar.mesh, bar.embedding, Interpolation::Linear).value(), "bar");
   Points nodes = bar.cage.mesh.nodes;
-  expectError(writer.addFrame({}), StatusCode::SizeMismatch, {"0 bodies", "has 1"});
-  expectError(writer.addFrame({viewOf(nodes)}, {Eigen::Affine3d::Identity()}), StatusCode::SizeMismatch, {"objects"});
+  expectError(writer.addFrame({}), kSizeMismatch, {"0 bodies", "has 1"});
+  expectError(writer.addFrame({viewOf(nodes)}, {Eigen::Affine3d::Identity()}), kSizeMismatch, {"objects"});
   nodes.pop_back();
-  expectError(writer.addFrame({viewOf(nodes)}), StatusCode::SizeMismatch, {"44 nodes", "45"});
+  expectError(writer.addFrame({viewOf(nodes)}), kSizeMismatch, {"44 nodes", "45"});
   nodes = bar.cage.mesh.nodes;
   nodes[7].y() = std::numeric_limits<double>::quiet_NaN();
-  expectError(writer.addFrame({viewOf(nodes)}), StatusCode::NonFinite, {"a.glb", "node 7 of body 0"});
+  expectError(writer.addFrame({viewOf(nodes)}), kNonFinite, {"a.glb", "node 7 of body 0"});
   expectError(writer.finish(), StatusCode::Empty, {"a.glb", "nothing to show"});
   EXPECT_EQ(folder.fileCount(), 0u);
-  expectError(GlbWriter::create(folder.path("b.glb"), 0.0).status(), StatusCode::InvalidOption, {"frames per second"});
+  expectError(GlbWriter::create(folder.path("b.glb"), 0.0), StatusCode::InvalidOption, {"frames per second"});
 }
 
 TEST(GlbWriter, CallsAfterItsEndAreErrors) {
@@ -321,8 +321,8 @@ TEST(GlbWriter, CallsAfterItsEndAreErrors) {
 
 TEST(GlbWriter, NamesAFolderThatItCannotWriteToBeforeTheRun) {
   const TempFolder folder;
-  expectError(GlbWriter::create(folder.path("no/a.glb"), 60.0).status(), StatusCode::FileNotWritable, {"no/a.glb"});
-  expectError(GlbWriter::create(folder.path(), 60.0).status(), StatusCode::FileNotWritable, {"is a folder"});
+  expectError(GlbWriter::create(folder.path("no/a.glb"), 60.0), StatusCode::FileNotWritable, {"no/a.glb"});
+  expectError(GlbWriter::create(folder.path(), 60.0), StatusCode::FileNotWritable, {"is a folder"});
 }
 
 TEST(GlbWriter, LeavesTheOldFileUntilTheNewOneIsComplete) {

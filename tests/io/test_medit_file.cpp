@@ -42,19 +42,16 @@ TEST(LoadMedit, ReadsTetsOfSecondOrderByTheirCorners) {
 }
 
 TEST(LoadMedit, NamesTheLineOfAFault) {
-  expectError(loadMedit("$MeshFormat\n").status(), StatusCode::Malformed, {"c.mesh:1:", "Medit"});
-  expectError(loadMedit("MeshVersionFormatted 1\nDimension 2\n").status(), StatusCode::UnsupportedFormat,
-              {"c.mesh:2:", "dimension 2"});
-  expectError(loadMedit(kMeditHead + "Vertices\n2000000000\n0 0 0 1\n").status(), StatusCode::Malformed,
-              {"c.mesh:4:", "too short"});
-  expectError(loadMedit(kMeditHead + "Vertices\n2\n0 0 0 1\n0 x 0 1\n").status(), StatusCode::Malformed, {"c.mesh:6:"});
-  expectError(loadMedit(kMeditHead + "Vertices\n1\n0 inf 0 1\n").status(), StatusCode::NonFinite,
-              {"c.mesh:5:", "node 1"});
+  expectError(loadMedit("$MeshFormat\n"), kMalformed, {"c.mesh:1:", "Medit"});
+  expectError(loadMedit("MeshVersionFormatted 1\nDimension 2\n"), kUnsupportedFormat, {"c.mesh:2:", "dimension 2"});
+  expectError(loadMedit(kMeditHead + "Vertices\n2000000000\n0 0 0 1\n"), kMalformed, {"c.mesh:4:", "too short"});
+  expectError(loadMedit(kMeditHead + "Vertices\n2\n0 0 0 1\n0 x 0 1\n"), kMalformed, {"c.mesh:6:"});
+  expectError(loadMedit(kMeditHead + "Vertices\n1\n0 inf 0 1\n"), kNonFinite, {"c.mesh:5:", "node 1"});
   for (const char* tet : {"0 1 2 3", "1 2 3 6", "1 2 3 -5"}) {
-    expectError(loadMedit(kMeditHead + kVertices + "Tetrahedra\n1\n" + tet + " 0\n").status(),
-                StatusCode::IndexOutOfRange, {"c.mesh:12:", "tet 1"});
+    expectError(loadMedit(kMeditHead + kVertices + "Tetrahedra\n1\n" + tet + " 0\n"), kIndexOutOfRange,
+                {"c.mesh:12:", "tet 1"});
   }
-  expectError(loadMedit(kMeditHead + kVertices).status(), StatusCode::Empty, {"c.mesh: ", "no tets"});
+  expectError(loadMedit(kMeditHead + kVertices), StatusCode::Empty, {"c.mesh: ", "no tets"});
 }
 
 }  // namespace

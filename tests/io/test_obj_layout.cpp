@@ -131,11 +131,11 @@ TEST(ObjLayout, ALibraryNameMayGetShorter) {
 TEST(ObjLayout, RefusesWhatIsNoModel) {
   const TempFolder folder;
   const std::string path = folder.path("m.obj");
-  expectError(ObjLayout::load(path).status(), StatusCode::FileNotFound, {path});
+  expectError(ObjLayout::load(path), kFileNotFound, {path});
   folder.write("m.obj", "v 0 0 0\nv 0 0\n");
-  expectError(ObjLayout::load(path).status(), StatusCode::Malformed, {path + ":2:", "3 numbers"});
+  expectError(ObjLayout::load(path), kMalformed, {path + ":2:", "3 numbers"});
   folder.write("m.obj", "f 1 2 3\n");
-  expectError(ObjLayout::load(path).status(), StatusCode::Empty, {path, "no vertices"});
+  expectError(ObjLayout::load(path), StatusCode::Empty, {path, "no vertices"});
 }
 
 TEST(ObjLayoutFor, TakesTheFileIfItIsObjAndElseTheMesh) {
@@ -155,8 +155,7 @@ TEST(ObjLayoutFor, NoticesThatTheFileHasChanged) {
   const std::string path = folder.write("m.obj", kBody);
   const TriangleMesh mesh = loadMesh(path).value();
   folder.write("m.obj", kBody + "v 1 1 1\n");
-  expectError(objLayoutFor(path, mesh).status(), StatusCode::SizeMismatch,
-              {path, "has 4 vertices", "load the mesh again"});
+  expectError(objLayoutFor(path, mesh), kSizeMismatch, {path, "has 4 vertices", "load the mesh again"});
 }
 
 const std::vector<Eigen::Vector3f> kNormals = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
@@ -226,11 +225,10 @@ TEST(ObjLayout, RefusesNormalsThatDoNotBelong) {
   EXPECT_TRUE(withNormals.hasNormals());
   const std::string path = folder.path("out.obj");
   const std::vector<Eigen::Vector3f> two(2, Eigen::Vector3f::UnitX()), bad(3, Eigen::Vector3f::Constant(NAN));
-  expectError(layout.value().writeTo(path, viewOf(kMoved), viewOf(kNormals)), StatusCode::SizeMismatch,
-              {path, "withNormals"});
-  expectError(withNormals.writeTo(path, viewOf(kMoved)), StatusCode::SizeMismatch, {path, "0 normals", "3 vertices"});
-  expectError(withNormals.writeTo(path, viewOf(kMoved), viewOf(two)), StatusCode::SizeMismatch, {path, "2 normals"});
-  expectError(withNormals.writeTo(path, viewOf(kMoved), viewOf(bad)), StatusCode::NonFinite, {path, "vertex 0"});
+  expectError(layout.value().writeTo(path, viewOf(kMoved), viewOf(kNormals)), kSizeMismatch, {path, "withNormals"});
+  expectError(withNormals.writeTo(path, viewOf(kMoved)), kSizeMismatch, {path, "0 normals", "3 vertices"});
+  expectError(withNormals.writeTo(path, viewOf(kMoved), viewOf(two)), kSizeMismatch, {path, "2 normals"});
+  expectError(withNormals.writeTo(path, viewOf(kMoved), viewOf(bad)), kNonFinite, {path, "vertex 0"});
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 

@@ -113,16 +113,14 @@ TEST(ObjSequenceWriter, WritesCurrentNormals) {
   EXPECT_EQ(frame.texcoords.size(), 4u);
   ASSERT_EQ(frame.normals.size(), 4u);
   for (const Eigen::Vector3f& n : frame.normals) EXPECT_TRUE(n.isApprox(normals[0], 1e-6f));
-  expectError(writer.value().write(1, viewOf(kAwkwardPositions)), StatusCode::SizeMismatch,
-              {"frame_0001.obj", "0 normals"});
+  expectError(writer.value().write(1, viewOf(kAwkwardPositions)), kSizeMismatch, {"frame_0001.obj", "0 normals"});
 }
 
 TEST(ObjSequenceWriter, RefusesAnotherNumberOfPositions) {
   const TempFolder folder;
   ObjSequenceWriter writer = makeWriter(folder);
   const std::vector<Eigen::Vector3d> three(3, Eigen::Vector3d::Zero());
-  expectError(writer.write(2, viewOf(three)), StatusCode::SizeMismatch,
-              {"frame_0002.obj", "3 positions", "4 vertices"});
+  expectError(writer.write(2, viewOf(three)), kSizeMismatch, {"frame_0002.obj", "3 positions", "4 vertices"});
   EXPECT_FALSE(std::filesystem::exists(writer.framePath(2)));
 }
 
@@ -131,7 +129,7 @@ TEST(ObjSequenceWriter, RefusesPositionsThatAreNotFinite) {
   ObjSequenceWriter writer = makeWriter(folder);
   std::vector<Eigen::Vector3f> positions(4, Eigen::Vector3f::Zero());
   positions[2][1] = std::numeric_limits<float>::quiet_NaN();
-  expectError(writer.write(2, viewOf(std::as_const(positions))), StatusCode::NonFinite, {"frame_0002.obj", "vertex 2"});
+  expectError(writer.write(2, viewOf(std::as_const(positions))), kNonFinite, {"frame_0002.obj", "vertex 2"});
   EXPECT_FALSE(std::filesystem::exists(writer.framePath(2)));
 }
 
@@ -140,8 +138,8 @@ TEST(ObjSequenceWriter, NamesAFolderThatCannotBeMade) {
   const std::string blocked = folder.write("file", "not a folder") + "/out";
   Result<ObjLayout> layout = ObjLayout::load(folder.write("m.obj", kModel));
   ASSERT_TRUE(layout.ok());
-  expectError(ObjSequenceWriter::create(blocked, layout.value()).status(), StatusCode::FileNotWritable, {blocked});
-  expectError(ObjSequenceWriter::create(folder.path("file"), layout.value()).status(), StatusCode::FileNotWritable,
+  expectError(ObjSequenceWriter::create(blocked, layout.value()), StatusCode::FileNotWritable, {blocked});
+  expectError(ObjSequenceWriter::create(folder.path("file"), layout.value()), StatusCode::FileNotWritable,
               {folder.path("file"), "choose another"});
 }
 

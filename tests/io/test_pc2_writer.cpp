@@ -76,14 +76,14 @@ TEST(Pc2Writer, RefusesWhatItCannotHold) {
   Pc2Writer writer = pc2WriterOf(folder.path("a.pc2"));
   std::vector<Eigen::Vector3f> bad = kFloats;
   bad.pop_back();
-  expectError(writer.addFrame(viewOf(std::as_const(bad))), StatusCode::SizeMismatch, {"1 positions", "2 vertices"});
+  expectError(writer.addFrame(viewOf(std::as_const(bad))), kSizeMismatch, {"1 positions", "2 vertices"});
   bad = kFloats;
   bad[1].z() = std::numeric_limits<float>::infinity();
-  expectError(writer.addFrame(viewOf(std::as_const(bad))), StatusCode::NonFinite, {"vertex 1 in frame 0"});
+  expectError(writer.addFrame(viewOf(std::as_const(bad))), kNonFinite, {"vertex 1 in frame 0"});
   expectError(writer.finish(), StatusCode::Empty, {"a.pc2", "without frames"});
   EXPECT_EQ(folder.fileCount(), 0u);
-  expectError(Pc2Writer::create("/dev/null", 2).status(), StatusCode::FileNotWritable, {"no regular file"});
-  expectError(Pc2Writer::create(folder.path("no/a.pc2"), 2).status(), StatusCode::FileNotWritable, {"no/a.pc2"});
+  expectError(Pc2Writer::create("/dev/null", 2), StatusCode::FileNotWritable, {"no regular file"});
+  expectError(Pc2Writer::create(folder.path("no/a.pc2"), 2), StatusCode::FileNotWritable, {"no/a.pc2"});
 }
 
 TEST(Pc2Writer, CallsAfterItsEndAreErrors) {

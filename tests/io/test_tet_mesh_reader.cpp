@@ -22,17 +22,15 @@ TEST(LoadTetMesh, TellsTheFormatByTheExtensionInAnyCase) {
 }
 
 TEST(LoadTetMesh, RefusesOtherFormatsByName) {
-  const StatusCode code = StatusCode::UnsupportedFormat;
-  expectError(loadTetMesh("cage.vtu").status(), code, {"cage.vtu", "XML", "save it as legacy VTK"});
-  expectError(loadTetMesh("cage.xyz").status(), code, {"cage.xyz", ".node", ".msh", ".mesh"});
-  expectError(loadTetMesh("cage").status(), code, {"cage: "});
+  expectError(loadTetMesh("cage.vtu"), kUnsupportedFormat, {"cage.vtu", "XML", "save it as legacy VTK"});
+  expectError(loadTetMesh("cage.xyz"), kUnsupportedFormat, {"cage.xyz", ".node", ".msh", ".mesh"});
+  expectError(loadTetMesh("cage"), kUnsupportedFormat, {"cage: "});
 }
 
 TEST(LoadTetMesh, NamesAMissingFile) {
   const TempFolder folder;
   for (const char* name : {"c.vtk", "c.msh", "c.node", "c.ele", "c.mesh"}) {
-    expectError(loadTetMesh(folder.path(name)).status(), StatusCode::FileNotFound,
-                {folder.path("c."), "check the path"});
+    expectError(loadTetMesh(folder.path(name)), kFileNotFound, {folder.path("c."), "check the path"});
   }
 }
 

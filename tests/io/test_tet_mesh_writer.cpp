@@ -67,8 +67,7 @@ TEST(SaveTetMesh, TetgenCountsFromZero) {
 
 TEST(SaveTetMesh, RefusesOtherFormats) {
   const TempFolder folder;
-  expectError(saveTetMesh(awkwardMesh(), folder.path("c.vtu")), StatusCode::UnsupportedFormat,
-              {folder.path("c.vtu"), "use .vtk"});
+  expectError(saveTetMesh(awkwardMesh(), folder.path("c.vtu")), kUnsupportedFormat, {folder.path("c.vtu"), "use .vtk"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 
@@ -78,10 +77,10 @@ TEST(SaveTetMesh, RefusesMeshesThatCouldNotBeRead) {
   TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0, 0, 1}}, {}};
   expectError(saveTetMesh(mesh, path), StatusCode::Empty, {path, "without tets"});
   mesh.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}};
-  expectError(saveTetMesh(mesh, path), StatusCode::IndexOutOfRange, {path, "tet 1 refers to node 4"});
+  expectError(saveTetMesh(mesh, path), kIndexOutOfRange, {path, "tet 1 refers to node 4"});
   mesh.tets = {{0, 1, 2, 3}};
   mesh.nodes[2][1] = std::numeric_limits<double>::infinity();
-  expectError(saveTetMesh(mesh, path), StatusCode::NonFinite, {path, "node 2"});
+  expectError(saveTetMesh(mesh, path), kNonFinite, {path, "node 2"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 

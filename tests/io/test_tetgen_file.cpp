@@ -37,7 +37,7 @@ TEST(LoadTetgen, ReadsTheLineEndsOfOldMacs) {
 }
 
 TEST(LoadTetgen, NamesTheLineOfACoordinateThatIsTooFar) {
-  expectError(loadTetgen("4 3\n0 0 0 0\n1 1 0 0\n2 0 1e31 0\n3 0 0 1\n", kEleFile).status(), StatusCode::NonFinite,
+  expectError(loadTetgen("4 3\n0 0 0 0\n1 1 0 0\n2 0 1e31 0\n3 0 0 1\n", kEleFile), kNonFinite,
               {"c.1.node:4:", "node 2", "beyond 1e18", "Correct it"});
 }
 
@@ -70,47 +70,42 @@ TEST(LoadTetgen, TakesTheCornersOfTetsWithTenNodes) {
 
 TEST(LoadTetgen, NamesTheFileThatIsMissing) {
   const TempFolder folder;
-  expectError(loadTetMesh(folder.write("c.node", kNodeFile)).status(), StatusCode::FileNotFound,
-              {folder.path("c.ele")});
-  expectError(loadTetMesh(folder.write("d.ele", kEleFile)).status(), StatusCode::FileNotFound, {folder.path("d.node")});
+  expectError(loadTetMesh(folder.write("c.node", kNodeFile)), kFileNotFound, {folder.path("c.ele")});
+  expectError(loadTetMesh(folder.write("d.ele", kEleFile)), kFileNotFound, {folder.path("d.node")});
 }
 
 TEST(LoadTetgen, NamesTheLineOfAnIndexOutOfRange) {
-  expectError(loadTetgen(kNodeFile, "# c\n2 4 0\n0 0 1 2 3\n1 1 2 3 5\n").status(), StatusCode::IndexOutOfRange,
+  expectError(loadTetgen(kNodeFile, "# c\n2 4 0\n0 0 1 2 3\n1 1 2 3 5\n"), kIndexOutOfRange,
               {"c.1.ele:4:", "tet 1", "node 5", "counted from 0"});
-  expectError(loadTetgen("1 3\n1 0 0 0\n", "1 4\n1 0 1 1 1\n").status(), StatusCode::IndexOutOfRange,
+  expectError(loadTetgen("1 3\n1 0 0 0\n", "1 4\n1 0 1 1 1\n"), kIndexOutOfRange,
               {"c.1.ele:2:", "node 0", "counted from 1"});
 }
 
 TEST(LoadTetgen, NamesTheLineOfMalformedText) {
-  const StatusCode code = StatusCode::Malformed;
-  expectError(loadTetgen("", kEleFile).status(), code, {"c.1.node:", "TetGen"});
-  expectError(loadTetgen("nodes\n", kEleFile).status(), code, {"c.1.node:1:", "TetGen"});
-  expectError(loadTetgen("2 3\n0 0 0 0\n1 0 zero 0\n", kEleFile).status(), code, {"c.1.node:3:", "node 1 of 2"});
-  expectError(loadTetgen("2 3\n0 0 0 0\n3 0 0 0\n", kEleFile).status(), code, {"c.1.node:3:", "node 3 out of order"});
-  expectError(loadTetgen("1 3\n2 0 0 0\n", kEleFile).status(), code, {"c.1.node:2:", "out of order"});
-  expectError(loadTetgen("2 3\n0 0.25 0.25 0.25\n", kEleFile).status(), code, {"c.1.node:", "node 1 of 2", "complete"});
-  expectError(loadTetgen(kNodeFile, "2 4 0\n0 0 1 2 3 # and no more\n").status(), code,
-              {"c.1.ele:", "tet 1", "complete"});
-  expectError(loadTetgen(kNodeFile, "1 4 0\n0 0 1 2\n").status(), code, {"c.1.ele:2:", "tet 0"});
-  expectError(loadTetgen(kNodeFile, "1 8 0\n0 0 1 2 3 4 0 1 2\n").status(), code, {"c.1.ele:1:", "8 nodes"});
+  expectError(loadTetgen("", kEleFile), kMalformed, {"c.1.node:", "TetGen"});
+  expectError(loadTetgen("nodes\n", kEleFile), kMalformed, {"c.1.node:1:", "TetGen"});
+  expectError(loadTetgen("2 3\n0 0 0 0\n1 0 zero 0\n", kEleFile), kMalformed, {"c.1.node:3:", "node 1 of 2"});
+  expectError(loadTetgen("2 3\n0 0 0 0\n3 0 0 0\n", kEleFile), kMalformed, {"c.1.node:3:", "node 3 out of order"});
+  expectError(loadTetgen("1 3\n2 0 0 0\n", kEleFile), kMalformed, {"c.1.node:2:", "out of order"});
+  expectError(loadTetgen("2 3\n0 0.25 0.25 0.25\n", kEleFile), kMalformed, {"c.1.node:", "node 1 of 2", "complete"});
+  expectError(loadTetgen(kNodeFile, "2 4 0\n0 0 1 2 3 # and no more\n"), kMalformed, {"c.1.ele:", "tet 1", "complete"});
+  expectError(loadTetgen(kNodeFile, "1 4 0\n0 0 1 2\n"), kMalformed, {"c.1.ele:2:", "tet 0"});
+  expectError(loadTetgen(kNodeFile, "1 8 0\n0 0 1 2 3 4 0 1 2\n"), kMalformed, {"c.1.ele:1:", "8 nodes"});
 }
 
 TEST(LoadTetgen, RefusesCountsThatDoNotFit) {
-  const StatusCode code = StatusCode::Malformed;
-  expectError(loadTetgen("2000000000 3\n0 0 0 0\n", kEleFile).status(), code, {"c.1.node:1:", "too short"});
-  expectError(loadTetgen("18446744073709551615 3\n", kEleFile).status(), code, {"c.1.node:1:", "too short"});
-  expectError(loadTetgen(kNodeFile, "4000000000 4\n0 0 1 2 3\n").status(), code, {"c.1.ele:1:", "too short"});
+  expectError(loadTetgen("2000000000 3\n0 0 0 0\n", kEleFile), kMalformed, {"c.1.node:1:", "too short"});
+  expectError(loadTetgen("18446744073709551615 3\n", kEleFile), kMalformed, {"c.1.node:1:", "too short"});
+  expectError(loadTetgen(kNodeFile, "4000000000 4\n0 0 1 2 3\n"), kMalformed, {"c.1.ele:1:", "too short"});
 }
 
 TEST(LoadTetgen, NamesTheLineOfACoordinateThatIsNotFinite) {
-  expectError(loadTetgen("1 3\n0 0 inf 0\n", kEleFile).status(), StatusCode::NonFinite, {"c.1.node:2:", "node 0"});
+  expectError(loadTetgen("1 3\n0 0 inf 0\n", kEleFile), kNonFinite, {"c.1.node:2:", "node 0"});
 }
 
 TEST(LoadTetgen, RefusesPlaneMeshesAndMeshesWithoutTets) {
-  expectError(loadTetgen("1 2\n0 0 0\n", kEleFile).status(), StatusCode::UnsupportedFormat,
-              {"c.1.node:1:", "dimension 2"});
-  expectError(loadTetgen(kNodeFile, "0 4 0\n").status(), StatusCode::Empty, {"c.1.ele: ", "no tets"});
+  expectError(loadTetgen("1 2\n0 0 0\n", kEleFile), kUnsupportedFormat, {"c.1.node:1:", "dimension 2"});
+  expectError(loadTetgen(kNodeFile, "0 4 0\n"), StatusCode::Empty, {"c.1.ele: ", "no tets"});
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ struct PointContact {
   btVector3 position;                         ///< when the step begins
   btVector3 normal;                           ///< away from the object, of unit length
   btScalar distance = 0;                      ///< along the normal, when the step begins, minus the distance to be kept
-  btScalar friction = 0;                      ///< coefficient of the pair
+  btScalar predicted = 0;  ///< the distance that the step would reach without contact; of rigid objects only
+  btScalar friction = 0;   ///< coefficient of the pair
   /// The impulse of the object on the soft body in the step: force times seconds. Written by the solver.
   btVector3 impulse{0, 0, 0};
 };

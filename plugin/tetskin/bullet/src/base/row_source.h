@@ -14,6 +14,12 @@ class btSoftBody;
 
 namespace tetskin::bullet_detail {
 
+/// The product a a^T, which projects to the direction of a vector of unit length.
+inline btMatrix3x3 outerSquare(const btVector3& a) {
+  return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
+          a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
+}
+
 /// A constraint between a point of a soft body and a point of a rigid object, or a point in space. World space.
 struct PointJoint {
   btSoftBody* body = nullptr;

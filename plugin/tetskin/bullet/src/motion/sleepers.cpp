@@ -38,7 +38,7 @@ Neighbour neighbourOf(const btCollisionObject& object) {
   neighbour.isObstacle = object.isStaticOrKinematicObject();
   neighbour.stands = neighbour.isObstacle || (!object.isActive() && !neighbour.isSoft);
   neighbour.transform = object.getWorldTransform();
-  neighbour.shape = object.getCollisionShape();
+  if (neighbour.isObstacle) neighbour.shape = ShapeKey::of(*object.getCollisionShape());
   neighbour.friction = object.getFriction();
   if (const btBroadphaseProxy* proxy = object.getBroadphaseHandle()) {
     neighbour.low = proxy->m_aabbMin;
@@ -47,14 +47,12 @@ Neighbour neighbourOf(const btCollisionObject& object) {
   return neighbour;
 }
 
-/// True if a neighbour has changed. Boxes of objects that can move also contain their path, so that they are not
-/// compared.
+/// True if a neighbour has changed.
 bool wasChanged(const Neighbour& before, const Neighbour& now) {
   if (before.isObstacle != now.isObstacle) return true;
   if (!before.stands || !now.stands) return false;
   if (!(before.transform == now.transform) || before.friction != now.friction) return true;
-  const bool sameBox = before.low == now.low && before.high == now.high;
-  return now.isObstacle && !(before.shape == now.shape && sameBox);
+  return now.isObstacle && before.shape != now.shape;
 }
 
 /// True if the neighbour has not changed. The box of a body that falls asleep shrinks, and may then no longer overlap

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/base/shape_key.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +27,7 @@ struct Neighbour {
   bool isObstacle = false;  ///< static or kinematic
   bool stands = false;      ///< does not move by itself: obstacles, and sleeping rigid bodies
   btTransform transform = btTransform::getIdentity();
-  const btCollisionShape* shape = nullptr;
+  ShapeKey shape;
   btScalar friction = 0;
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< its box in the broadphase
 };

@@ -8,12 +8,6 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// The outer product a a^T.
-btMatrix3x3 square(const btVector3& a) {
-  return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
-          a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
-}
-
 btVector3 jointImpulse(const ContactRow& row, const btVector3& u, ContactRow::State& state) {
   assert(row.joined && row.highest >= 0);
   const btVector3 wanted = -row.stiffness * (row.directions * (u + row.offsetVelocity));
@@ -27,7 +21,7 @@ btMatrix3x3 jointTangent(const ContactRow& row, const btVector3& u, ContactRow::
   if (state == ContactRow::State::Sticks) return row.directions * row.stiffness;
   const btVector3 direction = row.directions * (u + row.offsetVelocity);
   const btScalar length = std::max(direction.length(), SIMD_EPSILON);
-  return (row.directions - square(direction / length) * (1 - kept)) * (row.highest / length);
+  return (row.directions - outerSquare(direction / length) * (1 - kept)) * (row.highest / length);
 }
 
 /// The velocity along the surface, including the one that would undo the offset within the step.
@@ -65,14 +59,14 @@ btMatrix3x3 tangentAt(const ContactRow& row, const btVector3& u, ContactRow::Sta
   const btMatrix3x3 one = btMatrix3x3::getIdentity();
   if (row.joined) return jointTangent(row, u, state, kept);
   if (state == State::Apart) return one * btScalar(0);
-  const btMatrix3x3 across = one - square(row.normal);
+  const btMatrix3x3 across = one - outerSquare(row.normal);
   btMatrix3x3 along = across * row.tangentStiffness;
   if (state == State::Slides) {
     const btVector3 slipping = slip(row, u);
     const btScalar speed = std::max(slipping.length(), SIMD_EPSILON);
-    along = (across - square(slipping / speed) * (1 - kept)) * (row.friction * row.normalBound / speed);
+    along = (across - outerSquare(slipping / speed) * (1 - kept)) * (row.friction * row.normalBound / speed);
   }
-  return square(row.normal) * row.stiffness + along;
+  return outerSquare(row.normal) * row.stiffness + along;
 }
 
 }  // namespace tetskin::bullet_detail

@@ -5,6 +5,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/rows/rigid_unknowns.h>
+#include <tetskin/core/src/base/cross_matrix.h>
 
 #include <Eigen/Geometry>
 #include <cassert>
@@ -15,13 +16,6 @@ namespace {
 
 /// By how much Bullet's velocities of kinematic bodies may be off: radians per step, and a fraction of the velocity.
 constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
-
-/// The matrix of the cross product with a.
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d m;
-  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return m;
-}
 
 /// The Jacobian of a point of a rigid body.
 Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {

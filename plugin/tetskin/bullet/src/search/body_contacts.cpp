@@ -165,35 +165,22 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   // Points count as touching a mesh up to some depth behind it, and a shape that turns leaves the box on its way.
   const WorldBox around = box.grownBy((shape.isConcave() ? thickness_ : btScalar(0)) + beyondBox(shape, path));
   bool touches = false;
-  for (const ContactCandidate& touch : search_.find(*probe, path, memoryOf(known), &around)) {
-    if (passesOver(search_.patches().patches[touch.patch])) continue;
-    addContact(touch, object);
+  for (const PointContact& touch : search_.find(*probe, path, memoryOf(known), &around)) {
+    if (passesOver(touch.at)) continue;
+    PointContact& contact = body_.pointContacts().emplace_back(touch);
+    contact.body = &body_;
+    contact.object = &object;
+    contact.friction = body_.m_cfg.kDF * object.getFriction();
     touches = true;
   }
   if (touches && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
 }
 
 /// Anchors hold nodes where they are, and what is pinned does not move.
-bool BodyContacts::passesOver(const ContactPatch& patch) const {
-  if (patch.nodeCount > 1) return false;
-  const btSoftBody::Node& node = body_.m_nodes[search_.patches().nodes[patch.firstNode]];
+bool BodyContacts::passesOver(const CarriedPoint& point) const {
+  if (point.count > 1) return false;
+  const btSoftBody::Node& node = body_.m_nodes[point.nodes[0]];
   return node.m_battach != 0 || !(node.m_im > 0);
-}
-
-void BodyContacts::addContact(const ContactCandidate& touch, const btCollisionObject& object) {
-  assert(touch.patch < search_.patches().patches.size());
-  const ContactPatches& patches = search_.patches();
-  const ContactPatch& patch = patches.patches[touch.patch];
-  assert(touch.point >= patch.firstPoint && touch.point - patch.firstPoint < patch.numberCount());
-  PointContact& contact = body_.pointContacts().emplace_back();
-  contact.body = &body_;
-  contact.point = touch.point;
-  contact.object = &object;
-  contact.at = patches.carriedPoint(patch, touch.point - patch.firstPoint);
-  contact.position = touch.position;
-  contact.normal = touch.normal;
-  contact.distance = touch.distance;
-  contact.friction = body_.m_cfg.kDF * object.getFriction();
 }
 
 /// The numbers of the children near the body, ascending. In the compound's space, the paths of all the body's points
@@ -243,17 +230,13 @@ void BodyContacts::forgetUnused(KnownObject& object) {
 
 KnownShape& BodyContacts::knownShape(const btCollisionShape& shape, std::uint64_t number,
                                      const btCollisionObject& object) {
-  btVector3 low, high;
-  shape.getAabb(btTransform::getIdentity(), low, high);
   KnownObject& all = known_[&object];
   KnownShape& known = all.shapes[number];
-  if (known.shape != &shape || known.low != low || known.high != high) {
+  if (const ShapeKey key = ShapeKey::of(shape); known.key != key) {
+    known.key = key;
     known.memory = {};
     known.hull = nullptr;
   }
-  known.shape = &shape;
-  known.low = low;
-  known.high = high;
   known.lastStep = all.step;
   return known;
 }

@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/shape_key.h>
 #include <tetskin/bullet/src/search/convex_probe.h>
 #include <tetskin/bullet/src/search/hull_probe.h>
 #include <tetskin/bullet/src/search/mesh_probe.h>
@@ -22,11 +23,10 @@ namespace tetskin::bullet_detail {
 
 /// What is stored about one shape of one object.
 struct KnownShape {
-  const btCollisionShape* shape = nullptr;
-  btVector3 low = {0, 0, 0}, high = {0, 0, 0};  ///< its box: if it differs, the shape is another one
-  std::shared_ptr<const HullFaces> hull;        ///< of a convex hull: its faces, kept for the probe
-  unsigned lastStep = 0;                        ///< last step in which it was near
-  bool isRemembered = false;                    ///< it has an entry in `memory`
+  ShapeKey key;
+  std::shared_ptr<const HullFaces> hull;  ///< of a convex hull: its faces, kept for the probe
+  unsigned lastStep = 0;                  ///< last step in which it was near
+  bool isRemembered = false;              ///< it has an entry in `memory`
   ShapeMemory memory;
 };
 
@@ -68,12 +68,11 @@ class BodyContacts {
     ShapePath path;
   };
   void search(const Met& met);
-  bool passesOver(const ContactPatch& patch) const;
+  bool passesOver(const CarriedPoint& point) const;
   void readNodes();
   void collideShape(const btCollisionShape& shape, std::uint64_t number, const ShapePath& path,
                     const btCollisionObject& object);
   std::vector<int> childrenNear(const btCompoundShape& compound, const ShapePath& path) const;
-  void addContact(const ContactCandidate& touch, const btCollisionObject& object);
   WorldBox boxAround(const btCollisionShape& shape, const ShapePath& path) const;
   bool isNear(const WorldBox& box) const;
   KnownShape& knownShape(const btCollisionShape& shape, std::uint64_t number, const btCollisionObject& object);

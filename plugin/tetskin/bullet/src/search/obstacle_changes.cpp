@@ -5,7 +5,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Most shapes whose boxes are kept; beyond it, all are forgotten, since shapes may have been destroyed.
+/// Most shapes that are known; beyond it, all are forgotten, since shapes may have been destroyed.
 constexpr std::size_t kMaxShapes = 10'000;
 
 }  // namespace
@@ -14,12 +14,11 @@ void ObstacleChanges::syncRigidObject(btSoftBody& body, const btCollisionObjectW
   auto& object = const_cast<btCollisionObject&>(*rigid.getCollisionObject());
   if (object.isStaticObject() || !object.isActive()) object.setInterpolationWorldTransform(object.getWorldTransform());
   const btCollisionShape* shape = rigid.getCollisionShape();
-  Box box;
-  shape->getAabb(btTransform::getIdentity(), box.first, box.second);
-  if (boxes_.size() > kMaxShapes) boxes_.clear();
-  const auto [known, isNew] = boxes_.emplace(shape, box);
-  if (isNew || known->second == box) return;
-  known->second = box;
+  const ShapeKey key = ShapeKey::of(*shape);
+  if (known_.size() > kMaxShapes) known_.clear();
+  const auto [known, isNew] = known_.emplace(shape, key);
+  if (isNew || known->second == key) return;
+  known->second = key;
   body.getWorldInfo()->m_sparsesdf.RemoveReferences(const_cast<btCollisionShape*>(shape));
 }
 

@@ -7,9 +7,9 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/base/shape_key.h>
 
 #include <unordered_map>
-#include <utility>
 
 namespace tetskin::bullet_detail {
 
@@ -22,8 +22,7 @@ class ObstacleChanges {
   void syncRigidObject(btSoftBody& body, const btCollisionObjectWrapper& rigid);
 
  private:
-  using Box = std::pair<btVector3, btVector3>;
-  std::unordered_map<const btCollisionShape*, Box> boxes_;  ///< in the shape's space
+  std::unordered_map<const btCollisionShape*, ShapeKey> known_;
 };
 
 }  // namespace tetskin::bullet_detail

@@ -67,8 +67,8 @@ void PointCollider::readClusters() {
   assert(c == 0);
 }
 
-const std::vector<ContactCandidate>& PointCollider::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
-                                                         const WorldBox* around) {
+const PointContacts& PointCollider::find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
+                                         const WorldBox* around) {
   assert(nodes_);
   probe_ = &probe;
   shape_ = shape;
@@ -109,7 +109,7 @@ bool PointCollider::searchNode(std::size_t node, const WorldBox* near) {
 
 void PointCollider::rememberTouched() {
   memory_->touched.clear();
-  for (const ContactCandidate& touch : touches_) memory_->touched.push_back(touch.point);
+  for (const PointContact& touch : touches_) memory_->touched.push_back(touch.point);
   std::sort(memory_->touched.begin(), memory_->touched.end());
 }
 
@@ -273,7 +273,7 @@ btScalar PointCollider::searchPoints(const ContactPatch& patch) {
     const btScalar height = std::min(now, predicted) - reach_;
     clear = std::min(clear, height > 0 ? height : touch(patch, p));
   }
-  chooseTouches(first);
+  finishPatch(patch, first);
   return clear;
 }
 
@@ -300,43 +300,49 @@ btScalar PointCollider::touch(const ContactPatch& patch, std::uint32_t point) {
   const PathState state = decidingState(*probe_, path, margin_, reach_, met);
   if (!(state.distance.distance < BT_LARGE_FLOAT)) return state.clear;
   const btVector3& normal = state.distance.normal;
-  ContactCandidate touch;
+  PointContact touch;
   touch.distance = heightAbove(state, path.now) - margin_;
   touch.predicted = touch.distance + normal.dot(path.predicted - path.now);
   // A point that is too near is pushed out, whatever its direction of motion.
   if (!(touch.predicted < speculation_ || touch.distance < speculation_)) return 0;
   touch.position = shape_.now * path.now;
   touch.normal = shape_.now.getBasis() * normal;
-  touch.patch = static_cast<std::uint32_t>(&patch - patches_.patches.data());
   touch.point = patch.firstPoint + point;
   touches_.push_back(touch);
   return 0;
 }
 
+/// first  index of the patch's first touch
+void PointCollider::finishPatch(const ContactPatch& patch, std::size_t first) {
+  chooseTouches(patch, first);
+  for (std::size_t k = first; k < touches_.size(); ++k) {
+    touches_[k].at = patches_.carriedPoint(patch, touches_[k].point - patch.firstPoint);
+  }
+}
+
 /// Chooses points of the patch: first the deepest one, and then the ones farthest from those already chosen. Points
 /// that touched in the step before get an advantage, so that the choice does not change from step to step: a resting
 /// body sticks at these points.
-void PointCollider::chooseTouches(std::size_t first) {
+void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) {
   assert(first <= touches_.size());
   if (touches_.size() - first <= 2) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto lead = [&](const ContactCandidate& touch) {
+  const auto lead = [&](const PointContact& touch) {
     const bool known = std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
     return known ? kSpacing * slack_ : btScalar(0);
   };
   chosen_.clear();
-  auto next = std::min_element(begin, touches_.end(), [&](const ContactCandidate& a, const ContactCandidate& b) {
+  auto next = std::min_element(begin, touches_.end(), [&](const PointContact& a, const PointContact& b) {
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
   // The patch lies or slides on a plane. A patch that falls onto one does not qualify: points between the chosen ones
   // would penetrate.
-  const bool flat = std::all_of(begin, touches_.end(), [&](const ContactCandidate& touch) {
+  const bool flat = std::all_of(begin, touches_.end(), [&](const PointContact& touch) {
     return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < kCalmFall * slack_;
   });
   const std::size_t few = first < kManyTouches ? kMinTouches : 2;
-  const bool onTriangle = patches_.patches[begin->patch].isTriangle();
-  const std::size_t enough = flat ? few : (onTriangle ? kTriangleTouches : kMaxTouches);
+  const std::size_t enough = flat ? few : (patch.isTriangle() ? kTriangleTouches : kMaxTouches);
   const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
   for (;;) {
     chosen_.push_back(*next);

@@ -22,16 +22,6 @@ struct ShapePath {
 /// An upper bound of the change of a unit vector between two rotations.
 btScalar turnBetween(const btMatrix3x3& a, const btMatrix3x3& b);
 
-/// A point of the surface that would penetrate if nothing stopped it.
-struct ContactCandidate {
-  std::uint32_t patch = 0;  ///< index in ContactPatches
-  std::uint32_t point = 0;  ///< number of the point
-  btVector3 position;       ///< current position, world space
-  btVector3 normal;         ///< of the shape where the point touches it, world space
-  btScalar distance = 0;    ///< current distance along the normal, minus the margin
-  btScalar predicted = 0;   ///< distance at the end of the step; one of the two is below 0, or hardly above
-};
-
 using WorldBox = BvhBox<btScalar>;
 
 class BoxOfPaths {
@@ -94,12 +84,12 @@ class PointCollider {
   /// margin       kept from shapes
   /// speculation  height above the margin up to which points still touch
   void begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation);
-  /// The points of the body that touch this shape, patch by patch: the deepest points of each patch, and others so far
-  /// apart that none is missed, at most kMaxTouches, or kTriangleTouches. Valid until the next call.
-  /// memory  of the same shape, or an empty one
-  /// around  a box around the shape on its path, world space; null: it may be anywhere
-  const std::vector<ContactCandidate>& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
-                                            const WorldBox* around = nullptr);
+  /// The points of the body that would penetrate this shape if nothing stopped them, patch by patch, without object:
+  /// the deepest points of each patch, and others so far apart that none is missed, at most kMaxTouches, or
+  /// kTriangleTouches. Valid until the next call. memory  of the same shape, or an empty one around  a box around the
+  /// shape on its path, world space; null: it may be anywhere
+  const PointContacts& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
+                            const WorldBox* around = nullptr);
 
  private:
   void readClusters();
@@ -125,7 +115,8 @@ class PointCollider {
   NodePath sampleAt(const ContactPatch& patch, int i, int j) const;
   NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
   btScalar touch(const ContactPatch& patch, std::uint32_t point);
-  void chooseTouches(std::size_t first);
+  void finishPatch(const ContactPatch& patch, std::size_t first);
+  void chooseTouches(const ContactPatch& patch, std::size_t first);
   void rememberTouched();
 
   ContactPatches patches_;
@@ -141,7 +132,7 @@ class PointCollider {
   ShapeMemory* memory_ = nullptr;
   ShapePath shape_, toShape_;
   btScalar turn_ = 0;  ///< by how much the shape's rotation moves a point at distance 1
-  std::vector<ContactCandidate> touches_, chosen_;
+  PointContacts touches_, chosen_;
   std::vector<btScalar> apart_;                    ///< by touching point of a patch: distance from the chosen ones
   std::vector<NodePath> local_;                    ///< by node of the cluster; shape space
   std::array<NodePath, kMaxCarriers> carriers_;    ///< of the patch

@@ -48,7 +48,7 @@ btScalar PointCollider::searchTriangle(const ContactPatch& patch, const ShapeBou
   }
   const std::size_t first = touches_.size();
   const btScalar clear = searchPart(patch, {0, 0, static_cast<int>(patch.divisions)}, clusterBound);
-  chooseTouches(first);
+  finishPatch(patch, first);
   return clear;
 }
 

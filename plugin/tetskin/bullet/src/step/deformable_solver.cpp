@@ -13,14 +13,6 @@
 #include <cassert>
 
 namespace tetskin {
-namespace {
-
-template <class Constraint>
-void dropAll(btAlignedObjectArray<Constraint>& constraints) {
-  while (constraints.size() > 0) constraints.pop_back();
-}
-
-}  // namespace
 
 DeformableSolver::DeformableSolver() : impl_(std::make_unique<Impl>(*this)) {
   m_useProjection = true;
@@ -111,9 +103,9 @@ void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
   for (std::size_t b = 0; b < impl_->bodies.bodies().size(); ++b) {
     if (!impl_->bodies.bodies()[b].elastic) continue;
     const auto at = static_cast<int>(b);
-    dropAll(projection.m_nodeRigidConstraints[at]);
-    dropAll(projection.m_nodeAnchorConstraints[at]);
-    dropAll(projection.m_faceRigidConstraints[at]);
+    destroyAll(projection.m_nodeRigidConstraints[at]);
+    destroyAll(projection.m_nodeAnchorConstraints[at]);
+    destroyAll(projection.m_faceRigidConstraints[at]);
   }
 }
 

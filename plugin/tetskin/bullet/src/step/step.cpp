@@ -98,13 +98,6 @@ void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
   }
 }
 
-/// Clears the list and destroys each contact, as contacts with multibodies own memory. resize(0) would do the same with
-/// a default contact, for which GCC warns.
-template <class Contact>
-void destroyAll(btAlignedObjectArray<Contact>& contacts) {
-  while (contacts.size() > 0) contacts.pop_back();
-}
-
 void clearContacts(btSoftBody& body) {
   destroyAll(body.m_nodeRigidContacts);
   destroyAll(body.m_faceRigidContacts);

@@ -38,6 +38,13 @@ class StepObjects {
   std::vector<Noted> noted_;
 };
 
+/// Clears a list of Bullet's and destroys its elements, as those about multibodies own memory. resize(0) would do the
+/// same with a default element, for which GCC warns.
+template <class Element>
+void destroyAll(btAlignedObjectArray<Element>& elements) {
+  while (elements.size() > 0) elements.pop_back();
+}
+
 /// Lets Bullet find the islands anew. It keeps their objects by index in the world's list, and would otherwise read,
 /// and put to sleep, objects that have been removed from it since.
 void findIslands(btDeformableMultiBodyDynamicsWorld& world);

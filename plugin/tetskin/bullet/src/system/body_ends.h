@@ -19,6 +19,8 @@ struct BodyEnd {
   std::uint32_t row = 0;              ///< in the system's rows
   std::uint32_t index = 0;            ///< 0 or 1: which of the row's ends
   std::uint32_t first = 0, last = 0;  ///< its nodes, in `BodyEnds`
+  /// Whether the row couples its body to another one, or to the reduced unknowns, in the current pass.
+  bool byOther = false, byReduced = false;
 };
 
 class BodyEnds {
@@ -32,6 +34,7 @@ class BodyEnds {
   /// Call it for all first ends on the body, in the order of their rows, and then for all second ends.
   void add(std::size_t row, std::size_t index, const CarriedPoint& point);
   const std::vector<BodyEnd>& list() const { return ends_; }
+  std::vector<BodyEnd>& list() { return ends_; }
 
   /// The velocity that the matrix's solution gives the end, and the one that its step gives it.
   btVector3 velocity(const BodyEnd& end) const;

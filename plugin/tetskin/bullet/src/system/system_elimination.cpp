@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
+// What couples the bodies of a system: rows between two of them, the reduced unknowns, and other forces. The bodies'
+// matrices contain the blocks of each end of a row with itself; the rest is added to their products in each iteration.
+//
 // The reduced unknowns of a system: V of rigid bodies, and q of the components of stiff bodies. They are eliminated
 // from the nodes' equations, and are computed from the nodes' velocities afterwards.
 #include <tetskin/bullet/src/forces/node_vectors.h>
@@ -52,7 +55,7 @@ void SystemSolve::numberRigids() {
 }
 
 void SystemSolve::collectComponents() {
-  endParts_.assign(system_.rows.size(), {});
+  componentOf_.assign(system_.rows.size(), {nullptr, nullptr});
   std::vector<std::vector<ComponentUnknown>> found(bodies_.size());
   forEachBody([&](Body& body, ParallelFor* inner) {
     if (!needsComponents(body)) return;
@@ -71,6 +74,7 @@ void SystemSolve::collectComponents() {
     }
     bodies_[k].lastComponent = components_.size();
   }
+  if (!components_.empty()) motionsOf_.assign(system_.rows.size(), {RowMotions::Zero(), RowMotions::Zero()});
   forEachBody([&](Body& body, ParallelFor*) { findEndParts(body); });
   reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(reducedSize_);
 }
@@ -89,11 +93,13 @@ bool SystemSolve::isJoined(const Body& body) const {
 }
 
 void SystemSolve::findEndParts(const Body& body) {
-  assert(endParts_.size() == system_.rows.size());
+  assert(componentOf_.size() == system_.rows.size());
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     for (const BodyEnd& end : body.ends.list()) {
       const RowMotions motions = components_[c].motionsAt(body.dynamics(), pointOf(end.row, end.index));
-      if (!motions.isZero(0.0)) endParts_[end.row][end.index] = {static_cast<int>(c), motions};
+      if (motions.isZero(0.0)) continue;
+      componentOf_[end.row][end.index] = &components_[c];
+      motionsOf_[end.row][end.index] = motions;
     }
   }
 }
@@ -130,27 +136,22 @@ void SystemSolve::matchComponents(const Body& body) {
 }
 
 bool SystemSolve::couplesReduced(std::size_t r) const {
-  assert(r < endParts_.size());
+  assert(r < componentOf_.size());
   const ContactRow& row = *system_.rows[r];
   for (std::size_t e = 0; e < 2; ++e) {
-    if (row.ends[e].rigid.unknown >= 0 || endParts_[r][e].component >= 0) return true;
+    if (row.ends[e].rigid.unknown >= 0 || isOnComponent(r, e)) return true;
   }
   return false;
-}
-
-/// Index of the component's six among the reduced unknowns.
-Eigen::Index SystemSolve::firstOf(const EndPart& end) const {
-  assert(end.component >= 0 && static_cast<std::size_t>(end.component) < components_.size());
-  return components_[static_cast<std::size_t>(end.component)].first;
 }
 
 /// The velocity that the reduced unknowns give a row.
 btVector3 SystemSolve::reducedVelocity(std::size_t r, const Vector& reduced) const {
   btVector3 sum(0, 0, 0);
   for (std::size_t e = 0; e < 2; ++e) {
-    const EndPart& end = endParts_[r][e];
     btVector3 velocity = in_.rigids.velocity(system_.rows[r]->ends[e].rigid, reduced);
-    if (end.component >= 0) velocity += toBullet(end.motions * reduced.segment<6>(firstOf(end)));
+    if (isOnComponent(r, e)) {
+      velocity += toBullet(motionsOf_[r][e] * reduced.segment<6>(componentOf_[r][e]->first));
+    }
     sum += btScalar(signOf(e)) * velocity;
   }
   return sum;
@@ -159,10 +160,11 @@ btVector3 SystemSolve::reducedVelocity(std::size_t r, const Vector& reduced) con
 /// The transpose of `reducedVelocity`: adds the effect of an impulse of the row on the reduced unknowns.
 void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) const {
   for (std::size_t e = 0; e < 2; ++e) {
-    const EndPart& end = endParts_[r][e];
     const btVector3 own = btScalar(signOf(e)) * push;
     in_.rigids.addImpulse(system_.rows[r]->ends[e].rigid, own, to);
-    if (end.component >= 0) to.segment<6>(firstOf(end)) += end.motions.transpose() * toEigen(own);
+    if (isOnComponent(r, e)) {
+      to.segment<6>(componentOf_[r][e]->first) += motionsOf_[r][e].transpose() * toEigen(own);
+    }
   }
 }
 
@@ -204,16 +206,17 @@ void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t 
   const RowEnd &first = system_.rows[r]->ends[a], &second = system_.rows[r]->ends[b];
   const double sign = signOf(a) * signOf(b);
   in_.rigids.addStiffness(first.rigid, second.rigid, h, sign, reduced);
-  const EndPart &end = endParts_[r][a], &other = endParts_[r][b];
-  if (end.component < 0) return;
-  if (other.component >= 0) {
-    reduced.block<6, 6>(firstOf(end), firstOf(other)) += sign * end.motions.transpose() * h * other.motions;
+  if (!isOnComponent(r, a)) return;
+  const Eigen::Index at = componentOf_[r][a]->first;
+  const RowMotions& motions = motionsOf_[r][a];
+  if (isOnComponent(r, b)) {
+    reduced.block<6, 6>(at, componentOf_[r][b]->first) += sign * motions.transpose() * h * motionsOf_[r][b];
   }
   for (Eigen::Index k = 0; k < 6 && second.rigid.unknown >= 0; ++k) {
     Vector push = Vector::Zero(rigidSize_);
-    in_.rigids.addImpulse(second.rigid, toBullet(sign * h * end.motions.col(k)), push);
-    reduced.col(firstOf(end) + k).head(rigidSize_) += push;
-    reduced.row(firstOf(end) + k).head(rigidSize_) += push.transpose();
+    in_.rigids.addImpulse(second.rigid, toBullet(sign * h * motions.col(k)), push);
+    reduced.col(at + k).head(rigidSize_) += push;
+    reduced.row(at + k).head(rigidSize_) += push.transpose();
   }
 }
 
@@ -229,15 +232,15 @@ void SystemSolve::eliminate() {
 /// to          in the wide layout: residuals or products
 void SystemSolve::addReduced(const Body& body, const Vector& reduced, btScalar sign, bool withOthers,
                              btScalar* to) const {
-  for (const CoupledEnd& coupled : body.coupled) {
-    const bool byOther = withOthers && coupled.byOther;
-    if (!byOther && !coupled.byReduced) continue;
-    const BodyEnd& end = coupled.end;
+  for (const std::uint32_t k : body.coupled) {
+    const BodyEnd& end = body.ends.list()[k];
+    const bool byOther = withOthers && end.byOther;
+    if (!byOther && !end.byReduced) continue;
     const btScalar own = btScalar(signOf(end.index));
     btVector3 velocity(0, 0, 0);
-    if (coupled.byReduced) velocity = reducedVelocity(end.row, reduced);
+    if (end.byReduced) velocity = reducedVelocity(end.row, reduced);
     if (byOther) velocity -= own * endSteps_[end.row][1 - end.index];
-    body.ends.addImpulse(end, (sign * own) * (coupled.tangent * velocity), to);
+    body.ends.addImpulse(end, (sign * own) * (system_.rows[end.row]->tangent * velocity), to);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     components_[c].addImages(static_cast<double>(sign) * reduced.segment<6>(components_[c].first), to);
@@ -283,6 +286,42 @@ void SystemSolve::settleReduced() {
     ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * reducedVelocity(r, change);
   }
+}
+
+// ---- products
+
+/// Computes the velocities that the body's step gives the rows' ends, and its effect on the reduced unknowns.
+void SystemSolve::readPoints(std::size_t k) {
+  assert(k < moving_.size());
+  Body& body = bodies_[moving_[k]];
+  body.push.setZero(reducedSize_);
+  for (const std::uint32_t e : body.coupled) {
+    const BodyEnd& end = body.ends.list()[e];
+    const btVector3 velocity = body.ends.stepVelocity(end);
+    endSteps_[end.row][end.index] = velocity;
+    const btMatrix3x3& tangent = system_.rows[end.row]->tangent;
+    if (end.byReduced) addRowPush(end.row, btScalar(-signOf(end.index)) * (tangent * velocity), body.push);
+  }
+  for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
+    body.push.segment<6>(components_[c].first) -= components_[c].imageProducts(body.matrix().step());
+  }
+}
+
+void SystemSolve::combine() {
+  if (!system_.forces.empty()) in_.others.multiplySteps(system_);
+  if (reducedSize_ == 0) return;
+  reducedOfStep_.setZero(reducedSize_);
+  for (const Body& body : bodies_) reducedOfStep_ += body.push;
+  reducedOfStep_ = schurComplement_.solve(std::move(reducedOfStep_));
+}
+
+const btScalar* SystemSolve::apply(std::size_t k) {
+  assert(k < moving_.size());
+  const Body& body = bodies_[moving_[k]];
+  std::vector<btScalar>& sum = in_.others.products(body.index);
+  if (system_.forces.empty()) sum.assign(body.matrix().wideSize(), btScalar(0));
+  addReduced(body, reducedOfStep_, 1, true, sum.data());
+  return sum.data();
 }
 
 }  // namespace tetskin::bullet_detail

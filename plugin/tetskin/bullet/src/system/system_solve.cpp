@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/rows/fixed_nodes.h>
+#include <tetskin/bullet/src/system/step_fraction.h>
 #include <tetskin/bullet/src/system/system_solve.h>
 
 #include <algorithm>
@@ -199,7 +200,10 @@ void SystemSolve::chooseMoving() {
     if (bodies_[k].moves) {
       moving_.push_back(k);
     } else {
-      for (const CoupledEnd& coupled : bodies_[k].coupled) endSteps_[coupled.end.row][coupled.end.index].setZero();
+      for (const std::uint32_t e : bodies_[k].coupled) {
+        const BodyEnd& end = bodies_[k].ends.list()[e];
+        endSteps_[end.row][end.index].setZero();
+      }
     }
   }
   if (moving_.size() < bodies_.size()) solve.keepOnly(moving_);
@@ -227,12 +231,14 @@ void SystemSolve::addRows(Body& body) {
 /// The matrices contain the blocks of each end with itself.
 void SystemSolve::listCoupled(Body& body) const {
   body.coupled.clear();
-  for (const BodyEnd& end : body.ends.list()) {
+  std::vector<BodyEnd>& ends = body.ends.list();
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    BodyEnd& end = ends[e];
     const ContactRow& row = *system_.rows[end.row];
     if (row.state == ContactRow::State::Apart) continue;
-    const bool byOther = row.ends[1 - end.index].isSoft();
-    const bool byReduced = reducedSize_ > 0 && couplesReduced(end.row);
-    if (byOther || byReduced) body.coupled.push_back({end, byOther, byReduced, row.tangent});
+    end.byOther = row.ends[1 - end.index].isSoft();
+    end.byReduced = reducedSize_ > 0 && couplesReduced(end.row);
+    if (end.byOther || end.byReduced) body.coupled.push_back(static_cast<std::uint32_t>(e));
   }
 }
 
@@ -244,6 +250,66 @@ void SystemSolve::refreshBounds() {
     const btVector3 impulse = row.impulse - row.tangent * stepped_[r];
     row.normalBound = std::max(row.normal.dot(impulse), btScalar(0));
   });
+}
+
+// ---- line search: sliding is nonlinear, and the pass has linearized it
+
+/// The derivative, along the pass's step, of the energy that the solve minimizes.
+double SystemSolve::slope(btScalar fraction, double linear, double quadratic) const {
+  assert(before_.size() == system_.rows.size() && stepped_.size() == system_.rows.size());
+  double sum = linear + static_cast<double>(fraction) * quadratic;
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const ContactRow& row = *system_.rows[r];
+    ContactRow::State state{};
+    const btVector3 impulse = impulseAt(row, before_[r] + fraction * stepped_[r], false, state);
+    sum -= toEigen(impulse - row.given).dot(toEigen(stepped_[r]));
+  }
+  return sum;
+}
+
+/// The fraction of the pass's step to take.
+btScalar SystemSolve::searchLine() {
+  findResiduals();
+  const Vector rigidStep = reducedStep_.head(rigidSize_);
+  double linear = rigidStep.dot(rigidMomentum_ - rigidPush_), quadratic = rigidStep.dot(rigidPush_);
+  forEachBody([](Body& body, ParallelFor*) {
+    const auto& matrix = body.matrix();
+    const btScalar *solution = matrix.solution(), *residual = body.matrix().residual();
+    body.linear = body.quadratic = 0.0;
+    for (std::size_t i = 0; i < matrix.wideSize(); ++i) {
+      const auto step = static_cast<double>(solution[i] - body.solution[i]);
+      const auto before = static_cast<double>(body.residual[i]);
+      body.linear -= step * before;
+      body.quadratic += step * (before - static_cast<double>(residual[i]));
+    }
+  });
+  for (const Body& body : bodies_) {
+    linear += body.linear;
+    quadratic += body.quadratic;
+  }
+  for (const ComponentUnknown& component : components_) {
+    const Vector6 step = reducedStep_.segment<6>(component.first);
+    const Vector6 grown = momentumOf(component) - partsBefore_.segment<6>(component.first);
+    linear += step.dot(partsBefore_.segment<6>(component.first) - component.began);
+    quadratic += step.dot(grown);
+  }
+  return static_cast<btScalar>(
+      stepFraction([&](double fraction) { return slope(static_cast<btScalar>(fraction), linear, quadratic); }));
+}
+
+void SystemSolve::moveBack(btScalar fraction) {
+  assert(fraction >= 0 && fraction <= 1);
+  forEachBody([&](Body& body, ParallelFor*) {
+    btScalar* solution = body.matrix().solution();
+    for (std::size_t i = 0; i < body.matrix().wideSize(); ++i) {
+      solution[i] = body.solution[i] + fraction * (solution[i] - body.solution[i]);
+    }
+    readSolution(body);
+  });
+  const auto rest = static_cast<double>(1 - fraction);
+  reduced_ -= rest * reducedStep_;
+  rigidMomentum_ -= rest * rigidPush_;
+  for (btVector3& step : stepped_) step *= fraction;
 }
 
 // ---- finish

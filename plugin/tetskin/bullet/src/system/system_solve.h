@@ -52,17 +52,6 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
   using HeldPoint = elastic_detail::HeldPoint<btScalar>;
-  /// The component of a body on which an end of a row acts.
-  struct EndPart {
-    int component = -1;                       ///< in `components_`; below 0: its rigid motion is no separate unknown
-    RowMotions motions = RowMotions::Zero();  ///< Z at the end's point
-  };
-  /// An end of a row that couples its body to another one, or to the reduced unknowns, in the current pass.
-  struct CoupledEnd {
-    BodyEnd end;
-    bool byOther = false, byReduced = false;
-    btMatrix3x3 tangent;
-  };
   /// A body of the system.
   struct Body {
     Body(std::size_t number, SolvedBody& of) : index(number), solved(of), ends(of.dynamics->matrix()) {}
@@ -72,7 +61,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
     std::size_t index;  ///< in SolverBodies::bodies
     SolvedBody& solved;
     BodyEnds ends;
-    std::vector<CoupledEnd> coupled;
+    std::vector<std::uint32_t> coupled;        ///< those of `ends` that the current pass couples to anything else
     bool moves = true;                         ///< in the current pass; others keep their solutions
     std::vector<btScalar> solution, residual;  ///< in the wide layout, when a pass began; the residual without rows
     std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
@@ -136,7 +125,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   Matrix reducedStiffness() const;
   void addReducedStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
                            Matrix& reduced) const;
-  Eigen::Index firstOf(const EndPart& end) const;
+  bool isOnComponent(std::size_t row, std::size_t end) const { return componentOf_[row][end] != nullptr; }
   void eliminate();
   bool couplesReduced(std::size_t row) const;
   void moveReduced();
@@ -145,12 +134,12 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   btVector3 reducedVelocity(std::size_t row, const Vector& reduced) const;
   void addReduced(const Body& body, const Vector& reduced, btScalar sign, bool withOthers, btScalar* to) const;
 
-  // What is added to the matrices' products; implemented in system_products.cpp.
+  // What is added to the matrices' products; implemented in system_elimination.cpp.
   void readPoints(std::size_t k) override;
   void combine() override;
   const btScalar* apply(std::size_t k) override;
 
-  // Tolerances and line search; implemented in system_limits.cpp and system_line_search.cpp.
+  // Tolerances, implemented in system_limits.cpp; and line search.
   elastic_detail::SolveLimits limitsOfBulletsForces() const;
   elastic_detail::SolveLimits limitsWithoutRows() const;
   elastic_detail::SolveLimits limitsOfPass(int pass) const;
@@ -168,7 +157,10 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   std::vector<std::size_t> sizes_;   ///< by body: slots
   std::vector<std::size_t> moving_;  ///< those that move in the current pass, ascending
   std::vector<ComponentUnknown> components_;
-  std::vector<std::array<EndPart, 2>> endParts_;  ///< by row
+  /// By row and end: the component on which the end acts, null where its rigid motion is no separate unknown; and Z at
+  /// the end's point.
+  std::vector<std::array<const ComponentUnknown*, 2>> componentOf_;
+  std::vector<std::array<RowMotions, 2>> motionsOf_;
   // The reduced unknowns: V of rigid bodies, followed by q of components.
   Eigen::Index rigidSize_ = 0, reducedSize_ = 0;
   Vector reduced_, reducedStep_,

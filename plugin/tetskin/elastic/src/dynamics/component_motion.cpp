@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/cross_matrix.h>
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 
 #include <Eigen/Cholesky>
@@ -35,12 +36,6 @@ Vector3d momentOf(const Matrix3d& a, const Matrix3d& spread) {
 Matrix3d inertiaOf(const Matrix3d& turn, const Matrix3d& spread) {
   const Matrix3d p = turn * spread;
   return p.trace() * Matrix3d::Identity() - p;
-}
-
-Matrix3d crossMatrix(const Vector3d& w) {
-  Matrix3d m;
-  m << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
-  return m;
 }
 
 Matrix3d rotationBy(const Vector3d& angle) {

@@ -357,12 +357,6 @@ void BodyDynamics<S>::rightSide(std::size_t node, S out[3]) const {
 }
 
 template <class S>
-const S* BodyDynamics<S>::times(const S* points, ParallelFor* threads) {
-  matrix_.multiply(points, image_.data(), threads);
-  return image_.data();
-}
-
-template <class S>
 void BodyDynamics<S>::restart(ParallelFor* threads) {
   assert(rightSide_.size() == matrix_.wideSize() && image_.size() == matrix_.wideSize());
   const S* solution = matrix_.solution();

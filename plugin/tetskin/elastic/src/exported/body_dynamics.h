@@ -76,9 +76,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void start(double seconds, ParallelFor* threads);
   /// Like `start`, but without the residual: `restart` must follow.
   void startLater(double seconds);
-  /// The squared error of the solution, in the norm of the masses, that corresponds to the relative tolerance of the
-  /// residual: above 0 for stiff bodies, whose initial residual consists of rounding.
-  double squaredDeviation() const { return squaredDeviation_; }
   /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations.
   /// limits  the tolerance is relative to the residual without elasticity; `enough` is replaced
   void solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
@@ -109,10 +106,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void restart(ParallelFor* threads);
 
   double alpha() const { return alpha_; }
-  /// Multiplies A with points, 4 scalars per slot. The result is in the wide layout, and is overwritten by the next
-  /// call of any function here. `scratchPoints` may be filled for it.
-  const S* times(const S* points, ParallelFor* threads = nullptr);
-  S* scratchPoints() { return relative_.data(); }
   double energy(ParallelFor* threads);
 
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
@@ -132,7 +125,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// chord: a straight motion would stretch a stiff body. Nothing changes for soft bodies, for which the effect is
   /// negligible.
   void bendTurns(double seconds);
-  bool anyPinned() const { return pinned_ > 0; }
 
   std::optional<CorotatedTets<S>>& tets() { return tets_; }
 

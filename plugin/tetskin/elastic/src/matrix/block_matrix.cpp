@@ -227,15 +227,6 @@ void BlockMatrix<S>::applyCouplings() {
 }
 
 template <class S>
-bool BlockMatrix<S>::couple(std::size_t first, std::size_t second, const S block[6]) {
-  const std::optional<std::uint32_t> coupling = couplingOf(first, second);
-  if (!coupling) return false;
-  couple(*coupling, block);
-  if (couplings_[*coupling].used) write(couplings_[*coupling]);
-  return true;
-}
-
-template <class S>
 void BlockMatrix<S>::resist(std::size_t node, const S block[6]) {
   assert(node < nodeCount());
   if (mass(node) == S(0)) return;
@@ -316,25 +307,6 @@ void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) co
     part.rest = wide;
     table.multiply(part);
   });
-}
-
-template <class S>
-void BlockMatrix<S>::rowTimesSolution(std::size_t node, S out[3]) const {
-  const std::size_t slot = slotOf(node), chunk = slot / kGroup, lane = slot % kGroup;
-  S d[6];
-  diagonal(node, d);
-  const S* own = &solution_[wideOfSlot(slot)];
-  const S x = own[0], y = own[kGroup], z = own[2 * kGroup];
-  out[0] = d[0] * x + d[1] * y + d[2] * z;
-  out[1] = d[1] * x + d[3] * y + d[4] * z;
-  out[2] = d[2] * x + d[4] * y + d[5] * z;
-  for (std::size_t e = pattern_.starts[2 * chunk]; e < pattern_.starts[2 * chunk + 2]; ++e) {
-    const S* block = &blocks_[kernels::kWideBlock * e + lane];
-    const S* other = &solution_[wideOfSlot(pattern_.neighbours[kGroup * e + lane])];
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) out[i] += block[(3 * i + j) * kGroup] * other[j * kGroup];
-    }
-  }
 }
 
 template <class S>

@@ -83,14 +83,11 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// Adds a block, xx xy xz yy yz zz, without negative eigenvalues, to a node's diagonal block: it resists the node's
   /// motion. Call it before the node is fixed.
   void resist(std::size_t node, const S block[6]);
-  /// Adds a symmetric block, xx xy xz yy yz zz, to the blocks of two nodes, in both of their rows. Returns false, and
-  /// does nothing, where the two are the same node or have no tet in common: the matrix has no such block. Nothing is
-  /// added if one of them is pinned. Cost O(neighbours of a node)
-  bool couple(std::size_t first, std::size_t second, const S block[6]);
-  /// The same for pairs that are coupled again and again: the number of the pair, valid as long as the matrix; empty
-  /// where there is no such block. Cost as above
+  /// The number of a pair of nodes that is to be coupled, valid as long as the matrix; empty where the two are the same
+  /// node or have no tet in common: the matrix has no such block. Cost O(neighbours of a node)
   std::optional<std::uint32_t> couplingOf(std::size_t first, std::size_t second);
-  /// Adds to what `applyCouplings` adds to the blocks of a pair.
+  /// Adds a symmetric block, xx xy xz yy yz zz, to what `applyCouplings` adds to the blocks of a pair, in both of their
+  /// rows; nothing if one of the two is pinned.
   void couple(std::uint32_t coupling, const S block[6]);
   void applyCouplings();
   /// Reverts all changes by `fix`, `resist` and `couple`; pinned nodes stay pinned.
@@ -103,8 +100,6 @@ class TETSKIN_ELASTIC_API BlockMatrix {
 
   /// Multiplies A with points, 4 scalars per slot.
   void multiply(const S* points, S* wide, ParallelFor* threads) const;
-  /// One node's row of A times the solution.
-  void rowTimesSolution(std::size_t node, S out[3]) const;
 
   /// The square of the residual's norm, as `lower` returns it; the residual stays as it is.
   double squaredResidual(ParallelFor* threads);

@@ -29,11 +29,6 @@ double meanNodeMass(const btSoftBody& body) {
   return count > 0 ? sum / count : 1.0;
 }
 
-btMatrix3x3 square(const btVector3& a) {
-  return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
-          a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
-}
-
 }  // namespace
 
 Joint::Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
@@ -180,7 +175,7 @@ void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
     const btVector3 axis = anchor.getBasis().getColumn(k);
     joints.push_back(rowOf(beside_[k], anchor.getOrigin() + arm_ * axis));
     joints.back().directions =
-        k == 0 ? btMatrix3x3::getIdentity() - square(axis) : square(anchor.getBasis().getColumn(2));
+        k == 0 ? btMatrix3x3::getIdentity() - outerSquare(axis) : outerSquare(anchor.getBasis().getColumn(2));
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/cross_matrix.h>
 #include <tetskin/touch/src/points/point_jacobian.h>
 
 #include <algorithm>
@@ -14,12 +15,6 @@ using Eigen::Vector3d;
 
 Vector3d positionOf(const btSoftBody& body, int node) {
   return toEigen(body.m_nodes[node].m_x);
-}
-
-Matrix3d crossMatrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
 }
 
 /// By node: the matrix from its velocity to the angular velocity of all nodes about their centroid; zero if they lie on
