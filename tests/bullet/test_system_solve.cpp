@@ -225,8 +225,8 @@ TEST_F(System, OfAStiffBodyAndARigidOneOnJointsAgreesWithDenseMatrices) {
   expectSolved(a, b, 2e-3);
 }
 
-/// Sliding is where the law bends. The body does not turn: what a solve changes about its
-/// momentum afterwards would not be in the rows.
+/// Sliding is where the law bends. The body does not turn: what a solve changes about its momentum afterwards would not
+/// be in the rows.
 TEST_F(System, OfAStiffBodyThatSlidesOnARigidOneKeepsTheLawAtAllPoints) {
   begin(1e7, false);
   for (int tet = 0; tet < 24; tet += 2) {

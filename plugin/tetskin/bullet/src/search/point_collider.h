@@ -86,8 +86,9 @@ class PointCollider {
   void begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation);
   /// The points of the body that would penetrate this shape if nothing stopped them, patch by patch, without object:
   /// the deepest points of each patch, and others so far apart that none is missed, at most kMaxTouches, or
-  /// kTriangleTouches. Valid until the next call. memory  of the same shape, or an empty one around  a box around the
-  /// shape on its path, world space; null: it may be anywhere
+  /// kTriangleTouches. Valid until the next call.
+  /// memory  of the same shape, or an empty one
+  /// around  a box around the shape on its path, world space; null: it may be anywhere
   const PointContacts& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
                             const WorldBox* around = nullptr);
 
