@@ -27,7 +27,7 @@ void DeformedTet::setPlanes(const btScalar minimum[4]) {
 
 ContactBody::ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)
     : body(&solved), shape(std::move(ofShape)), self(meetsItself), id(number) {
-  const BodyWithTrees* own = bodyWithTrees(solved);
+  const auto* own = bullet_detail::bodyWithTrees(solved);
   if (!own) return;
   watched_ = true;
   life_ = own->lifetime();
