@@ -22,7 +22,7 @@ class ContactRows {
   void add(std::vector<PointJoint>& joints, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
   /// Call it when all of these are there.
   void setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
-  /// Adds a row of rigid bodies alone.
+  /// Adds any other row, such as one of rigid bodies alone.
   void add(const ContactRow& row, const RowOrigin& origin);
   /// Stores what the next step begins with, and reports the impulses to the contacts.
   void finish(SolverBodies& bodies, btScalar seconds) const;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to DeformableSolver: the trees of bodies' faces, which rays search. Bullet refits them twice per step; here
-// they are refitted only when they must be. The tree of nodes is searched by nobody, and left alone: see NodePaths.
+// they are refitted only when they must be. The tree of nodes is left alone: PointCollider has a tree of its own.
 #pragma once
 
 #include <tetskin/bullet/src/forces/forced_bodies.h>

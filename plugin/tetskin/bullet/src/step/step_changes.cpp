@@ -6,6 +6,7 @@
 // the next step on.
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/step/step.h>
 
 #include <algorithm>
@@ -79,11 +80,10 @@ void DeformableSolver::Impl::dropRemovedObjects() {
   for (int b = 0; b < solver.m_softBodies.size(); ++b) {
     dropContactsWith(gone, solver.m_softBodies[b]->m_nodeRigidContacts);
     dropContactsWith(gone, solver.m_softBodies[b]->m_faceRigidContacts);
-    if (auto* own = bodyWithTrees(*solver.m_softBodies[b])) {
-      for (PointContact& contact : own->pointContacts()) {
-        if (gone.count(contact.object) > 0) contact.object = nullptr;
-      }
-    }
+    // The end of a pair tells it, too, but not where an application's own algorithm has handled the pair.
+    const auto* own = bodyWithTrees(*solver.m_softBodies[b]);
+    if (!own || !own->nodeContacts()) continue;
+    for (const btCollisionObject* object : gone) own->nodeContacts()->forget(*object);
   }
   findIslands(*objects.world());
 }

@@ -75,7 +75,7 @@ void SystemSolve::collectComponents() {
     bodies_[k].lastComponent = components_.size();
   }
   if (!components_.empty()) motionsOf_.assign(system_.rows.size(), {RowMotions::Zero(), RowMotions::Zero()});
-  forEachBody([&](Body& body, ParallelFor*) { findEndParts(body); });
+  forEachBody([&](Body& body, ParallelFor*) { findEndMotions(body); });
   reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(reducedSize_);
 }
 
@@ -92,7 +92,7 @@ bool SystemSolve::isJoined(const Body& body) const {
   });
 }
 
-void SystemSolve::findEndParts(const Body& body) {
+void SystemSolve::findEndMotions(const Body& body) {
   assert(componentOf_.size() == system_.rows.size());
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     for (const BodyEnd& end : body.ends.list()) {

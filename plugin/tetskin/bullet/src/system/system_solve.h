@@ -116,7 +116,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   void collectComponents();
   bool needsComponents(const Body& body) const;
   bool isJoined(const Body& body) const;
-  void findEndParts(const Body& body);
+  void findEndMotions(const Body& body);
   void moveIntoComponents(const Body& body);
   void moveOutOfComponents(const Body& body);
   Vector6 momentumOf(const ComponentUnknown& component) const;
