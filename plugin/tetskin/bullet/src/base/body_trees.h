@@ -86,7 +86,12 @@ class BodyWithTrees : public btSoftBody {
   /// The distance at which a body's points count as touching while a step searches for contacts, in addition to the
   /// distance that is kept between the objects. Forces that will support both objects are not known yet: a body that
   /// rests on a resting object is predicted to fall with it, or away from it. 0: none, as outside of steps.
-  void setSpeculation(btScalar distance) { speculation_ = distance; }
+  void setSpeculation(btScalar distance) {
+    speculation_ = distance;
+    ++predictions_;
+  }
+  /// Grows from step to step: while it stays the same, and the speculation is above 0, nodes and their paths do, too.
+  unsigned predictions() const { return predictions_; }
   btScalar speculation() const { return speculation_; }
 
   /// Also called by transformTo, translate and rotate.
@@ -101,6 +106,7 @@ class BodyWithTrees : public btSoftBody {
   OwnObject registered_{OwnObject::Kind::BodyWithTrees, static_cast<const btSoftBody*>(this)};
   Kind kind_ = Kind::None;
   btScalar reach_ = -1, speculation_ = 0;
+  unsigned predictions_ = 0;
   bool searchWaits_ = false;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
   std::shared_ptr<void> companion_;

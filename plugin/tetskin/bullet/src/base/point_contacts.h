@@ -16,6 +16,7 @@ namespace tetskin::bullet_detail {
 struct PointContact {
   btSoftBody* body = nullptr;                 ///< the body of the point
   std::uint32_t point = 0;                    ///< number of the point, the same in each step
+  std::uint32_t sample = 0;                   ///< which of the places that have this number
   CarriedPoint at;                            ///< the point
   const btCollisionObject* object = nullptr;  ///< rigid body, link or any other collision object; or a soft body
   CarriedPoint onObject;                      ///< where the point is in a soft body; of other objects: none

@@ -70,6 +70,7 @@ struct RowOrigin {
   const btCollisionObject* object = nullptr;  ///< of the second end; null: a point in space
   btVector3 position;                         ///< of both ends, when the step begins
   std::uint32_t point = 0;                    ///< number of the point within its body
+  std::uint32_t sample = 0;                   ///< which of the places that have this number
   PointContact* contact = nullptr;            ///< the contact that the row comes from; null: another source
   PointJoint* joint = nullptr;                ///< the joint that the row comes from; null: another source
   btVector3 stickingPosition{0, 0, 0};        ///< in the object's frame
@@ -82,7 +83,7 @@ constexpr int signOf(std::size_t end) {
 
 /// Where a point sticks, or has slid to, at the end of a step.
 struct FrictionAnchor {
-  std::uint32_t point = 0;
+  std::uint32_t point = 0, sample = 0;
   const btCollisionObject* object = nullptr;
   btVector3 normal;
   /// In the object's frame; against a soft body: its offset from the sticking position, world space.

@@ -123,6 +123,7 @@ RowOrigin originAt(PointContact& contact) {
   origin.object = contact.object;
   origin.position = contact.position;
   origin.point = contact.point;
+  origin.sample = contact.sample;
   origin.contact = &contact;
   return origin;
 }
@@ -146,25 +147,36 @@ btVector3 visibleOffset(const btVector3& offset, const btVector3& position) {
   return seen;
 }
 
+/// What the step before has stored about this contact: with the same sample, or with another one of the point, which it
+/// may have taken turns with. Null: nothing.
+const FrictionAnchor* anchorFrom(const std::vector<FrictionAnchor>& anchors, const ContactRow& row,
+                                 const RowOrigin& origin) {
+  const auto less = [](const FrictionAnchor& a, const FrictionAnchor& b) { return a.point < b.point; };
+  FrictionAnchor key;
+  key.point = origin.point;
+  const auto range = std::equal_range(anchors.begin(), anchors.end(), key, less);
+  const FrictionAnchor* found = nullptr;
+  for (auto known = range.first; known != range.second; ++known) {
+    if (known->object != origin.object || known->normal.dot(row.normal) < kSameNormal) continue;
+    if (known->sample == origin.sample) return &*known;
+    if (!found) found = &*known;
+  }
+  return found;
+}
+
 /// Reads from the step before where the point sticks, and the impulse that acted on it.
 /// frame  the object's
 void warmStart(const SolvedBody& body, const btTransform& frame, btScalar seconds, ContactRow& row, RowOrigin& origin) {
   assert(body.frictionAnchors && seconds > 0);
   origin.stickingPosition = frame.invXform(origin.position);
-  const auto less = [](const FrictionAnchor& a, const FrictionAnchor& b) { return a.point < b.point; };
-  FrictionAnchor key;
-  key.point = origin.point;
-  const auto range = std::equal_range(body.frictionAnchors->begin(), body.frictionAnchors->end(), key, less);
-  for (auto known = range.first; known != range.second; ++known) {
-    if (known->object != origin.object || known->normal.dot(row.normal) < kSameNormal) continue;
-    origin.stickingPosition = known->position;
-    btVector3 offset = row.ends[1].isSoft() ? known->position : origin.position - frame * known->position;
-    offset -= row.normal.dot(offset) * row.normal;
-    row.offsetVelocity = visibleOffset(offset, origin.position) / seconds;
-    row.normalBound = known->normalForce * seconds;
-    row.stuck = known->stuck;
-    return;
-  }
+  const FrictionAnchor* known = anchorFrom(*body.frictionAnchors, row, origin);
+  if (!known) return;
+  origin.stickingPosition = known->position;
+  btVector3 offset = row.ends[1].isSoft() ? known->position : origin.position - frame * known->position;
+  offset -= row.normal.dot(offset) * row.normal;
+  row.offsetVelocity = visibleOffset(offset, origin.position) / seconds;
+  row.normalBound = known->normalForce * seconds;
+  row.stuck = known->stuck;
 }
 
 /// Inverse effective mass of an end's point in a direction: that of its nodes by themselves, plus that of the rigid
@@ -204,6 +216,7 @@ FrictionAnchor frictionAnchorOf(const ContactRow& row, const RowOrigin& origin, 
   assert(origin.object && seconds > 0);
   FrictionAnchor kept;
   kept.point = origin.point;
+  kept.sample = origin.sample;
   kept.object = origin.object;
   kept.normal = row.normal;
   const btScalar along = row.normal.dot(row.impulse);

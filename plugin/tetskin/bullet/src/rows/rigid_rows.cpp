@@ -11,15 +11,16 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <unordered_map>
 
 namespace tetskin::bullet_detail {
 namespace {
 
 /// D over effective masses: higher than for soft bodies, as both bodies are rigid.
 constexpr double kRigidStiffness = 200.0;
-/// Most unknowns of one step to which rows are followed: the unknowns of a system are eliminated together, at a cost
-/// cubic in their number.
-constexpr std::size_t kMaxUnknowns = 24;
+/// Most bodies of one step to which rows are followed: in a heap of rigid bodies, all of which touch each other, the
+/// cost of their elimination grows faster than their number.
+constexpr std::size_t kMaxUnknowns = 2000;
 /// Fraction of the bound of friction: below it, Bullet's contact sticks.
 constexpr btScalar kStuck = btScalar(0.99);
 
@@ -41,44 +42,49 @@ class RigidRowCollector {
       const btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(m);
       const btCollisionObject &a = *manifold->getBody0(), &b = *manifold->getBody1();
       if (manifold->getNumContacts() > 0 && a.hasContactResponse() && b.hasContactResponse()) {
-        manifolds_.push_back(manifold);
+        link(a, b, {manifold, nullptr});
       }
     }
     for (int c = 0; c < world.getNumConstraints(); ++c) {
-      if (world.getConstraint(c)->isEnabled()) joints_.push_back(world.getConstraint(c));
+      btTypedConstraint* joint = world.getConstraint(c);
+      if (joint->isEnabled()) link(joint->getRigidBodyA(), joint->getRigidBodyB(), {nullptr, joint});
     }
-    // Each round adds the bodies next to those of the round before.
-    while (addManifolds() || addJoints()) {
-    }
+    // The list grows by the bodies that those before in it touch, nearest first.
+    for (std::size_t k = 0; k < rigids_.list().size(); ++k) followFrom(RigidUnknowns::keyOf(rigids_.list()[k]));
   }
 
  private:
-  bool isUnknown(const btCollisionObject& object) const { return rigids_.find(object) >= 0; }
-  bool addManifolds() {
-    const std::size_t before = rigids_.list().size();
-    const auto take = [&](const btPersistentManifold* manifold) {
-      const btCollisionObject &a = *manifold->getBody0(), &b = *manifold->getBody1();
-      if (!isUnknown(a) && !isUnknown(b)) return false;
-      for (int k = 0; k < manifold->getNumContacts(); ++k) addContact(a, b, manifold->getContactPoint(k));
-      return true;
-    };
-    manifolds_.erase(std::remove_if(manifolds_.begin(), manifolds_.end(), take), manifolds_.end());
-    return rigids_.list().size() > before;
+  /// A contact or a joint of two objects.
+  struct Link {
+    const btPersistentManifold* manifold;
+    btTypedConstraint* joint;
+    bool followed = false;
+  };
+
+  void link(const btCollisionObject& a, const btCollisionObject& b, const Link& link) {
+    for (const btCollisionObject* object : {&a, &b}) linksOf_[RigidUnknowns::keyOf(*object)].push_back(links_.size());
+    links_.push_back(link);
   }
 
-  bool addJoints() {
-    const std::size_t before = rigids_.list().size();
-    const auto take = [&](btTypedConstraint* joint) {
-      if (!isUnknown(joint->getRigidBodyA()) && !isUnknown(joint->getRigidBodyB())) return false;
-      addJoint(*joint);
-      return true;
-    };
-    joints_.erase(std::remove_if(joints_.begin(), joints_.end(), take), joints_.end());
-    return rigids_.list().size() > before;
+  void followFrom(const void* key) {
+    const auto found = linksOf_.find(key);
+    if (found == linksOf_.end()) return;
+    for (const std::size_t l : found->second) {
+      Link& link = links_[l];
+      if (link.followed) continue;
+      link.followed = true;
+      if (link.joint) {
+        addJoint(*link.joint);
+        continue;
+      }
+      for (int k = 0; k < link.manifold->getNumContacts(); ++k) {
+        addContact(*link.manifold->getBody0(), *link.manifold->getBody1(), link.manifold->getContactPoint(k));
+      }
+    }
   }
 
   RigidPoint pointOf(const btCollisionObject& object, const btVector3& position) {
-    const bool room = rigids_.list().size() < kMaxUnknowns || isUnknown(object);
+    const bool room = rigids_.list().size() < kMaxUnknowns || rigids_.find(object) >= 0;
     if (room && object.isActive()) return rigids_.at(object, position);
     RigidPoint point;
     point.arm = position - object.getWorldTransform().getOrigin();
@@ -124,8 +130,8 @@ class RigidRowCollector {
   btScalar seconds_;
   RigidUnknowns& rigids_;
   ContactRows& rows_;
-  std::vector<const btPersistentManifold*> manifolds_;
-  std::vector<btTypedConstraint*> joints_;
+  std::vector<Link> links_;
+  std::unordered_map<const void*, std::vector<std::size_t>> linksOf_;  ///< by the bodies' keys: in `links_`
 };
 
 /// The rows of a joint, in the form in which Bullet's solver asks for them.

@@ -17,13 +17,6 @@ namespace {
 /// By how much Bullet's velocities of kinematic bodies may be off: radians per step, and a fraction of the velocity.
 constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
 
-/// The Jacobian of a point of a rigid body.
-Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {
-  Eigen::Matrix<double, 3, 6> jacobian;
-  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigen(at.arm));
-  return jacobian;
-}
-
 /// The inverse mass matrix that btRigidBody::applyImpulse applies; symmetric unless factors lock single axes.
 Eigen::MatrixXd inverseMassOf(const btRigidBody& rigid) {
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(6, 6);
@@ -66,11 +59,6 @@ const btMultiBodyLinkCollider* linkOf(const btCollisionObject& object) {
   return btMultiBodyLinkCollider::upcast(&object);
 }
 
-const void* keyOf(const btCollisionObject& object) {
-  const btMultiBodyLinkCollider* link = linkOf(object);
-  return link ? static_cast<const void*>(link->m_multiBody) : &object;
-}
-
 /// True if nothing that the object meets changes its motion.
 bool movesFreely(const btCollisionObject& object) {
   if (const btMultiBodyLinkCollider* link = linkOf(object)) return link->m_multiBody != nullptr;
@@ -80,10 +68,26 @@ bool movesFreely(const btCollisionObject& object) {
 
 }  // namespace
 
+Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigen(at.arm));
+  return jacobian;
+}
+
 void RigidUnknowns::clear() {
   unknowns_.clear();
   indices_.clear();
   jacobians_.clear();
+}
+
+const void* RigidUnknowns::keyOf(const btCollisionObject& object) {
+  const btMultiBodyLinkCollider* link = linkOf(object);
+  return link ? static_cast<const void*>(link->m_multiBody) : &object;
+}
+
+const void* RigidUnknowns::keyOf(const RigidUnknown& unknown) {
+  return unknown.multiBody ? static_cast<const void*>(unknown.multiBody)
+                           : static_cast<const btCollisionObject*>(unknown.rigid);
 }
 
 int RigidUnknowns::find(const btCollisionObject& object) const {
@@ -207,18 +211,6 @@ void RigidUnknowns::addImpulse(const RigidPoint& at, const btVector3& impulse, E
   const Eigen::Vector3d force = toEigen(impulse);
   to.segment<3>(unknown.first) += force;
   to.segment<3>(unknown.first + 3) += toEigen(at.arm).cross(force);
-}
-
-void RigidUnknowns::addStiffness(const RigidPoint& a, const RigidPoint& b, const Eigen::Matrix3d& h, double sign,
-                                 Eigen::MatrixXd& to) const {
-  if (a.unknown < 0 || b.unknown < 0) return;
-  const RigidUnknown &first = unknowns_[static_cast<std::size_t>(a.unknown)],
-                     &second = unknowns_[static_cast<std::size_t>(b.unknown)];
-  if (a.jacobian < 0 && b.jacobian < 0) {  // nearly always, so that no matrix is allocated
-    to.block<6, 6>(first.first, second.first) += sign * bodyJacobian(a).transpose() * h * bodyJacobian(b);
-    return;
-  }
-  to.block(first.first, second.first, first.size, second.size) += sign * jacobianOf(a).transpose() * h * jacobianOf(b);
 }
 
 double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& direction) const {

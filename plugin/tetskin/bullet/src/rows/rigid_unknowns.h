@@ -40,8 +40,14 @@ struct RigidUnknown {
   Eigen::MatrixXd inverseMass;  ///< size x size
 };
 
+/// The derivative of the velocity of a point of a rigid body by those of the body.
+Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at);
+
 class RigidUnknowns {
  public:
+  /// The derivative of a point's velocity by those of its unknown: 3 x size.
+  using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
   /// Call it when the rows of a step are collected.
   void clear();
 
@@ -59,25 +65,25 @@ class RigidUnknowns {
   bool isLed(const btCollisionObject& object) const;
   KinematicPaths& paths() { return paths_; }
 
+  /// What tells bodies apart: the rigid body, or the multibody of a link.
+  static const void* keyOf(const btCollisionObject& object);
+  static const void* keyOf(const RigidUnknown& unknown);
+
   const std::vector<RigidUnknown>& list() const { return unknowns_; }
   std::vector<RigidUnknown>& list() { return unknowns_; }
+  Jacobian jacobianOf(const RigidPoint& at) const;
 
   // The functions below use vectors of a system: the unknowns' indices in it must be set.
   /// The change of the point's velocity that changed velocities of the unknowns cause.
   btVector3 velocity(const RigidPoint& at, const Eigen::VectorXd& change) const;
   /// Adds J^T times the impulse on the object.
   void addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const;
-  /// Adds sign x J_a^T H J_b.
-  void addStiffness(const RigidPoint& a, const RigidPoint& b, const Eigen::Matrix3d& h, double sign,
-                    Eigen::MatrixXd& to) const;
   /// By how much a unit impulse at the point changes its velocity in a direction.
   double compliance(const RigidPoint& at, const btVector3& direction) const;
   /// Changes the velocities of a body in Bullet.
   static void apply(const RigidUnknown& unknown, const Eigen::VectorXd& change);
 
  private:
-  using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-  Jacobian jacobianOf(const RigidPoint& at) const;
   int add(const btCollisionObject& object);
   btVector3 carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity, btScalar seconds) const;
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);

@@ -87,16 +87,11 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
   if (!dispatcher_ && (body_.m_cfg.collisions & btSoftBody::fCollision::SDF_RDN) == 0) return;
   const Met met{&object, rigid.getCollisionShape(), pathOf(rigid)};
-  if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) {
-    nodesRead_ = false;
-    return search(met);
-  }
+  if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
   waiting_.push_back(met);
 }
 
-/// The nodes do not move between the searches of a step.
 void BodyContacts::searchWaiting() {
-  nodesRead_ = false;
   for (const Met& met : waiting_) search(met);
   waiting_.clear();
 }
@@ -108,9 +103,11 @@ void BodyContacts::search(const Met& met) {
   if (known.step % kForgottenAfter == 0) forgetUnused(known);
 }
 
+/// The nodes do not move between the searches of a step. Outside of steps, an application may move them at any time.
 void BodyContacts::readNodes() {
-  if (nodesRead_) return;
-  nodesRead_ = true;
+  const bool inStep = body_.speculation() > 0;
+  if (inStep && nodesRead_ == body_.predictions()) return;
+  nodesRead_ = body_.predictions();
   nodes_.resize(static_cast<std::size_t>(body_.m_nodes.size()));
   for (int n = 0; n < body_.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body_.m_nodes[n];

@@ -87,7 +87,7 @@ class BodyContacts {
   btScalar thickness_;
   btScalar margin_ = 0;  ///< of the last search
   std::vector<NodePath> nodes_;
-  bool nodesRead_ = false;    ///< since the search began
+  unsigned nodesRead_ = 0;    ///< BodyWithTrees::predictions when they were read; 0: they are to be read
   std::vector<Met> waiting_;  ///< those that are yet to be searched for
   ExactProbe exact_;
   HullProbe hull_;

@@ -38,20 +38,12 @@ Vector6 ldltSolve(const Eigen::Matrix<double, 6, 6>& matrix, const Vector6& righ
 }  // namespace
 
 void SystemSolve::numberRigids() {
-  Eigen::Index size = 0;
   for (const std::size_t r : system_.rigids) {
     RigidUnknown& unknown = in_.rigids.list()[r];
-    unknown.first = size;
-    size += unknown.size;
+    unknown.first = schurComplement_.addRigid(unknown.inverseMass);
   }
-  inverseMass_ = Matrix::Zero(size, size);
-  for (const std::size_t r : system_.rigids) {
-    const RigidUnknown& unknown = in_.rigids.list()[r];
-    inverseMass_.block(unknown.first, unknown.first, unknown.size, unknown.size) = unknown.inverseMass;
-  }
-  schurComplement_.setInverseMass(inverseMass_);
-  rigidSize_ = reducedSize_ = size;
-  rigidMomentum_ = rigidPush_ = Vector::Zero(size);
+  rigidSize_ = schurComplement_.size();
+  rigidMomentum_ = rigidPush_ = Vector::Zero(rigidSize_);
 }
 
 void SystemSolve::collectComponents() {
@@ -68,15 +60,35 @@ void SystemSolve::collectComponents() {
     bodies_[k].firstComponent = components_.size();
     for (ComponentUnknown& unknown : found[k]) {
       unknown.body = bodies_[k].index;
-      unknown.first = reducedSize_;
-      reducedSize_ += static_cast<Eigen::Index>(Dynamics::kRigidMotions);
+      unknown.first = schurComplement_.add(static_cast<Eigen::Index>(Dynamics::kRigidMotions));
       components_.push_back(std::move(unknown));
     }
     bodies_[k].lastComponent = components_.size();
   }
   if (!components_.empty()) motionsOf_.assign(system_.rows.size(), {RowMotions::Zero(), RowMotions::Zero()});
   forEachBody([&](Body& body, ParallelFor*) { findEndMotions(body); });
+  reducedSize_ = schurComplement_.size();
   reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(reducedSize_);
+  stepImages_ = reduced_;
+  if (reducedSize_ > 0) coupleReduced();
+}
+
+/// Finds which of the reduced unknowns rows couple.
+void SystemSolve::coupleReduced() {
+  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+    const Eigen::Index first = firstReduced(r, 0), second = firstReduced(r, 1);
+    if (first >= 0 || second >= 0) reducedRows_.push_back(r);
+    if (first >= 0 && second >= 0) schurComplement_.couple(first, second);
+  }
+  schurComplement_.order();
+}
+
+/// The first of the reduced unknowns that move an end; below 0: none does.
+Eigen::Index SystemSolve::firstReduced(std::size_t r, std::size_t e) const {
+  assert(r < componentOf_.size());
+  if (isOnComponent(r, e)) return componentOf_[r][e]->first;
+  const int unknown = system_.rows[r]->ends[e].rigid.unknown;
+  return unknown < 0 ? -1 : in_.rigids.list()[static_cast<std::size_t>(unknown)].first;
 }
 
 /// The separate unknowns do not include other forces on the nodes.
@@ -136,12 +148,7 @@ void SystemSolve::matchComponents(const Body& body) {
 }
 
 bool SystemSolve::couplesReduced(std::size_t r) const {
-  assert(r < componentOf_.size());
-  const ContactRow& row = *system_.rows[r];
-  for (std::size_t e = 0; e < 2; ++e) {
-    if (row.ends[e].rigid.unknown >= 0 || isOnComponent(r, e)) return true;
-  }
-  return false;
+  return firstReduced(r, 0) >= 0 || firstReduced(r, 1) >= 0;
 }
 
 /// The velocity that the reduced unknowns give a row.
@@ -168,6 +175,14 @@ void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) c
   }
 }
 
+/// Adds what the rows take back if their velocities change by these.
+void SystemSolve::addRowPushes(const std::vector<btVector3>& steps, Vector& to) const {
+  for (const std::size_t r : reducedRows_) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * steps[r]), to);
+  }
+}
+
 /// The momentum of rigid bodies and components that is left.
 void SystemSolve::findReducedResiduals() {
   assert(reducedResidual_.size() == reducedSize_ && rigidMomentum_.size() == rigidSize_);
@@ -178,53 +193,61 @@ void SystemSolve::findReducedResiduals() {
     partsBefore_.segment<6>(component.first) = momentumOf(component);
     reducedResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
   }
-  for (std::size_t r = 0; r < system_.rows.size() && reducedSize_ > 0; ++r) {
+  for (const std::size_t r : reducedRows_) {
     addRowPush(r, system_.rows[r]->impulse - system_.rows[r]->given, reducedResidual_);
-  }
-}
-
-/// The matrix of the reduced unknowns without the masses of rigid bodies: what rows, and the masses of components,
-/// couple them by.
-SystemSolve::Matrix SystemSolve::reducedStiffness() const {
-  Matrix reduced = Matrix::Zero(reducedSize_, reducedSize_);
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    if (system_.rows[r]->state == ContactRow::State::Apart || !couplesReduced(r)) continue;
-    const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
-    for (std::size_t a = 0; a < 2; ++a) {
-      for (std::size_t b = 0; b < 2; ++b) addReducedStiffness(r, a, b, h, reduced);
-    }
-  }
-  for (const ComponentUnknown& component : components_)
-    reduced.block<6, 6>(component.first, component.first) += component.mass;
-  return reduced;
-}
-
-/// Adds the block of two ends of a row. The block of a rigid body and a component, and its transpose, are added when
-/// the component's end comes first.
-void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
-                                      Matrix& reduced) const {
-  const RowEnd &first = system_.rows[r]->ends[a], &second = system_.rows[r]->ends[b];
-  const double sign = signOf(a) * signOf(b);
-  in_.rigids.addStiffness(first.rigid, second.rigid, h, sign, reduced);
-  if (!isOnComponent(r, a)) return;
-  const Eigen::Index at = componentOf_[r][a]->first;
-  const RowMotions& motions = motionsOf_[r][a];
-  if (isOnComponent(r, b)) {
-    reduced.block<6, 6>(at, componentOf_[r][b]->first) += sign * motions.transpose() * h * motionsOf_[r][b];
-  }
-  for (Eigen::Index k = 0; k < 6 && second.rigid.unknown >= 0; ++k) {
-    Vector push = Vector::Zero(rigidSize_);
-    in_.rigids.addImpulse(second.rigid, toBullet(sign * h * motions.col(k)), push);
-    reduced.col(at + k).head(rigidSize_) += push;
-    reduced.row(at + k).head(rigidSize_) += push.transpose();
   }
 }
 
 void SystemSolve::eliminate() {
   if (reducedSize_ == 0) return;
-  schurComplement_.factor(reducedStiffness());
+  findReducedStiffness();
+  schurComplement_.factor();
   const Vector reduced = schurComplement_.solve(reducedResidual_);
   forEachBody([&](Body& body, ParallelFor*) { addReduced(body, reduced, -1, false, body.matrix().residual()); });
+}
+
+/// The matrix of the reduced unknowns without the masses of rigid bodies: what rows, and the masses of components,
+/// couple them by.
+void SystemSolve::findReducedStiffness() {
+  schurComplement_.setZero();
+  for (const std::size_t r : reducedRows_) {
+    if (system_.rows[r]->state == ContactRow::State::Apart) continue;
+    const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
+    for (std::size_t a = 0; a < 2; ++a) {
+      for (std::size_t b = 0; b < 2; ++b) addReducedStiffness(r, a, b, h);
+    }
+  }
+  for (const ComponentUnknown& component : components_) {
+    schurComplement_.block(component.first, component.first) += component.mass;
+  }
+}
+
+/// Adds J_a^T H J_b, where it belongs to the lower triangle.
+void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h) {
+  const Eigen::Index first = firstReduced(r, a), second = firstReduced(r, b);
+  if (second < 0 || first < second) return;
+  auto block = schurComplement_.block(first, second);
+  const double sign = signOf(a) * signOf(b);
+  if (hasRowMotions(r, a) && hasRowMotions(r, b)) {  // nearly always, so that nothing is allocated
+    block += sign * (rowMotions(r, a).transpose() * h * rowMotions(r, b));
+  } else {
+    block += sign * (jacobianOf(r, a).transpose() * h * jacobianOf(r, b));
+  }
+}
+
+/// True if six unknowns move the end, as of a body or a component.
+bool SystemSolve::hasRowMotions(std::size_t r, std::size_t e) const {
+  return isOnComponent(r, e) || system_.rows[r]->ends[e].rigid.jacobian < 0;
+}
+
+RowMotions SystemSolve::rowMotions(std::size_t r, std::size_t e) const {
+  assert(hasRowMotions(r, e));
+  return isOnComponent(r, e) ? motionsOf_[r][e] : bodyJacobian(system_.rows[r]->ends[e].rigid);
+}
+
+RigidUnknowns::Jacobian SystemSolve::jacobianOf(std::size_t r, std::size_t e) const {
+  return isOnComponent(r, e) ? RigidUnknowns::Jacobian(motionsOf_[r][e])
+                             : in_.rigids.jacobianOf(system_.rows[r]->ends[e].rigid);
 }
 
 /// Adds the effect of changes of the reduced unknowns on the body's nodes.
@@ -257,10 +280,7 @@ void SystemSolve::moveReduced() {
   if (reducedSize_ == 0) return;
   // The momentum M times the step is the residual of the bodies' equation, minus what rows take back.
   Vector push = reducedResidual_, left = reducedResidual_;
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), push);
-  }
+  addRowPushes(stepped_, push);
   for (const ComponentUnknown& component : components_) {
     push.segment<6>(component.first) -= images_.segment<6>(component.first) - imagesBefore_.segment<6>(component.first);
   }
@@ -268,10 +288,7 @@ void SystemSolve::moveReduced() {
   reduced_ += reducedStep_;
   forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
   if (rigidSize_ == 0) return;
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
-    const ContactRow& row = *system_.rows[r];
-    if (row.state != ContactRow::State::Apart) addRowPush(r, -(row.tangent * stepped_[r]), left);
-  }
+  addRowPushes(stepped_, left);
   rigidPush_ = left.head(rigidSize_);
   rigidMomentum_ += rigidPush_;
 }
@@ -282,7 +299,7 @@ void SystemSolve::settleReduced() {
   if (reducedSize_ == 0) return;
   const Vector change = schurComplement_.solve(reducedResidual_);
   reduced_ += change;
-  for (std::size_t r = 0; r < system_.rows.size(); ++r) {
+  for (const std::size_t r : reducedRows_) {
     ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * reducedVelocity(r, change);
   }
@@ -290,29 +307,28 @@ void SystemSolve::settleReduced() {
 
 // ---- products
 
-/// Computes the velocities that the body's step gives the rows' ends, and its effect on the reduced unknowns.
+/// Computes the velocities that the body's step gives the rows' ends, and its images.
 void SystemSolve::readPoints(std::size_t k) {
   assert(k < moving_.size());
-  Body& body = bodies_[moving_[k]];
-  body.push.setZero(reducedSize_);
+  const Body& body = bodies_[moving_[k]];
   for (const std::uint32_t e : body.coupled) {
     const BodyEnd& end = body.ends.list()[e];
-    const btVector3 velocity = body.ends.stepVelocity(end);
-    endSteps_[end.row][end.index] = velocity;
-    const btMatrix3x3& tangent = system_.rows[end.row]->tangent;
-    if (end.byReduced) addRowPush(end.row, btScalar(-signOf(end.index)) * (tangent * velocity), body.push);
+    endSteps_[end.row][end.index] = body.ends.stepVelocity(end);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
-    body.push.segment<6>(components_[c].first) -= components_[c].imageProducts(body.matrix().step());
+    stepImages_.segment<6>(components_[c].first) = components_[c].imageProducts(body.matrix().step());
   }
 }
 
 void SystemSolve::combine() {
   if (!system_.forces.empty()) in_.others.multiplySteps(system_);
   if (reducedSize_ == 0) return;
-  reducedOfStep_.setZero(reducedSize_);
-  for (const Body& body : bodies_) reducedOfStep_ += body.push;
-  reducedOfStep_ = schurComplement_.solve(std::move(reducedOfStep_));
+  Vector push = -stepImages_;
+  for (const std::size_t r : reducedRows_) {
+    const ContactRow& row = *system_.rows[r];
+    if (row.state != ContactRow::State::Apart) addRowPush(r, row.tangent * (endSteps_[r][1] - endSteps_[r][0]), push);
+  }
+  reducedOfStep_ = schurComplement_.solve(std::move(push));
 }
 
 const btScalar* SystemSolve::apply(std::size_t k) {

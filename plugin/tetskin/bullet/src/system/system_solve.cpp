@@ -332,12 +332,13 @@ void SystemSolve::giveMomentum() {
       if (body.solved.elastic && body.solved.fixed.empty() && !isHung(body)) removeMomentumError(body);
     });
   }
-  Vector push = Vector::Zero(rigidSize_);
-  for (const ContactRow* row : system_.rows) {
-    const btVector3 more = row->impulse - row->given;
-    for (std::size_t e = 0; e < 2; ++e) in_.rigids.addImpulse(row->ends[e].rigid, btScalar(signOf(e)) * more, push);
+  Vector push = Vector::Zero(reducedSize_);
+  for (const std::size_t r : reducedRows_) {
+    const ContactRow& row = *system_.rows[r];
+    const btVector3 more = row.impulse - row.given;
+    for (std::size_t e = 0; e < 2; ++e) in_.rigids.addImpulse(row.ends[e].rigid, btScalar(signOf(e)) * more, push);
   }
-  const Vector change = inverseMass_ * push;
+  const Vector change = schurComplement_.timesInverseMass(std::move(push));
   for (const std::size_t r : system_.rigids) RigidUnknowns::apply(in_.rigids.list()[r], change);
 }
 

@@ -50,7 +50,6 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
 
  private:
   using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::MatrixXd;
   using HeldPoint = elastic_detail::HeldPoint<btScalar>;
   /// A body of the system.
   struct Body {
@@ -67,7 +66,6 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
     std::size_t firstComponent = 0, lastComponent = 0;  ///< in `components_`
     double byMatrix = 0.0, byMasses = 0.0;              ///< squares of the solution, as SystemSolve::limitsOfPass adds
     double linear = 0.0, quadratic = 0.0;               ///< its share in SystemSolve::searchLine
-    Vector push;  ///< the effect of its step of the conjugate gradient on the reduced unknowns
   };
   using EndVelocities = std::array<btVector3, 2>;
 
@@ -114,6 +112,8 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   // The reduced unknowns; implemented in system_elimination.cpp.
   void numberRigids();
   void collectComponents();
+  void coupleReduced();
+  Eigen::Index firstReduced(std::size_t row, std::size_t end) const;
   bool needsComponents(const Body& body) const;
   bool isJoined(const Body& body) const;
   void findEndMotions(const Body& body);
@@ -122,15 +122,18 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   Vector6 momentumOf(const ComponentUnknown& component) const;
   void matchComponents(const Body& body);
   void findReducedResiduals();
-  Matrix reducedStiffness() const;
-  void addReducedStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h,
-                           Matrix& reduced) const;
+  void findReducedStiffness();
+  void addReducedStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h);
+  bool hasRowMotions(std::size_t row, std::size_t end) const;
+  RowMotions rowMotions(std::size_t row, std::size_t end) const;
+  RigidUnknowns::Jacobian jacobianOf(std::size_t row, std::size_t end) const;
   bool isOnComponent(std::size_t row, std::size_t end) const { return componentOf_[row][end] != nullptr; }
   void eliminate();
   bool couplesReduced(std::size_t row) const;
   void moveReduced();
   void settleReduced();
   void addRowPush(std::size_t row, const btVector3& push, Vector& to) const;
+  void addRowPushes(const std::vector<btVector3>& steps, Vector& to) const;
   btVector3 reducedVelocity(std::size_t row, const Vector& reduced) const;
   void addReduced(const Body& body, const Vector& reduced, btScalar sign, bool withOthers, btScalar* to) const;
 
@@ -168,8 +171,9 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   Vector images_, imagesBefore_;      ///< of components: Z^T A y, now and when the pass began
   Vector partsBefore_;                ///< momenta of the components when the pass began
   Vector rigidMomentum_, rigidPush_;  ///< M V, and its change in the pass
-  Matrix inverseMass_;                ///< M^-1
   SchurComplement schurComplement_;
+  std::vector<std::size_t> reducedRows_;  ///< those with an end that reduced unknowns move, ascending
+  Vector stepImages_;                     ///< of components: Z^T A times the step of the conjugate gradient
   Vector reducedOfStep_;  ///< what the step of the conjugate gradient changes the reduced unknowns by
   std::vector<EndVelocities> endVelocities_, endSteps_;  ///< by row: of its ends, by the solutions and by the steps
   std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed

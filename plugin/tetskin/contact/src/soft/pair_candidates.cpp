@@ -24,6 +24,21 @@ void PairCandidates::update(ContactBody& first, ContactBody& second, btScalar dt
   reads_[1] = second.reads;
 }
 
+void PairCandidates::markVisited() {
+  visited_ = true;
+  for (Run& run : runs_) {
+    run.visitedPath = run.path;
+    run.visitedReach = run.reach;
+  }
+}
+
+bool PairCandidates::isNearlyAsVisited(btScalar maximum) const {
+  assert(!(maximum < 0));
+  return visited_ && std::all_of(runs_.begin(), runs_.end(), [&](const Run& run) {
+    return run.path - run.visitedPath + std::max(run.reach - run.visitedReach, btScalar(0)) <= maximum;
+  });
+}
+
 /// Returns false if the candidates may not be complete any more.
 bool PairCandidates::follow(const ContactBody& first, const ContactBody& second) {
   if (first.reads != reads_[0] + 1 || second.reads != reads_[1] + 1) return false;
@@ -91,6 +106,7 @@ void PairCandidates::find(ContactBody& first, ContactBody& second) {
   first.fit();
   second.fit();
   validity_.begin(first, second);
+  visited_ = false;
   runs_.clear();
   links_.clear();
   lanes_.clear();

@@ -61,6 +61,11 @@ class PairCandidates {
   template <class Begin, class Test, class End>
   void visit(const ContactBody& second, Begin&& begin, Test&& test, End&& end);
   bool empty() const { return runs_.empty(); }
+  /// Call it before `visit`: what follows is measured from here.
+  void markVisited();
+  /// True if, since `markVisited`, no sample and no tet near it have approached each other by more than `maximum`, nor
+  /// will in the step to come by more than they would have then. False if the candidates have been found anew.
+  bool isNearlyAsVisited(btScalar maximum) const;
   int age() const { return validity_.age(); }  ///< number of steps since the candidates were found
 
  private:
@@ -82,6 +87,7 @@ class PairCandidates {
     btScalar path = 0;   ///< bound of the motion of its samples relative to any tet of its links since they were found
     btScalar reach = 0;  ///< as in VisitedRun
     std::size_t samples = 0;  ///< of its first sample, in `samples_`
+    btScalar visitedPath = 0, visitedReach = 0;  ///< when it was visited
   };
   struct Pair {
     const ContactBody* first;
@@ -104,6 +110,7 @@ class PairCandidates {
     return run.path < until.outside && run.path + run.reach < until.distance;
   }
 
+  bool visited_ = false;     ///< since the candidates were found
   int reads_[2] = {-1, -1};  ///< by body: `reads` when last updated
   CandidateValidity validity_;
   std::vector<int> nodes_[2];  ///< of the runs' tets, and of the tets of all links

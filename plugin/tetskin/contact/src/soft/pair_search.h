@@ -22,14 +22,10 @@ struct Touch {
   btScalar distance = 0;  ///< world space; below 0: the depth
   bool pierces = false;   ///< deeper than a sample of a sliding surface can be, in this step or before
   int next = -1;          ///< next touch of the same node
-};
-
-/// What a pair of bodies stores from step to step about the first one's samples in the second one.
-struct PairMemory {
-  PairCandidates candidates;
-  ContactSides sides;
-  std::vector<int> touched;  ///< samples by which nodes touched in the last step, ascending
-  std::vector<int> pierced;  ///< samples that pierced the surface in the last step
+  // The surface as a plane, when the touch was found; rest space of the other body.
+  btVector3 restFound{0, 0, 0};  ///< position of the sample
+  btVector3 restNormal{0, 1, 0};
+  btScalar restDistance = 0;
 };
 
 /// The overlap of one body with another, measured by its samples.
@@ -40,6 +36,15 @@ struct Overlap {
   int agreeing = 0;  ///< number of samples inside or within reach whose normals agree with those of the other surface
 };
 
+/// What a pair of bodies stores from step to step about the first one's samples in the second one.
+struct PairMemory {
+  PairCandidates candidates;
+  ContactSides sides;
+  Overlap overlap;           ///< when the touches were searched for
+  std::vector<int> touched;  ///< samples by which nodes touched in the last step, ascending
+  std::vector<int> pierced;  ///< samples that pierced the surface in the last step
+};
+
 /// Finds the touches of pairs, one pair after the other; reuses its memory.
 class PairSearch {
  public:
@@ -48,9 +53,10 @@ class PairSearch {
   ///          within it are left out
   /// apart    direction in which the first body is to leave the second, where it is deep in it, and the depth from
   ///          which on it applies; or 0
-  /// touches  appended to: for each node of the first body, the deepest of the samples of which it has the largest
-  ///          weight, and the deepest of those that are pushed in another direction; beside it, another one that
-  ///          touched in the step before
+  /// touches  those of the step before, on return those of this step: for each node of the first body, the deepest of
+  ///          the samples of which it has the largest weight, and the deepest of those that are pushed in another
+  ///          direction; beside it, another one that touched in the step before. While the bodies have hardly moved
+  ///          relative to each other, they stay the same samples in the same tets
   Overlap find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
                PairMemory& memory, std::vector<Touch>& touches);
 
@@ -77,6 +83,7 @@ class PairSearch {
     DeformedTet tet;
   };
 
+  bool follow(std::vector<Touch>& touches);
   void remember(PairMemory& memory) const;
   const ContactBox& beginRun(const VisitedRun& run);
   void carryRun();

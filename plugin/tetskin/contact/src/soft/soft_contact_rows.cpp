@@ -206,12 +206,10 @@ btVector3 SoftContactRows::search(const SearchedPair& pair, btScalar seconds, Pa
   PairState& pairState = *pair.state;
   const btScalar deep = kDeep * std::min(first.box.diagonal(), second.box.diagonal());
   const auto in = [&](ContactBody& a, ContactBody& b, int k) {
-    pairState.touches[k].clear();
     return finder.find(a, b, seconds, k == 0 ? pairState.apart : -pairState.apart, deep, pairState.memories[k],
                        pairState.touches[k]);
   };
   const Overlap own = in(first, second, 0);
-  pairState.touches[1].clear();
   if (&first == &second) return {0, 0, 0};
   const Overlap other = in(second, first, 1);
   const bool firstWithin = liesWithin(first, own), secondWithin = liesWithin(second, other);
@@ -235,6 +233,7 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
   contact.body = first.body;
   contact.object = second.body;
   contact.point = kFirstPoint + static_cast<std::uint32_t>(first.data().sampleNodes[s]);
+  contact.sample = static_cast<std::uint32_t>(touch.sample);
   contact.at = {4, sample.nodes, sample.weights};
   contact.onObject = {4, second.data().tets[static_cast<std::size_t>(touch.tet)], touch.weights};
   contact.position = touch.point;
