@@ -27,8 +27,21 @@ constexpr int kLeafSize = kLanes;
 /// Added around the weights of a run's samples: more than rounding changes them.
 constexpr btScalar kWeightMargin = btScalar(1e-3);
 
+/// Default number of samples, for each node of the cage's surface, and its bounds.
+constexpr std::size_t kSamplesPerNode = 30, kFewSamples = 2000, kManySamples = 8000;
+
+/// Of each node one or two samples are used. With fewer, a pile of cubes takes longer to come to rest.
+std::size_t defaultSampleCount(const Cage& cage) {
+  std::vector<char> atSurface(cage.mesh.nodes.size(), 0);
+  for (const std::array<int, 3>& face : boundaryFaces(cage.mesh)) {
+    for (const int n : face) atSurface[static_cast<std::size_t>(n)] = 1;
+  }
+  const auto nodes = static_cast<std::size_t>(std::count(atSurface.begin(), atSurface.end(), 1));
+  return std::clamp(kSamplesPerNode * nodes, kFewSamples, kManySamples);
+}
+
 Status checkOptions(const ContactShapeOptions& options) {
-  if (options.sampleCount < 1 || options.sampleCount > 10'000'000) {
+  if (options.sampleCount && (*options.sampleCount < 1 || *options.sampleCount > 10'000'000)) {
     return {StatusCode::InvalidOption, "the number of samples of a contact shape must be between 1 and 10,000,000"};
   }
   if (options.gridResolution < 4 || options.gridResolution > 1024) {
@@ -341,7 +354,7 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
                       : "the mesh encloses no volume that the grid resolves; close the mesh, or give the "
                         "shape more cells"};
   }
-  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.sampleCount);
+  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.sampleCount.value_or(defaultSampleCount(cage)));
   Status status;
   const std::vector<int> tets = tetsOf(cage, samples, status);
   if (!status.ok()) return status;

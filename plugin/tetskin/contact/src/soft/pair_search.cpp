@@ -19,14 +19,19 @@ constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 constexpr btScalar kKeptCubes = btScalar(0.1);
 /// In mean edges: two samples of a node that are this far apart may both be contacts. At 2, which leaves one, light
 /// parts swing between the two: in `tetskin_contact` soft stack/1 to 100 to 1 never rests (nodes at 0.01 of its size
-/// per second, where 0.005 is promised).
-constexpr btScalar kBesideEdges = btScalar(0.2);
+/// per second, where 0.005 is promised); at 0.2, nodes of light corners in a bin of 100 cubes swing at 1 m/s.
+constexpr btScalar kBesideEdges = btScalar(0.1);
+/// Steps for which a sample is remembered that has touched: samples that take turns do so within fewer.
+constexpr int kRememberedSteps = 16;
 /// Cosine between normals from which on two contacts of a node count as one: a node in a fold is pushed several ways.
 /// The soft scenes of `tetskin_contact`, which have no folds, hold with -1, too.
 constexpr btScalar kOneWay = btScalar(0.7);
 /// Cosine between the normals of two surfaces below which they can touch, for a sample on an edge, and for one on a
 /// face.
 constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
+/// By how much that cosine may be larger for a sample that has touched: otherwise a light part that one such contact
+/// holds comes and goes with it.
+constexpr btScalar kKeptOpposing = btScalar(0.15);
 /// Depth, in cubes of the grid, beyond which a sample is a contact even if the normals are as if its surface slid along
 /// the other one, unless the normals agree by this cosine. The overlaps of `tetskin_contact` hold with 0.95 and with
 /// -1, too.
@@ -77,7 +82,8 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, c
   if (known_.size() < second.data().tets.size()) known_.resize(second.data().tets.size());
   memory.candidates.update(first, second, dt);
   const bool still = memory.candidates.isNearlyAsVisited(kFollowedCubes * second.data().grid.spacing());
-  if (still && apart.isZero() && follow(touches)) return memory.overlap;
+  if (still && memory.follows && apart.isZero() && follow(touches)) return memory.overlap;
+  memory.follows = apart.isZero();
   second.place();
   overlap_ = {};
   touches.clear();
@@ -115,20 +121,33 @@ bool PairSearch::follow(std::vector<Touch>& touches) {
   return true;
 }
 
-/// A node that touches nothing in this step keeps the sample with which it touched before.
+/// A node that touches nothing in this step keeps the samples with which it touched before.
 void PairSearch::remember(PairMemory& memory) const {
   memory.touched.clear();
   memory.pierced.clear();
-  const std::vector<int>& nodes = now_.first->data().sampleNodes;
-  for (const int sample : touched_) {
-    const int node = nodes[static_cast<std::size_t>(sample)];
-    if (touchOfNode_[static_cast<std::size_t>(node)] < 0) memory.touched.push_back(sample);
-  }
   for (const Touch& touch : *touches_) {
-    memory.touched.push_back(touch.sample);
+    memory.touched.push_back({touch.sample, 0});
     if (touch.pierces) memory.pierced.push_back(touch.sample);
   }
-  for (std::vector<int>* samples : {&memory.touched, &memory.pierced}) std::sort(samples->begin(), samples->end());
+  std::sort(memory.pierced.begin(), memory.pierced.end());
+  const auto less = [](const TouchedSample& a, const TouchedSample& b) { return a.sample < b.sample; };
+  std::sort(memory.touched.begin(), memory.touched.end(), less);
+  const auto now = static_cast<std::ptrdiff_t>(memory.touched.size());
+  const std::vector<int>& nodes = now_.first->data().sampleNodes;
+  for (const TouchedSample& known : touched_) {
+    if (std::binary_search(memory.touched.begin(), memory.touched.begin() + now, known, less)) continue;
+    const int node = nodes[static_cast<std::size_t>(known.sample)];
+    const int age = known.age + (touchOfNode_[static_cast<std::size_t>(node)] < 0 ? 0 : 1);
+    if (age < kRememberedSteps) memory.touched.push_back({known.sample, age});
+  }
+  std::inplace_merge(memory.touched.begin(), memory.touched.begin() + now, memory.touched.end(), less);
+}
+
+/// Below 0: it has not touched.
+int PairSearch::ageOf(int sample) const {
+  const auto known = std::lower_bound(touched_.begin(), touched_.end(), sample,
+                                      [](const TouchedSample& a, int wanted) { return a.sample < wanted; });
+  return known != touched_.end() && known->sample == sample ? known->age : -1;
 }
 
 const ContactBox& PairSearch::beginRun(const VisitedRun& run) {
@@ -337,7 +356,8 @@ bool PairSearch::chooseNormal(const btVector3& own, bool onFace, Touch& touch) c
   const bool pierced = contains(pierced_, touch.sample);
   touch.pierces = !overlaps && (pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing());
   if (touch.pierces) return own.dot(touch.normal) < kAgreeing;
-  return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing);
+  const btScalar kept = ageOf(touch.sample) >= 0 ? kKeptOpposing : btScalar(0);
+  return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing) + kept;
 }
 
 void PairSearch::accumulateOverlap(const btVector3& own, const Touch& touch) {
@@ -383,7 +403,7 @@ void PairSearch::makeTouch(int k, const SamplePosition& position) {
 /// Samples that touched in the step before count as deeper: otherwise a resting body would be supported by other
 /// samples in each step, and jitter.
 btScalar PairSearch::rankOf(const Touch& touch) const {
-  return contains(touched_, touch.sample) ? touch.distance - kKeptCubes * now_.second->data().grid.spacing()
+  return ageOf(touch.sample) == 0 ? touch.distance - kKeptCubes * now_.second->data().grid.spacing()
                                           : touch.distance;
 }
 
@@ -410,7 +430,7 @@ void PairSearch::keepDeepest(const Touch& touch, int node) {
 /// were it not a contact, too, they would take turns, and the part would swing from step to step.
 bool PairSearch::staysBeside(const Touch& touch, const Touch& deepest) const {
   const btScalar apart = kBesideEdges * now_.first->data().edge;
-  return contains(touched_, touch.sample) && (touch.point - deepest.point).length2() > apart * apart;
+  return ageOf(touch.sample) >= 0 && (touch.point - deepest.point).length2() > apart * apart;
 }
 
 void PairSearch::replace(int index, const Touch& by) {

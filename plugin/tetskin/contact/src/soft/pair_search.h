@@ -36,12 +36,19 @@ struct Overlap {
   int agreeing = 0;  ///< number of samples inside or within reach whose normals agree with those of the other surface
 };
 
+/// A sample that has touched the other body in one of the last steps.
+struct TouchedSample {
+  int sample = 0;
+  int age = 0;  ///< steps in which its node has touched with other samples since then
+};
+
 /// What a pair of bodies stores from step to step about the first one's samples in the second one.
 struct PairMemory {
   PairCandidates candidates;
   ContactSides sides;
-  Overlap overlap;           ///< when the touches were searched for
-  std::vector<int> touched;  ///< samples by which nodes touched in the last step, ascending
+  Overlap overlap;      ///< when the touches were searched for
+  bool follows = false;  ///< they may be followed: that search had no direction in which the body was to leave
+  std::vector<TouchedSample> touched;  ///< samples by which nodes have touched, ascending
   std::vector<int> pierced;  ///< samples that pierced the surface in the last step
 };
 
@@ -106,6 +113,7 @@ class PairSearch {
   void add(const Touch& touch, int node);
   Touch& at(int index) { return (*touches_)[static_cast<std::size_t>(index)]; }
   btScalar rankOf(const Touch& touch) const;
+  int ageOf(int sample) const;
 
   Search now_{};
   std::uint64_t pair_ = 0;       ///< number of the pair that is searched
@@ -118,7 +126,8 @@ class PairSearch {
   std::vector<btScalar>
       carried_[3];                ///< by sample of the run: its coordinates; lanes that are left over repeat the last
   std::vector<btScalar> inside_;  ///< by sample of the run: how far inside of the tet it is
-  std::vector<int> touched_, pierced_;  ///< samples of the step before
+  std::vector<TouchedSample> touched_;  ///< of the steps before
+  std::vector<int> pierced_;            ///< samples of the step before
   std::vector<SamplePosition> positions_;
   std::vector<int> heads_;  ///< by sample of the run: index in `positions_`
   std::vector<Touch>* touches_ = nullptr;
