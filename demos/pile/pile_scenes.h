@@ -44,7 +44,8 @@ PileOptions presetOf(const std::string& scene);
 /// seed  1: rotations that are the same in all versions; any other: random ones
 Eigen::Quaterniond turnOf(int seed, int k);
 
-// What `PileScene::build` is. Soft bodies of three models, or of the user's mesh, fall into a bowl with leaning walls.
+// The functions that build the scenes. In the first two, soft bodies of three models, or of the user's mesh, fall into
+// a bowl.
 
 /// One above the other; some fall across poles.
 void buildColumn(const PileOptions& options, Pile& pile);
