@@ -20,6 +20,7 @@
 #include "bench/body_cases.h"
 #include "bench/contact_cases.h"
 #include "bench/palette_cases.h"
+#include "bench/pile_cases.h"
 #include "bench/step_cases.h"
 #include "bench/touch_cases.h"
 #include "scenes/caged_mesh.h"
@@ -356,6 +357,7 @@ int main(int argc, char** argv) {
       bench::registerBodyCases();
       bench::registerStepCases();
       bench::registerContactCases();
+      bench::registerPileCases();
       bench::registerTouchCases();
       registerAttachSizes();
       registerBuildCageSizes();

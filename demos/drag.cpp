@@ -20,6 +20,7 @@
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/joined_mesh.h"
+#include "scenes/placement.h"
 #include "scenes/playback.h"
 #include "scenes/printed_table.h"
 #include "scenes/recording.h"
@@ -283,13 +284,6 @@ std::vector<Vector3d> Drag::surface() const {
   return points;
 }
 
-Eigen::Affine3d affine(const btTransform& transform) {
-  Eigen::Affine3d result = Eigen::Affine3d::Identity();
-  for (int row = 0; row < 3; ++row) result.linear().row(row) = toEigen(transform.getBasis()[row]);
-  result.translation() = toEigen(transform.getOrigin());
-  return result;
-}
-
 Recording Drag::record(const std::string& view) const {
   std::vector<std::string> facts = factsOf(model_);
   facts.emplace_back("picked at the top, swung, hung on a ring, pushed");
@@ -305,7 +299,7 @@ Recording Drag::record(const std::string& view) const {
 ViewMoment Drag::moment() const {
   ViewMoment moment;
   moment.bodies = {nodesOf(body_)};
-  for (const btTransform& position : propPositions()) moment.props.push_back(affine(position));
+  for (const btTransform& position : propPositions()) moment.props.push_back(affineOf(position));
   return moment;
 }
 

@@ -5,6 +5,7 @@ compose.py drop  FOLDER PNG FRAME...         moments of the drop demo's sequence
 compose.py gap   FOLDER PNG FOLDER FRAME     the same moment of two sequences from nearby, by the cage's nodes and by the
                                              surface
 compose.py pile  FOLDER PNG FRAME            a moment of the pile demo's sequence, from two sides
+compose.py pit   FOLDER PNG FRAME            a moment of its ball pit, and a heavy ball there from nearby
 compose.py cages MESH.obj PNG CAGE.vtk...    cages around their mesh, side by side
 compose.py turn  CAGE.vtk TURNED.vtk         a cage twisted about its z axis, for tetskin_deform
 compose.py twist MESH.obj PNG MESH.obj       two surfaces that followed it, with their normals, side by side
@@ -29,6 +30,8 @@ FLOOR_HALF_SIDE = 8.0
 DROP_VIEW = (-1.6, 2.0, 5.0), (-0.02, -0.08, 0.1), 28.5
 GAP_VIEW = (-0.5, -0.80, 5.5), (-0.05, -0.72, 0.0), 20.0
 PILE_VIEWS = ((0.0, 5.5, 13.0), (0.0, 1.5, 0.0), 29.0), ((13.0, 5.0, -3.0), (0.0, 1.5, 0.0), 29.0)
+PIT_VIEWS = ((4.4, 4.3, 6.6), (0.0, 0.15, 0.15), 32.0), ((2.0, 1.3, 2.5), (0.75, 0.45, 0.45), 29.0)
+PIT_FRONT = np.array((1.0, 0.0, 1.0))  # walls on this side are left out, as they are between the viewer and the mat
 
 TWIST = 1.8  # radians per unit of length
 TWIST_VIEW = (0.9, 1.5, 4.2), (0.12, 0.44, 0.0), 22.0  # position, focus, angle
@@ -58,6 +61,10 @@ MATERIALS = {
     "serpent": ((0.10, 0.44, 0.27), 1.0, 0.25, 0.25),
     "hand": ((0.86, 0.58, 0.42), 0.9, 0.3, 0.1),
     "bar": ((0.22, 0.38, 0.62), 0.9, 0.3, 0.1),
+    "mat": ((0.62, 0.78, 0.80), 0.8, 0.4, 0.0),
+    "mat_chequer": ((0.36, 0.60, 0.66), 0.8, 0.4, 0.0),
+    "ball": ((0.93, 0.62, 0.22), 0.9, 0.25, 0.3),
+    "heavy_ball": ((0.42, 0.43, 0.47), 0.9, 0.25, 0.4),
 }
 
 
@@ -207,6 +214,20 @@ def pile_panel(folder, frame, view):
     return scene.draw(*view, {"floor": shadow(2048, bodies)})
 
 
+def pit_panel(folder, frame, view):
+    scene = Scene()
+    add_mesh(scene, *read_obj(folder / f"frame_{frame:04d}.obj"))
+    points, boxes = read_obj(folder / "obstacles.obj")
+    floor = points[boxes[0][2], 1].max()
+    square = FLOOR_HALF_SIDE * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]) + (0, floor, 0)
+    scene.add("floor", square, np.array([[0, 1, 2], [0, 2, 3]]))
+    for _, _, box in boxes[1:]:
+        corners = points[box.ravel()]
+        if corners.mean(axis=0) @ PIT_FRONT < 0:
+            scene.add("wall", corners, np.arange(len(corners)).reshape(-1, 3))
+    return scene.draw(*view)
+
+
 def cage_panel(mesh, cage):
     """The cage's boundary over the mesh, and its number of tets. Only faces towards the viewer: the rest is clutter."""
     position, focus = (-1.3, 2.0, 4.1), (-0.03, 0.45, 0.05)
@@ -336,6 +357,8 @@ def main():
         save(panels, ["by the cage's nodes", "by the surface"], GAP, target)
     elif what == "pile":
         save([pile_panel(Path(source), int(rest[0]), view) for view in PILE_VIEWS], ["", ""], GAP, target)
+    elif what == "pit":
+        save([pit_panel(Path(source), int(rest[0]), view) for view in PIT_VIEWS], ["", ""], GAP, target)
     elif what == "turn":
         turn(source, target)
     elif what == "open":

@@ -19,6 +19,9 @@ constexpr Material kMaterials[] = {
     {"pointer", {0.95, 0.45, 0.12}, 0.3},    {"floor", {0.957, 0.949, 0.933}, 0.0},
     {"ramp", {0.66, 0.74, 0.84}, 0.0},       {"dome", {0.93, 0.66, 0.50}, 0.0},
     {"wall", {0.66, 0.72, 0.78}, 0.0, 0.22}, {"pole", {0.35, 0.36, 0.40}, 0.2},
+    {"mat", {0.62, 0.78, 0.80}, 0.1},        {"mat_chequer", {0.36, 0.60, 0.66}, 0.1},
+    {"ball", {0.93, 0.62, 0.22}, 0.3},       {"heavy_ball", {0.42, 0.43, 0.47}, 0.4},
+    {"cube", {0.80, 0.33, 0.38}, 0.2},
 };
 
 /// In viewers whose only light is at the camera, surfaces that face upwards would be black.

@@ -26,6 +26,13 @@ void Placement::readSurface(const SoftBodySkin& skin, std::vector<Eigen::Vector3
   }
 }
 
+Eigen::Affine3d affineOf(const btTransform& transform) {
+  Eigen::Affine3d result = Eigen::Affine3d::Identity();
+  for (int row = 0; row < 3; ++row) result.linear().row(row) = toEigen(transform.getBasis()[row]);
+  result.translation() = toEigen(transform.getOrigin());
+  return result;
+}
+
 Placement placementOf(const Box3& box) {
   Placement placement;
   placement.centre = box.center();

@@ -39,6 +39,9 @@ std::vector<Eigen::Matrix<Scalar, 3, 1>> nodesOf(const btSoftBody& body) {
   return nodes;
 }
 
+/// Where a rigid body is, as pages and GLB take it.
+Eigen::Affine3d affineOf(const btTransform& transform);
+
 /// Scales a box to kSize, and puts its centre at the origin.
 Placement placementOf(const Box3& box);
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
+#include <algorithm>
+
 #include "drop_run.h"
 
 namespace tetskin {
@@ -83,6 +85,91 @@ TEST(Pile, HeapsBodiesAndTellsHowLongEachStageTakes) {
   for (const char* line : {"\n    search, soft ", "\n    rest of Bullet's step ", "\n    skin "}) {
     EXPECT_NE(result.out.find(line), std::string::npos) << line << result.out;
   }
+}
+
+TEST(Pile, LetsBallsSinkIntoAMatAndTellsWhatEachCosts) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_PILE, {"--scene", "pit", "--bodies", "6", "--tets", "300", "--frames",
+                                                         "61", "--every", "60", "--view", "view.html"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/pile/summary.json");
+  EXPECT_TRUE(json["finite"]);
+  EXPECT_EQ(json["bodies"], 1);
+  EXPECT_EQ(json["balls"], 6);
+  EXPECT_EQ(json["self_contact"], "off");
+  EXPECT_GT(json["passes_per_step"], 0.1);
+  EXPECT_GT(json["deepest_dent"], 0.02) << "where the heavy balls land";
+  EXPECT_LE(json["deepest_dent_at_end"], json["deepest_dent"]);
+  EXPECT_GT(json["deepest_dent_at_end"], 0.0);
+  EXPECT_LT(json["deepest_dent"], 0.4) << "the mat is as thick";
+  EXPECT_GT(json["deepest_vertex"], -0.01);
+  EXPECT_LE(json["asleep_at_end"], 7);
+  EXPECT_NEAR(json["simulation_us_per_thing_and_frame"], 1e3 / 6 * json["simulation_ms_per_frame"].get<double>(), 1e-6);
+  for (const char* text : {"  time  asleep  fastest  deepest vertex  deepest dent  iterations    passes  ",
+                           "each ball\n", "\n  1.00  ", "1 and 6 balls, ", " us per frame and ball\n"}) {
+    EXPECT_NE(result.out.find(text), std::string::npos) << text << result.out;
+  }
+  const TriangleMesh first = loadMesh(folder.path("out/pile/frame_0000.obj")).value();
+  const TriangleMesh last = loadMesh(folder.path("out/pile/frame_0060.obj")).value();
+  EXPECT_EQ(first.triangleCount(), last.triangleCount());
+  EXPECT_LT(boundingBox(last.positions).max().y(), boundingBox(first.positions).max().y() - 0.1) << "balls have fallen";
+  EXPECT_GT(boundingBox(last.positions).min().y(), -0.01);
+  // Where three.js is missing, there is no page.
+  EXPECT_NE((folder.exists("view.html") ? folder.read("view.html") : "6 balls").find("6 balls"), std::string::npos);
+}
+
+TEST(Pile, CubesInABinTouchEachOtherAndStayInside) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_PILE, {"--scene", "bin", "--bodies", "24", "--tets", "40",
+                                                         "--threads", "2", "--frames", "81", "--every", "80"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = folder.json("out/pile/summary.json");
+  EXPECT_TRUE(json["finite"]);
+  EXPECT_EQ(json["bodies"], 24);
+  EXPECT_FALSE(json.contains("balls"));
+  EXPECT_GT(json["pairs_at_end"], 0);
+  EXPECT_GT(json["contacts_at_end"], 0);
+  EXPECT_GT(json["deepest_vertex"], -0.02) << "a twentieth of a cube";
+  EXPECT_NE(result.out.find("each cube\n"), std::string::npos) << result.out;
+  const Box3 box = boundingBox(loadMesh(folder.path("out/pile/frame_0080.obj")).value().positions);
+  EXPECT_GT(box.min().minCoeff(), -1.26);
+  EXPECT_GT(box.min().y(), -0.01);
+  EXPECT_LT(std::max(box.max().x(), box.max().z()), 1.26);
+}
+
+TEST(Pile, BallsAndCubesStartApartWhereTheSeedPutsThem) {
+  const CommandFolder folder;
+  for (const std::string scene : {"pit", "bin"}) {
+    const auto start = [&](const std::string& seed) {
+      const CommandResult result =
+          folder.run(TETSKIN_PILE, {"--scene", scene, "--bodies", "40", "--tets", "60", "--seed", seed, "--frames", "1",
+                                    "--format", "obj", "--out", "o"});
+      EXPECT_EQ(result.status, 0) << result.err;
+      EXPECT_EQ(folder.json("o/summary.json")["vertices_inside_at_end"], 0) << scene << seed;
+      return folder.read("o/frame_0000.obj");
+    };
+    const std::string one = start("1"), two = start("2");
+    EXPECT_NE(one, two) << scene;
+    EXPECT_EQ(start("2"), two) << scene;
+  }
+}
+
+TEST(Pile, RefusesWhatASceneCannotHave) {
+  const CommandFolder folder;
+  folder.write("box.obj", test::boxObj());
+  const auto refuse = [&](std::vector<std::string> arguments, const char* word) {
+    test::expectRefused(folder.run(TETSKIN_PILE, arguments), word);
+    EXPECT_FALSE(folder.exists("out"));
+  };
+  refuse({"--scene", "pond"}, "--scene");
+  for (const std::string scene : {"pit", "bin"}) {
+    refuse({"--scene", scene, "--mesh", "box.obj"}, "takes no --mesh");
+    refuse({"--scene", scene, "--triangles", "3000"}, "takes no --triangles");
+    refuse({"--scene", scene, "--calibrate"}, "takes no --calibrate");
+  }
+  refuse({"--bodies", "101"}, "--scene column: --bodies 101 is more than 100");
+  refuse({"--scene", "heap", "--bodies", "101"}, "--scene heap: --bodies 101 is more than 100");
+  refuse({"--scene", "bin", "--bodies", "1001"}, "from 1 to 1000");
 }
 
 TEST(Pile, TakesAMeshOfTheUsers) {

@@ -31,6 +31,10 @@ RUNS = {  # name: program and arguments; (of all runs, of --quick)
                       "--triangles", "20000"], None),
     "pile": (["tetskin_pile"], ["tetskin_pile", "--bodies", "3", "--tets", "200", "--triangles", "4000", "--frames",
                                 "90"]),
+    "balls on a mat": (["tetskin_pile", "--scene", "pit", "--bodies", "10", "--frames", "120"],
+                       ["tetskin_pile", "--scene", "pit", "--bodies", "4", "--tets", "300", "--frames", "60"]),
+    "cubes in a bin": (["tetskin_pile", "--scene", "bin", "--bodies", "25", "--frames", "180"],
+                       ["tetskin_pile", "--scene", "bin", "--bodies", "17", "--tets", "40", "--frames", "90"]),
     "drag": (["tetskin_drag"], ["tetskin_drag", *SERPENT, "--tets", "300", "--frames", "90"]),
     "twist": (["tetskin_twist"], ["tetskin_twist", "--triangles", "4000", "--tets", "200", "--frames", "60"]),
 }

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+namespace tetskin::bench {
+
+/// Registers what a frame of many bodies that touch at once costs: balls on a soft mat (`Pit/`), and soft cubes in a
+/// bin (`Bin/`), the scenes of tetskin_pile. `/falling` is the mean of the first two seconds, `/rest` that of a second
+/// in which the pile lies, awake.
+void registerPileCases();
+
+}  // namespace tetskin::bench
