@@ -20,8 +20,8 @@ namespace tetskin {
 /// Resolution of a contact shape.
 struct ContactShapeOptions {
   /// Surface points that are tested against other bodies; met within a third. Coarse meshes get extra points on their
-  /// triangles; of fine ones some vertices are left out. Empty: 30 for each node of the cage's surface, as of each node
-  /// one or two are used, but at least 2,000 and at most 8,000.
+  /// triangles; of fine ones some vertices are left out. Empty: as many as vertices, or 30 for each node of the cage's
+  /// surface if these are more; but at least 2,000 and at most 8,000.
   std::optional<std::size_t> sampleCount;
   /// Cells of the distance grid along the largest side of the cage's box. Features thinner than two cells are not
   /// resolved well. The time to create the shape grows nearly with their cube: 256 take some 30 times as long as 64.

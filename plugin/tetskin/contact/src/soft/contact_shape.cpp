@@ -30,14 +30,16 @@ constexpr btScalar kWeightMargin = btScalar(1e-3);
 /// Default number of samples, for each node of the cage's surface, and its bounds.
 constexpr std::size_t kSamplesPerNode = 30, kFewSamples = 2000, kManySamples = 8000;
 
-/// Of each node one or two samples are used. With fewer, a pile of cubes takes longer to come to rest.
-std::size_t defaultSampleCount(const Cage& cage) {
+/// Of each node few samples are used; with fewer than these, a pile of cubes takes longer to come to rest, and with
+/// fewer than vertices, what is finer than the cage enters other bodies: in the heap of `tetskin_pile` by 2.6 % of the
+/// body's size instead of 0.5.
+std::size_t defaultSampleCount(const Cage& cage, const TriangleMesh& mesh) {
   std::vector<char> atSurface(cage.mesh.nodes.size(), 0);
   for (const std::array<int, 3>& face : boundaryFaces(cage.mesh)) {
     for (const int n : face) atSurface[static_cast<std::size_t>(n)] = 1;
   }
   const auto nodes = static_cast<std::size_t>(std::count(atSurface.begin(), atSurface.end(), 1));
-  return std::clamp(kSamplesPerNode * nodes, kFewSamples, kManySamples);
+  return std::clamp(std::max(kSamplesPerNode * nodes, mesh.vertexCount()), kFewSamples, kManySamples);
 }
 
 Status checkOptions(const ContactShapeOptions& options) {
@@ -354,7 +356,7 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
                       : "the mesh encloses no volume that the grid resolves; close the mesh, or give the "
                         "shape more cells"};
   }
-  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.sampleCount.value_or(defaultSampleCount(cage)));
+  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.sampleCount.value_or(defaultSampleCount(cage, mesh)));
   Status status;
   const std::vector<int> tets = tetsOf(cage, samples, status);
   if (!status.ok()) return status;

@@ -21,6 +21,9 @@ constexpr btScalar kKeptCubes = btScalar(0.1);
 /// parts swing between the two: in `tetskin_contact` soft stack/1 to 100 to 1 never rests (nodes at 0.01 of its size
 /// per second, where 0.005 is promised); at 0.2, nodes of light corners in a bin of 100 cubes swing at 1 m/s.
 constexpr btScalar kBesideEdges = btScalar(0.1);
+/// Most contacts of a node beside the deepest one, in a direction. With 1, a light end in the heap of `tetskin_pile`
+/// swings at 1 m/s on four samples.
+constexpr std::size_t kMostBeside = 3;
 /// Steps for which a sample is remembered that has touched: samples that take turns do so within fewer.
 constexpr int kRememberedSteps = 16;
 /// Cosine between normals from which on two contacts of a node count as one: a node in a fold is pushed several ways.
@@ -407,30 +410,38 @@ btScalar PairSearch::rankOf(const Touch& touch) const {
                                           : touch.distance;
 }
 
+/// Of a node with samples on a long part, one may touch while others that have touched are held by that contact only:
+/// were they not contacts, too, they would take turns, and the part would swing from step to step.
 void PairSearch::keepDeepest(const Touch& touch, int node) {
   assert(node >= 0 && static_cast<std::size_t>(node) < touchOfNode_.size());
-  int first = -1, second = -1;  // those of its direction
+  sameWay_.clear();
   for (int t = touchOfNode_[static_cast<std::size_t>(node)]; t >= 0; t = at(t).next) {
-    if (at(t).normal.dot(touch.normal) < kOneWay) continue;
-    (first < 0 ? first : second) = t;
+    if (at(t).normal.dot(touch.normal) >= kOneWay) sameWay_.push_back(t);
   }
-  if (first < 0) return add(touch, node);
-  if (second >= 0 && rankOf(at(second)) < rankOf(at(first))) std::swap(first, second);
+  if (sameWay_.empty()) return add(touch, node);
+  const auto isDeeper = [this](int a, int b) { return rankOf(at(a)) < rankOf(at(b)); };
+  std::swap(sameWay_.front(), *std::min_element(sameWay_.begin(), sameWay_.end(), isDeeper));
   Touch other = touch;  // the one that is not the deepest
-  if (rankOf(touch) < rankOf(at(first))) {
-    other = at(first);
-    replace(first, touch);
+  if (rankOf(touch) < rankOf(at(sameWay_.front()))) {
+    other = at(sameWay_.front());
+    replace(sameWay_.front(), touch);
   }
-  if (!staysBeside(other, at(first))) return;
-  if (second < 0) return add(other, node);
-  if (rankOf(other) < rankOf(at(second))) replace(second, other);
+  if (ageOf(other.sample) >= 0) keepBeside(other, node);
 }
 
-/// Of a node with samples on a long part, one may touch while another that has touched is held by that contact only:
-/// were it not a contact, too, they would take turns, and the part would swing from step to step.
-bool PairSearch::staysBeside(const Touch& touch, const Touch& deepest) const {
+/// Keeps a touch unless one nearby, or enough others, are deeper.
+void PairSearch::keepBeside(const Touch& touch, int node) {
+  assert(!sameWay_.empty());
   const btScalar apart = kBesideEdges * now_.first->data().edge;
-  return ageOf(touch.sample) >= 0 && (touch.point - deepest.point).length2() > apart * apart;
+  const auto isNear = [&](int t) { return (touch.point - at(t).point).length2() <= apart * apart; };
+  if (isNear(sameWay_.front())) return;
+  auto rival = std::find_if(sameWay_.begin() + 1, sameWay_.end(), isNear);
+  if (rival == sameWay_.end()) {
+    if (sameWay_.size() <= kMostBeside) return add(touch, node);
+    rival = std::max_element(sameWay_.begin() + 1, sameWay_.end(),
+                             [this](int a, int b) { return rankOf(at(a)) < rankOf(at(b)); });
+  }
+  if (rankOf(touch) < rankOf(at(*rival))) replace(*rival, touch);
 }
 
 void PairSearch::replace(int index, const Touch& by) {

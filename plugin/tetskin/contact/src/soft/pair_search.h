@@ -62,7 +62,7 @@ class PairSearch {
   ///          which on it applies; or 0
   /// touches  those of the step before, on return those of this step: for each node of the first body, the deepest of
   ///          the samples of which it has the largest weight, and the deepest of those that are pushed in another
-  ///          direction; beside it, another one that touched in the step before. While the bodies have hardly moved
+  ///          direction; beside each, others that have touched in the last steps. While the bodies have hardly moved
   ///          relative to each other, they stay the same samples in the same tets
   Overlap find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
                PairMemory& memory, std::vector<Touch>& touches);
@@ -108,7 +108,7 @@ class PairSearch {
   btVector3 ownNormal(int sample) const;
   bool chooseNormal(const btVector3& own, bool onFace, Touch& touch) const;
   void keepDeepest(const Touch& touch, int node);
-  bool staysBeside(const Touch& touch, const Touch& deepest) const;
+  void keepBeside(const Touch& touch, int node);
   void replace(int index, const Touch& by);
   void add(const Touch& touch, int node);
   Touch& at(int index) { return (*touches_)[static_cast<std::size_t>(index)]; }
@@ -132,6 +132,7 @@ class PairSearch {
   std::vector<int> heads_;  ///< by sample of the run: index in `positions_`
   std::vector<Touch>* touches_ = nullptr;
   std::vector<int> touchOfNode_;
+  std::vector<int> sameWay_;  ///< in `touches_`: those of a node in one direction, the deepest first
   Overlap overlap_;
 };
 
