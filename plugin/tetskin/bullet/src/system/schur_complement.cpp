@@ -86,8 +86,7 @@ SchurComplement::Block SchurComplement::block(Eigen::Index row, Eigen::Index col
   const auto found = std::lower_bound(columns.rows.begin(), columns.rows.end(), wanted);
   assert(found != columns.rows.end() && *found == wanted);
   const Eigen::Index top = columns.tops[static_cast<std::size_t>(found - columns.rows.begin())];
-  return {matrix_.valuePtr() + columns.firstValue + top, rows.size, columns.size,
-          Eigen::OuterStride<>(columns.height)};
+  return {matrix_.valuePtr() + columns.firstValue + top, rows.size, columns.size, Eigen::OuterStride<>(columns.height)};
 }
 
 void SchurComplement::factor() {

@@ -69,7 +69,7 @@ class SchurComplement {
 
   Eigen::Index size_ = 0;
   std::vector<Group> groups_;
-  std::vector<std::size_t> groupOf_;  ///< by unknown
+  std::vector<std::size_t> groupOf_;    ///< by unknown
   Eigen::SparseMatrix<double> matrix_;  ///< its lower triangle, and the whole of the blocks on the diagonal
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
   Eigen::LDLT<Matrix> pivoted_;

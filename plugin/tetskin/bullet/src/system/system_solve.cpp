@@ -20,6 +20,11 @@ constexpr int kMaxPasses = 30;
 /// Passes from which on the derivative of sliding is used, up to a tenth, and the length of a step from which on it is.
 constexpr int kPassesBeforeDerivative = 2;
 constexpr btScalar kKept = btScalar(0.1), kLongStep = btScalar(0.9);
+/// Passes from which on bounds of friction are means of those before and the new ones, and the share of the new: where
+/// friction jams a body between two others, its bound swings from pass to pass about the one that agrees with itself.
+/// Without, 80 of 720 steps of 50 balls in the pit of `tetskin_pile` do not converge.
+constexpr int kPassesBeforeMeans = 6;
+constexpr btScalar kNewBound = btScalar(0.5);
 /// A solve has converged if the residual is at most this multiple of the tolerance.
 constexpr double kAccepted = 3.0;
 /// Share of the squared residual that a pass may leave to the next one, in bodies that it does not move.
@@ -96,7 +101,7 @@ SolveReport SystemSolve::solve() {
     length = derivative ? searchLine() : btScalar(1);
     if (length < 1) moveBack(length);
     if (!derivative || length < 1) findResiduals();
-    refreshBounds();
+    refreshBounds(pass < kPassesBeforeMeans ? btScalar(1) : kNewBound);
   }
   if (!system_.rows.empty()) settleReduced();
   forEachBody([&](Body& body, ParallelFor*) {
@@ -243,12 +248,14 @@ void SystemSolve::listCoupled(Body& body) const {
 }
 
 /// Bounds friction by the normal impulses of the current pass.
-void SystemSolve::refreshBounds() {
-  assert(stepped_.size() == system_.rows.size());
+/// share  of these in the bounds; the rest is that of the bounds before
+void SystemSolve::refreshBounds(btScalar share) {
+  assert(stepped_.size() == system_.rows.size() && share > 0 && share <= 1);
   forEachRow([&](std::size_t r) {
     ContactRow& row = *system_.rows[r];
     const btVector3 impulse = row.impulse - row.tangent * stepped_[r];
-    row.normalBound = std::max(row.normal.dot(impulse), btScalar(0));
+    const btScalar bound = std::max(row.normal.dot(impulse), btScalar(0));
+    row.normalBound = share < 1 ? row.normalBound + share * (bound - row.normalBound) : bound;
   });
 }
 

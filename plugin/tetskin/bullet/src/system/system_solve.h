@@ -103,7 +103,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   const CarriedPoint& pointOf(std::size_t row, std::size_t index) const {
     return in_.rows.originOf(*system_.rows[row]).points[index];
   }
-  void refreshBounds();
+  void refreshBounds(btScalar share);
   bool isHung(const Body& body) const;
   void giveMomentum();
   void removeMomentumError(Body& body) const;
@@ -174,7 +174,7 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   SchurComplement schurComplement_;
   std::vector<std::size_t> reducedRows_;  ///< those with an end that reduced unknowns move, ascending
   Vector stepImages_;                     ///< of components: Z^T A times the step of the conjugate gradient
-  Vector reducedOfStep_;  ///< what the step of the conjugate gradient changes the reduced unknowns by
+  Vector reducedOfStep_;                  ///< what the step of the conjugate gradient changes the reduced unknowns by
   std::vector<EndVelocities> endVelocities_, endSteps_;  ///< by row: of its ends, by the solutions and by the steps
   std::vector<btVector3> before_, stepped_;              ///< by row: u when the pass began, and by how much it changed
 };

@@ -356,7 +356,8 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
                       : "the mesh encloses no volume that the grid resolves; close the mesh, or give the "
                         "shape more cells"};
   }
-  const std::vector<SurfaceSample> samples = sampleSurface(mesh, visible, options.sampleCount.value_or(defaultSampleCount(cage, mesh)));
+  const std::vector<SurfaceSample> samples =
+      sampleSurface(mesh, visible, options.sampleCount.value_or(defaultSampleCount(cage, mesh)));
   Status status;
   const std::vector<int> tets = tetsOf(cage, samples, status);
   if (!status.ok()) return status;

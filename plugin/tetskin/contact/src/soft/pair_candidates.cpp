@@ -35,8 +35,8 @@ void PairCandidates::markVisited() {
 bool PairCandidates::isNearlyAsVisited(btScalar maximum) const {
   assert(!(maximum < 0));
   return visited_ && std::all_of(runs_.begin(), runs_.end(), [&](const Run& run) {
-    return run.path - run.visitedPath + std::max(run.reach - run.visitedReach, btScalar(0)) <= maximum;
-  });
+           return run.path - run.visitedPath + std::max(run.reach - run.visitedReach, btScalar(0)) <= maximum;
+         });
 }
 
 /// Returns false if the candidates may not be complete any more.

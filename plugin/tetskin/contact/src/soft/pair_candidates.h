@@ -86,7 +86,7 @@ class PairCandidates {
     Clearance until{0, 0};            ///< the least of its links' values
     btScalar path = 0;   ///< bound of the motion of its samples relative to any tet of its links since they were found
     btScalar reach = 0;  ///< as in VisitedRun
-    std::size_t samples = 0;  ///< of its first sample, in `samples_`
+    std::size_t samples = 0;                     ///< of its first sample, in `samples_`
     btScalar visitedPath = 0, visitedReach = 0;  ///< when it was visited
   };
   struct Pair {

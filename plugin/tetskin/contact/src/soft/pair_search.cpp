@@ -406,8 +406,7 @@ void PairSearch::makeTouch(int k, const SamplePosition& position) {
 /// Samples that touched in the step before count as deeper: otherwise a resting body would be supported by other
 /// samples in each step, and jitter.
 btScalar PairSearch::rankOf(const Touch& touch) const {
-  return ageOf(touch.sample) == 0 ? touch.distance - kKeptCubes * now_.second->data().grid.spacing()
-                                          : touch.distance;
+  return ageOf(touch.sample) == 0 ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
 }
 
 /// Of a node with samples on a long part, one may touch while others that have touched are held by that contact only:

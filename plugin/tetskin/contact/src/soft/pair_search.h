@@ -46,10 +46,10 @@ struct TouchedSample {
 struct PairMemory {
   PairCandidates candidates;
   ContactSides sides;
-  Overlap overlap;      ///< when the touches were searched for
+  Overlap overlap;       ///< when the touches were searched for
   bool follows = false;  ///< they may be followed: that search had no direction in which the body was to leave
   std::vector<TouchedSample> touched;  ///< samples by which nodes have touched, ascending
-  std::vector<int> pierced;  ///< samples that pierced the surface in the last step
+  std::vector<int> pierced;            ///< samples that pierced the surface in the last step
 };
 
 /// Finds the touches of pairs, one pair after the other; reuses its memory.
