@@ -17,7 +17,6 @@ using namespace bullet_detail;
 
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -176,21 +175,31 @@ TEST(RigidUnknowns, AreMovedByAnImpulseAsTheyMoveThePoint) {
   ASSERT_EQ(size, 6 + 6 + 8);
   for (const RigidPoint& point : points) {
     expectTransposes(rigids, point, size);
-    // The added stiffness must be symmetric, and must do to the unknowns what H does to the point.
-    const Eigen::Matrix3d h = Vector3d(1, 2, 3).asDiagonal();
-    MatrixXd stiffness = MatrixXd::Zero(size, size);
-    rigids.addStiffness(point, point, h, 1.0, stiffness);
+    // The Jacobian, by which a solve finds the stiffness of the unknowns, must move the point as they do.
+    const RigidUnknown& unknown = rigids.list()[static_cast<std::size_t>(point.unknown)];
+    const RigidUnknowns::Jacobian jacobian = rigids.jacobianOf(point);
+    ASSERT_EQ(jacobian.cols(), unknown.size);
     const VectorXd change = wave(size);
     const Vector3d moved = eigen(rigids.velocity(point, change));
-    EXPECT_NEAR(change.dot(stiffness * change), moved.dot(h * moved), 1e-5 * change.squaredNorm());
-    EXPECT_LT((stiffness - stiffness.transpose()).norm(), 1e-12);
+    EXPECT_LT((jacobian * change.segment(unknown.first, unknown.size) - moved).norm(), 1e-5 * change.norm());
+    if (unknown.rigid) {
+      EXPECT_LT((jacobian - bodyJacobian(point)).norm(), 1e-12);
+    }
   }
-  MatrixXd between = MatrixXd::Zero(size, size);
-  rigids.addStiffness(points[0], points[4], Eigen::Matrix3d::Identity(), -2.0, between);
-  const VectorXd change = wave(size);
-  const double expected =
-      -2.0 * eigen(rigids.velocity(points[0], change)).dot(eigen(rigids.velocity(points[4], change)));
-  EXPECT_NEAR(change.dot(between * change), expected, 1e-5 * change.squaredNorm());
+}
+
+TEST(RigidUnknowns, AreToldApartByBodiesNotByLinks) {
+  Box box, other;
+  Chain chain;
+  EXPECT_NE(RigidUnknowns::keyOf(*box.body), RigidUnknowns::keyOf(*other.body));
+  EXPECT_EQ(RigidUnknowns::keyOf(*chain.colliders[0]), RigidUnknowns::keyOf(chain.last()));
+  EXPECT_NE(RigidUnknowns::keyOf(*box.body), RigidUnknowns::keyOf(chain.last()));
+  RigidUnknowns rigids;
+  for (const btCollisionObject* each :
+       {static_cast<btCollisionObject*>(box.body.get()), static_cast<btCollisionObject*>(&chain.last())}) {
+    rigids.at(*each, btVector3(0, 0, 0));
+    EXPECT_EQ(RigidUnknowns::keyOf(rigids.list().back()), RigidUnknowns::keyOf(*each));
+  }
 }
 
 TEST(RigidUnknowns, YieldAsBulletsBodiesDoToAnImpulse) {
