@@ -115,7 +115,7 @@ class Groups {
     SchurComplement::Block block = complement.block(firsts[row], firsts[column]);
     ASSERT_EQ(block.rows(), sizes[row]);
     ASSERT_EQ(block.cols(), sizes[column]);
-    block = stiffness.block(firsts[row], firsts[column], sizes[row], sizes[column]);
+    block += stiffness.block(firsts[row], firsts[column], sizes[row], sizes[column]);  // as rows add theirs
   }
 };
 
