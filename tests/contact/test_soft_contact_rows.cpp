@@ -150,5 +150,18 @@ TEST_F(SoftRows, KeepWhatLeavesUnlessItIsFartherThanItGoesInAStep) {
   EXPECT_EQ(contactsAt(btScalar(-0.3)), 0U);
 }
 
+TEST_F(SoftRows, EndWithinTwoStepsOfABodyThatIsPushedAway) {
+  addTwo(2 * Ball::kRadius - 0.002);
+  for (int step = 0; step < 3; ++step) EXPECT_FALSE(contacts().empty());
+  const btVector3 away(3, 0, 0);
+  bodies[1]->setVelocity(away);
+  EXPECT_FALSE(contacts().empty()) << "it may be thrown back in this step";
+  for (int step = 0; step < 2; ++step) {
+    bodies[1]->translate(away / 240);
+    contacts();
+  }
+  EXPECT_TRUE(rows.lastContacts().empty());
+}
+
 }  // namespace
 }  // namespace tetskin::test
