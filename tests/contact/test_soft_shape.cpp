@@ -154,6 +154,61 @@ TEST(ContactShape, LeavesOutWhatIsHiddenInOtherParts) {
   EXPECT_NEAR(at.distance, -0.2, 0.02);
 }
 
+/// A box of 8 vertices, or a ball, in a cage of cubes of edge 0.2.
+std::size_t samplesOf(const TriangleMesh& mesh, const TetMesh& cage, const ContactShapeOptions& options = {}) {
+  ContactShapeOptions coarse = options;
+  coarse.gridResolution = 16;  // on which samples do not depend
+  const auto made = ContactShape::create(cage, mesh, coarse);
+  EXPECT_TRUE(made.ok()) << made.status().message;
+  return made.value()->sampleCount();
+}
+
+TEST(ContactShape, HasAsManySamplesByDefaultAsItsCageCanUse) {
+  const auto boxIn = [](const TetMesh& cage) {
+    TriangleMesh box = plate().mesh;
+    const Eigen::Vector3d low = box.positions.front(), size = box.positions.back() - low;
+    const Eigen::Vector3d far = cage.nodes.back();
+    for (Eigen::Vector3d& p : box.positions) {
+      p = Eigen::Vector3d::Constant(0.01) +
+          (p - low).cwiseQuotient(size).cwiseProduct(far - Eigen::Vector3d::Constant(0.02));
+    }
+    return box;
+  };
+  const TetMesh small = latticeCage(2, 2, 2, 0.2), large = latticeCage(6, 6, 6, 0.2),
+                huge = latticeCage(10, 10, 10, 0.2);
+  const std::size_t few = samplesOf(boxIn(small), small), more = samplesOf(boxIn(large), large),
+                    most = samplesOf(boxIn(huge), huge);
+  EXPECT_GT(few, 800U);
+  EXPECT_LE(few, 2000U);
+  // 30 for each of 7^3 - 5^3 nodes.
+  EXPECT_GT(more, 6540U * 2 / 3);
+  EXPECT_LT(more, 6540U * 4 / 3);
+  EXPECT_GT(most, 8000U * 2 / 3);
+  EXPECT_LT(most, 8000U * 4 / 3);
+}
+
+TEST(ContactShape, HasAsManySamplesByDefaultAsVerticesWithinBounds) {
+  const auto ballOf = [](int rings) { return sphere(rings, 0.19, Eigen::Vector3d::Constant(0.2)); };
+  const TetMesh cage = latticeCage(2, 2, 2, 0.2);
+  for (const int rings : {8, 48, 110}) {
+    const TriangleMesh mesh = ballOf(rings);
+    const std::size_t wanted = std::clamp(mesh.vertexCount(), std::size_t{2000}, std::size_t{8000});
+    const std::size_t found = samplesOf(mesh, cage);
+    EXPECT_GT(found, wanted * 2 / 3);
+    EXPECT_LT(found, wanted * 4 / 3);
+  }
+}
+
+TEST(ContactShape, HasTheNumberOfSamplesThatIsAskedFor) {
+  for (const std::size_t count : {300, 1500}) {
+    ContactShapeOptions options;
+    options.sampleCount = count;
+    const std::size_t found = samplesOf(ball().mesh, ball().cage, options);
+    EXPECT_GT(found, count * 2 / 3);
+    EXPECT_LT(found, count * 4 / 3);
+  }
+}
+
 TEST(ContactShape, SaysWhatIsWrong) {
   const Ball& model = ball();
   const auto codeOf = [](const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options = {}) {
@@ -163,8 +218,10 @@ TEST(ContactShape, SaysWhatIsWrong) {
   options.gridResolution = 0;
   EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption);
   options = {};
-  options.sampleCount = 0;
-  EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption);
+  for (const std::size_t count : {0, 10'000'001}) {
+    options.sampleCount = count;
+    EXPECT_EQ(codeOf(model.cage, model.mesh, options), StatusCode::InvalidOption) << count;
+  }
   EXPECT_EQ(codeOf(TetMesh{}, model.mesh), StatusCode::Empty);
   EXPECT_EQ(codeOf(model.cage, TriangleMesh{}), StatusCode::Empty);
   TriangleMesh points = model.mesh;
