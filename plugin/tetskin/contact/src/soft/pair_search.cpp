@@ -24,8 +24,8 @@ constexpr btScalar kBesideEdges = btScalar(0.1);
 /// Most contacts of a node beside the deepest one, in a direction. With 1, a light end in the heap of `tetskin_pile`
 /// swings at 1 m/s on four samples.
 constexpr std::size_t kMostBeside = 3;
-/// Depth, in cubes of the grid, from which on there is more than one of them: what others hold does not sink. Were all
-/// of them contacts, a bin of cubes would come to rest later.
+/// Depth, in cubes of the grid, from which on another one becomes a contact beside one of them: what others hold does
+/// not sink. With all of them, a bin of cubes comes to rest later.
 constexpr btScalar kSunkCubes = btScalar(0.05);
 /// Steps for which a sample is remembered that has touched: samples that take turns do so within fewer.
 constexpr int kRememberedSteps = 16;
@@ -439,8 +439,9 @@ void PairSearch::keepBeside(const Touch& touch, int node) {
   if (isNear(sameWay_.front())) return;
   auto rival = std::find_if(sameWay_.begin() + 1, sameWay_.end(), isNear);
   if (rival == sameWay_.end()) {
-    const bool isSunk = touch.distance < -kSunkCubes * now_.second->data().grid.spacing();
-    if (sameWay_.size() <= (isSunk ? kMostBeside : 1)) return add(touch, node);
+    // What has touched in the step before would sink without.
+    const bool sinks = ageOf(touch.sample) == 0 || touch.distance < -kSunkCubes * now_.second->data().grid.spacing();
+    if (sameWay_.size() <= (sinks ? kMostBeside : 1)) return add(touch, node);
     rival = std::max_element(sameWay_.begin() + 1, sameWay_.end(),
                              [this](int a, int b) { return rankOf(at(a)) < rankOf(at(b)); });
   }
