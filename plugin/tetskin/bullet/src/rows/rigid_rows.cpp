@@ -50,7 +50,8 @@ class RigidRowCollector {
       if (joint->isEnabled()) link(joint->getRigidBodyA(), joint->getRigidBodyB(), {nullptr, joint});
     }
     // The list grows by the bodies that those before in it touch, nearest first.
-    for (std::size_t k = 0; k < rigids_.list().size(); ++k) followFrom(RigidUnknowns::keyOf(rigids_.list()[k]));
+    std::size_t next = 0;
+    while (next < rigids_.list().size()) followFrom(RigidUnknowns::keyOf(rigids_.list()[next++]));
   }
 
  private:
