@@ -11,11 +11,6 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// The place of a pair of nodes, j <= i, among all pairs.
-constexpr std::uint32_t placeOf(std::uint32_t i, std::uint32_t j) {
-  return i * (i + 1) / 2 + j;
-}
-
 /// Adds the upper triangle of the matrix.
 void addSymmetric(const btMatrix3x3& m, btScalar factor, btScalar to[6]) {
   const btScalar entries[6] = {m[0][0], m[0][1], m[0][2], m[1][1], m[1][2], m[2][2]};
@@ -126,13 +121,25 @@ void BodyEnds::addBlocks(Group& group, const Rows& rows) {
   if (!group.coupled) findCouplings(group);
   const Node* nodes = &nodes_[ends_[group.first].first];
   const std::uint32_t count = ends_[group.first].last - ends_[group.first].first;
-  Blocks blocks;
-  sumBlocks(group, rows, blocks);
+  Blocks blocks = {};
+  for (std::uint32_t e = group.first; e < group.last; ++e) {
+    const ContactRow& row = *rows[ends_[e].row];
+    if (row.state == ContactRow::State::Apart) continue;
+    const btMatrix3x3& h = row.tangent;
+    const btScalar tangent[6] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
+    const Node* weighted = &nodes_[ends_[e].first];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t j = 0; j <= i; ++j) {
+        const btScalar weight = weighted[i].weight * weighted[j].weight;
+        for (int k = 0; k < 6; ++k) blocks[i][j][k] += weight * tangent[k];
+      }
+    }
+  }
   const Coupling* coupling = couplings_.data() + group.couplings;
   for (std::uint32_t i = 0; i < count; ++i) {
     for (std::uint32_t j = 0; j < i; ++j, ++coupling) {
       if (*coupling) {
-        matrix_->couple(**coupling, blocks[placeOf(i, j)]);
+        matrix_->couple(**coupling, blocks[i][j]);
       } else {
         addApart(group, rows, i, j, blocks);
       }
@@ -140,29 +147,8 @@ void BodyEnds::addBlocks(Group& group, const Rows& rows) {
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     MetNode& met = met_[nodes[i].met];
-    const btScalar* block = blocks[placeOf(i, i)];
-    for (std::size_t k = 0; k < kPadded; ++k) met.block[k] += block[k];
+    for (int k = 0; k < 6; ++k) met.block[k] += blocks[i][i][k];
     met.used = true;
-  }
-}
-
-/// Each pair's weights times the rows' tangents; eight numbers at a time, as registers have them.
-void BodyEnds::sumBlocks(const Group& group, const Rows& rows, Blocks& blocks) const {
-  const std::uint32_t count = ends_[group.first].last - ends_[group.first].first;
-  std::fill_n(&blocks[0][0], kPadded * placeOf(count, 0), btScalar(0));
-  for (std::uint32_t e = group.first; e < group.last; ++e) {
-    const ContactRow& row = *rows[ends_[e].row];
-    if (row.state == ContactRow::State::Apart) continue;
-    const btMatrix3x3& h = row.tangent;
-    const btScalar tangent[kPadded] = {h[0][0], h[0][1], h[0][2], h[1][1], h[1][2], h[2][2]};
-    const Node* weighted = &nodes_[ends_[e].first];
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (std::uint32_t j = 0; j <= i; ++j) {
-        const btScalar weight = weighted[i].weight * weighted[j].weight;
-        btScalar* block = blocks[placeOf(i, j)];
-        for (std::size_t k = 0; k < kPadded; ++k) block[k] += weight * tangent[k];
-      }
-    }
   }
 }
 
@@ -172,8 +158,8 @@ void BodyEnds::addApart(const Group& group, const Rows& rows, std::uint32_t i, s
     if (row.state == ContactRow::State::Apart) continue;
     const Node* nodes = &nodes_[ends_[e].first];
     const btScalar weight = std::abs(nodes[i].weight * nodes[j].weight);
-    addSymmetric(row.tangent, weight, blocks[placeOf(i, i)]);
-    addSymmetric(row.tangent, weight, blocks[placeOf(j, j)]);
+    addSymmetric(row.tangent, weight, blocks[i][i]);
+    addSymmetric(row.tangent, weight, blocks[j][j]);
   }
 }
 

@@ -47,10 +47,7 @@ class BodyEnds {
 
  private:
   using Coupling = std::optional<std::uint32_t>;
-  /// xx xy xz yy yz zz of a symmetric block; the rest is 0, and fills registers.
-  static constexpr std::size_t kPadded = 8;
-  /// Of the pairs of a group's nodes, each with itself and those before it.
-  using Blocks = btScalar[kMaxPointNodes * (kMaxPointNodes + 1) / 2][kPadded];
+  using Blocks = btScalar[kMaxPointNodes][kMaxPointNodes][6];  // the lower triangle
   struct Node {
     std::uint32_t met = 0, slot = 0, wide = 0;  ///< the first one: in `met_`
     btScalar weight = 0;
@@ -58,7 +55,7 @@ class BodyEnds {
   /// A node on which ends act.
   struct MetNode {
     std::size_t node = 0;
-    btScalar block[kPadded] = {};  ///< what is added to its block on the diagonal
+    btScalar block[6] = {};  ///< what is added to its block on the diagonal
     bool used = false;
   };
   /// Ends at the same nodes.
@@ -73,7 +70,6 @@ class BodyEnds {
   void addGroup(std::uint32_t pairs);
   void findCouplings(Group& group);
   void addBlocks(Group& group, const Rows& rows);
-  void sumBlocks(const Group& group, const Rows& rows, Blocks& blocks) const;
   void addApart(const Group& group, const Rows& rows, std::uint32_t i, std::uint32_t j, Blocks& blocks) const;
 
   Matrix* matrix_;

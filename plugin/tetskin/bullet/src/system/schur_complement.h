@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <utility>
 #include <vector>
 
 namespace tetskin::bullet_detail {
