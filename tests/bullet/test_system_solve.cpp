@@ -50,7 +50,7 @@ class System : public testing::Test {
     readNodes(body(), false, dynamics());
     dynamics().predict(static_cast<double>(kSeconds), nullptr);
     dynamics().matrix().free();
-    dynamics().start(static_cast<double>(kSeconds), nullptr);
+    dynamics().start(nullptr);
     none_.resize(body().m_nodes.size(), btVector3(0, 0, 0));
     before_.resize(body().m_nodes.size(), btVector3(0, 0, 0));
     others_.beginStep(bodies_, none_, before_, kSeconds);

@@ -17,7 +17,7 @@ TetMesh cageForDynamics() {
   return jittered(latticeCage(3, 2, 1), 0.15, 3);
 }
 
-constexpr double kSeconds = 0.2, kDamping = 0.3, kAlpha = kSeconds * (kDamping + kSeconds);
+constexpr double kSeconds = 0.2, kDamping = 0.3, kAlpha = kSeconds * kDamping;
 
 /// Dynamics for a reference body, with velocities.
 template <class S>
@@ -48,7 +48,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
     dynamics.predict(kSeconds, nullptr);
     EXPECT_NEAR(dynamics.alpha(), kAlpha, 1e-15);
-    dynamics.start(kSeconds, nullptr);
+    dynamics.start(nullptr);
     VectorXd rigid(size), forces(size), right(size), masses(size);
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       TypeParam r[3];
@@ -85,7 +85,7 @@ TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
     if (pinned) body.hold(3);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
     dynamics.predict(kSeconds, nullptr);
-    dynamics.start(kSeconds, nullptr);
+    dynamics.start(nullptr);
     const VectorXd solution = body.fromWide(dynamics.matrix().solution());
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       const auto at = static_cast<Eigen::Index>(3 * n);
@@ -103,10 +103,15 @@ TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
 TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(cageForDynamics(), 0.1, kAlpha);
-    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, 1e-3 * Random(51).vector(3 * body.nodes.size()));
-    dynamics.prepare(kSeconds, nullptr);
+    const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
+    BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
+    dynamics.predict(kSeconds, nullptr);
+    Random random(51);
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+      for (int k = 0; k < 3; ++k) dynamics.velocity(n)[k] = static_cast<TypeParam>(1e-3 * random());
+    }
     dynamics.predict(kSeconds, nullptr);  // the matrix is the previous one: it has hardly turned
-    dynamics.start(kSeconds, nullptr);
+    dynamics.start(nullptr);
     VectorXd right(static_cast<Eigen::Index>(3 * body.nodes.size()));
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       TypeParam r[3];
@@ -118,7 +123,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
     dynamics.restart(nullptr);
     const VectorXd image = body.dense() * x;
     EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - (right - image)).norm(),
-              10.0 * this->kEpsilon * (right.norm() + image.norm()));
+              20.0 * this->kEpsilon * (right.norm() + image.norm()));
   });
 }
 
@@ -128,7 +133,7 @@ TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChang
     const VectorXd v = speed * Random(51).vector(3 * body.nodes.size());
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
     dynamics.predict(kSeconds, nullptr);
-    dynamics.start(kSeconds, nullptr);
+    dynamics.start(nullptr);
     const VectorXd some = Random(53).vector(3 * body.nodes.size());
     const Vector3d impulse(0.3, -0.2, 0.5);
     body.toWide(some, dynamics.matrix().solution());
@@ -158,12 +163,12 @@ TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChang
   }
 }
 
-/// Whether the matrix takes account of a change of the body at the next `prepare`.
+/// Whether the matrix takes account of a change of the body at the next `predict`.
 template <class Change>
 bool changesTheMatrix(Change&& change) {
   AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
   BodyDynamics<double> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
-  for (int k = 0; k < 3; ++k) dynamics.prepare(kSeconds, nullptr);
+  for (int k = 0; k < 3; ++k) dynamics.predict(kSeconds, nullptr);
   const std::vector<double> x = body.toPoints(Random(54).vector(3 * body.nodes.size()));
   std::vector<double> image(dynamics.matrix().wideSize());
   const auto product = [&] {
@@ -172,7 +177,7 @@ bool changesTheMatrix(Change&& change) {
   };
   const VectorXd before = product();
   const double seconds = change(dynamics, body);
-  dynamics.prepare(seconds, nullptr);
+  dynamics.predict(seconds, nullptr);
   return (product() - before).norm() > 1e-6 * before.norm();
 }
 
@@ -266,7 +271,7 @@ TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
     dynamics.velocity(n)[0] = 5;
   }
   dynamics.predict(kSeconds, nullptr);
-  dynamics.start(kSeconds, nullptr);
+  dynamics.start(nullptr);
   EXPECT_EQ(dynamics.velocity(0)[0], TypeParam(5));
   EXPECT_EQ(dynamics.alpha(), 0.0);
   EXPECT_EQ(dynamics.energy(nullptr), 0.0);

@@ -74,6 +74,7 @@ struct ElasticBody<Scalar>::Impl {
     const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
     dynamics.setMaterial(elastic_detail::lameOfTets(lame, cage.tetCount(), options.stiffnessScale));
     dynamics.setDamping(options.stiffnessDamping);
+    dynamics.setStaggered(true);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);
       double total = 0.0;
@@ -98,6 +99,13 @@ struct ElasticBody<Scalar>::Impl {
         dynamics.velocity(n)[k] = velocities[3 * n + k] + (pinned ? Scalar(0) : static_cast<Scalar>(push[k]));
       }
     }
+  }
+  /// True unless the application has written positions or velocities since the last step.
+  bool continues() const {
+    for (std::size_t n = 0; dynamics.remembers() && n < masses.size(); ++n) {
+      if (!dynamics.continues(n, &positions[3 * n], &velocities[3 * n])) return false;
+    }
+    return true;
   }
   void write(double seconds) {
     const Scalar* solution = dynamics.matrix().solution();
@@ -164,12 +172,15 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   const bool finite = std::isfinite(acceleration[0] + acceleration[1] + acceleration[2]);
   if (!impl_ || !(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
   Impl& p = *impl_;
-  p.read({seconds * acceleration[0], seconds * acceleration[1], seconds * acceleration[2]});
+  if (!p.continues()) p.dynamics.forget();
+  const double pushed = seconds * p.dynamics.forceShare(seconds);
+  p.read({pushed * acceleration[0], pushed * acceleration[1], pushed * acceleration[2]});
   p.dynamics.predict(seconds, threads);
-  p.dynamics.start(seconds, threads);
+  p.dynamics.start(threads);
   elastic_detail::SolveLimits limits = p.limits;
   limits.floor = p.dynamics.roundingSpeed(seconds);
   p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
+  p.dynamics.remember(seconds);
   p.dynamics.removeMomentum();
   p.write(seconds);
   return p.solve.iterations();

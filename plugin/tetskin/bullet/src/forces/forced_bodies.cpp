@@ -99,7 +99,9 @@ Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
 void ForcedBody::build(elastic_detail::RestTets rest, const ElasticMaterial& material) {
   assert(body && rest.count() == static_cast<std::size_t>(body->m_tetras.size()));
   if (stiffnessScale.size() != static_cast<std::size_t>(body->m_tetras.size())) stiffnessScale.clear();
+  const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
   dynamics = std::make_unique<Dynamics>(std::move(rest), static_cast<std::size_t>(body->m_nodes.size()));
+  dynamics->setLastSeconds(lastSeconds);
   restMeasure = restMeasureOf(*body);
   setMaterial(material);
 }

@@ -128,6 +128,29 @@ void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& t
       [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
 }
 
+/// True unless the application has moved the body since the last step, or changed its velocities.
+bool continuesLastStep(const SolvedBody& solved) {
+  if (!solved.dynamics->remembers()) return true;
+  for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = solved.body->m_nodes[n];
+    if (!solved.dynamics->continues(static_cast<std::size_t>(n), node.m_x, node.m_vn)) return false;
+  }
+  return true;
+}
+
+/// The first step of a held body, and steps of varying length, by BodyDynamics::setStaggered. Free bodies go on falling
+/// beside Bullet's rigid ones.
+void staggerHeld(const SolvedBody& solved, btScalar dt) {
+  Dynamics& dynamics = *solved.dynamics;
+  dynamics.setStaggered(solved.elastic && dynamics.isHeld());
+  const auto share = static_cast<btScalar>(dynamics.forceShare(static_cast<double>(dt)));
+  if (share == 1) return;
+  for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = solved.body->m_nodes[n];
+    toPoint(node.m_vn + share * (node.m_v - node.m_vn), dynamics.velocity(static_cast<std::size_t>(n)));
+  }
+}
+
 std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) {
   std::size_t count = 0;
   for (const std::size_t b : system.bodies) count += bodies.bodies()[b].dynamics->nodeCount();
@@ -190,8 +213,11 @@ void DeformableSolver::Impl::assign() {
 void DeformableSolver::Impl::predict() {
   useOwnSettings();
   applyOthers();
-  forEachBody(bodies.bodies(), threads,
-              [](SolvedBody& body, ParallelFor*) { readNodes(*body.body, false, *body.dynamics); });
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
+    if (!body.continues || !continuesLastStep(body)) body.dynamics->forget();
+    readNodes(*body.body, false, *body.dynamics);
+    staggerHeld(body, dt());
+  });
   for (SolvedBody& body : bodies.bodies()) prepareSearch(body);
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
@@ -219,12 +245,12 @@ void DeformableSolver::Impl::useOwnSettings() {
 
 void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
   Dynamics& dynamics = *body.dynamics;
-  dynamics.setPressed(body.hadRows);
+  dynamics.setTouched(body.hadRows);
   dynamics.predict(static_cast<double>(dt()), inner);
   body.unseenSpeed = unseenSpeed(body);
   dynamics.matrix().free();
-  if (body.deferSolve) return dynamics.startLater(static_cast<double>(dt()));
-  dynamics.start(static_cast<double>(dt()), inner);
+  if (body.deferSolve) return dynamics.startLater();
+  dynamics.start(inner);
   if (body.elastic) solveAlone(body, body.hadRows ? 0 : body.settings->iterations, inner);
 }
 
@@ -280,6 +306,9 @@ void DeformableSolver::Impl::assemble() {
   addDynamicFriction(projection(), bodies, solver.m_residual);
   listFixedNodes(projection(), bodies);
   collectRows();
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
+    if (body.rowCount > 0) body.dynamics->beTouched(static_cast<double>(dt()), inner);
+  });
 }
 
 /// Reads the result of Bullet's step so far: the change of velocity by its constraints, with which the solution begins,
@@ -355,7 +384,9 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
     }
   }
   const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.velocityChanged;
-  if (free && first.elastic) first.dynamics->removeMomentum();
+  if (!free || !first.elastic) return;
+  first.dynamics->remember(static_cast<double>(dt()));
+  first.dynamics->removeMomentum();
 }
 
 // ---- contacts

@@ -95,6 +95,8 @@ class ComponentMotion {
 
   /// The centre of mass, or the centroid of the pinned nodes.
   const Eigen::Vector3d& about() const { return about_; }
+  /// The rotation of the step.
+  const Eigen::Matrix3d& turn() const { return turn_; }
   /// The velocities of the rigid motion over the step, as a function of the nodes' positions at its beginning.
   RigidVelocity velocities(double seconds) const;
   /// A point near `about()`, on a grid as wide as the component, so that it seldom changes: positions relative to it

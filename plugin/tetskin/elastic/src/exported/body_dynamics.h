@@ -3,12 +3,12 @@
 //
 // One body's implicit step. It begins with positions x and velocities v that include gravity and other impulses:
 //   v0, x0 = x + dt v0: as the body would move if it were rigid, see component_motion.h
-//   (M + alpha K) y = dt f(x0) + M (v - v0),   alpha = dt (damping + dt)
+//   (M + alpha K) y = dt f(x0) + M (v - v0) + ...   with alpha and what follows by time_scheme.h
 //   v <- v0 + y,   x <- x + dt v
-// with f the corotated forces and K their stiffness at the rotations of x0: a backward Euler step, of first order,
-// which keeps linear and angular momentum. Only the deviation from rigid motion is solved for. A step that solves
-// for the whole velocity takes a rotation by an angle of phi for a strain of phi^2 / 2, and for more if K has older
-// rotations, which makes stiff bodies explode.
+// with f the corotated forces and K their stiffness at the rotations of x0, which keeps linear and angular momentum.
+// Velocities belong to the middle of a step, positions to its end. Only the deviation from rigid motion is solved for.
+// A step that solves for the whole velocity takes a rotation by an angle of phi for a strain of phi^2 / 2, and for more
+// if K has older rotations, which makes stiff bodies explode.
 //
 // This work is based on:
 //   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
@@ -17,6 +17,7 @@
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
 #include <tetskin/elastic/src/dynamics/initial_guess.h>
+#include <tetskin/elastic/src/dynamics/step_history.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <array>
@@ -48,24 +49,50 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   const BlockMatrix<S>& matrix() const { return matrix_; }
   std::size_t nodeCount() const { return matrix_.nodeCount(); }
 
-  /// Takes effect at the next `prepare`. By tet; `damping` in seconds.
+  /// Takes effect at the next `predict`. By tet; `damping` in seconds.
   void setMaterial(const std::vector<Lame>& lame);
   void setDamping(double damping) { damping_ = damping; }
-  /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
-  void setPressed(bool pressed) { pressed_ = pressed; }
+  /// Whether something outside has held or pressed the body in the step before. Its flat tets are then damped, so that
+  /// they come to rest, and it takes some of backward Euler's steps: see time_scheme.h.
+  void setTouched(bool touched);
+  /// Call it between `startLater` and `restart` where something turns out to hold the body in this step: the step
+  /// becomes one of a touched body.
+  void beTouched(double seconds, ParallelFor* threads);
+  /// The first step is half a step of velocities, as they are known at its beginning and belong to its middle from then
+  /// on; each takes half of the lengths of the step before and of its own. Otherwise each takes its own length, as
+  /// Bullet's rigid bodies do, beside which a body of the same velocity then stays.
+  void setStaggered(bool staggered) { staggered_ = staggered; }
+  /// True if each component has a pinned node.
+  bool isHeld() const;
+  /// The length of the last step; 0: there was none.
+  double lastSeconds() const { return lastSeconds_; }
+  void setLastSeconds(double seconds) { lastSeconds_ = seconds; }
+  /// Share of a step's length for which forces act in it: 1, except of staggered velocities.
+  double forceShare(double seconds) const;
   /// mass  0: the node is pinned
   void setMass(std::size_t node, S mass);
 
-  /// A node's state, 4 scalars each, which the caller fills before `prepare`.
+  /// A node's state, 4 scalars each, which the caller fills before `prepareForces` or `predict`.
   S* point(std::size_t node) { return &points_[4 * matrix_.slotOf(node)]; }
   S* velocity(std::size_t node) { return &velocities_[4 * matrix_.slotOf(node)]; }
-  /// The elastic force on a node, of the last `prepare`.
+  /// The elastic force on a node, of the last `prepareForces` or `predict`.
   const S* force(std::size_t node) const { return &forces_[4 * matrix_.slotOf(node)]; }
 
   /// Computes the forces only.
   void prepareForces(ParallelFor* threads);
-  /// Computes the forces, and assembles the matrix if it must change.
-  void prepare(double seconds, ParallelFor* threads);
+
+  /// True if the node is where the last step has brought it, and as fast.
+  bool continues(std::size_t node, const S* point, const S* velocity) const {
+    return history_.continues(matrix_.slotOf(node), point, velocity);
+  }
+  /// True if the last step is remembered for the next one.
+  bool remembers() const { return history_.isKnown(); }
+  /// Call it before `predict` where the body has not come here by its last step.
+  void forget() { history_.forget(); }
+  /// Call it when nothing but `solve` has changed the solution, for the next step to be of second order.
+  void remember(double seconds);
+  /// True if the last `predict` has begun a step of second order.
+  bool isSecondOrder() const { return secondOrder_; }
 
   /// The beginning of a step: computes the rigid motion, the forces at the points that it reaches, and the matrix if it
   /// must change. From here on, `velocity` is that of the rigid motion.
@@ -73,9 +100,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Call it after `predict`: computes the right side of the step, which the matrix's residual and `restart` use.
   /// The solution is a velocity relative to the rigid motion; it begins with its last value for a soft body, and with 0
   /// for a stiff one.
-  void start(double seconds, ParallelFor* threads);
+  void start(ParallelFor* threads);
   /// Like `start`, but without the residual: `restart` must follow.
-  void startLater(double seconds);
+  void startLater();
   /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations.
   /// limits  the tolerance is relative to the residual without elasticity; `enough` is replaced
   void solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
@@ -129,7 +156,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::optional<CorotatedTets<S>>& tets() { return tets_; }
 
  private:
-  double alphaFor(double seconds) const;
+  void beginForces(double seconds);
+  void chooseScheme(double seconds);
   void findComponents(const std::vector<Tet>& tets);
   void findMotions(double seconds);
   void moveRigidly(double seconds);
@@ -144,8 +172,17 @@ class TETSKIN_ELASTIC_API BodyDynamics {
       forces_;                          ///< by slot; moved_: x0, relative to its component
   AlignedVector<S> rightSide_, image_;  ///< in the wide layout
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
-  double damping_ = 0.0, alpha_ = 0.0;
-  bool stiff_ = false, pressed_ = false;
+  double damping_ = 0.0;
+  double alpha_ = 0.0;  ///< of the last assembly
+  bool stiff_ = false, touched_ = false, staggered_ = false, secondOrder_ = false;
+  /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
+  /// each time that it bounces.
+  static constexpr int kUntouched = 8;
+  int untouched_ = kUntouched;  ///< number of steps since it was last touched
+  TimeScheme scheme_;           ///< of the last `predict`
+  double lastSeconds_ = 0.0;    ///< length of the last step; 0: there was none
+  double forceSeconds_ = 0.0;   ///< for which forces act in this step
+  StepHistory<S> history_;
   double stiffnessNumber_ = 0.0;
   bool changed_ = true;                   ///< masses or material have changed since the last assembly
   std::size_t pinned_;                    ///< number of pinned nodes

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What a body's step of second order takes from the steps before: H of time_scheme.h, and where they have ended, from
+// which one sees that the application has moved the body since.
+#pragma once
+
+#include <tetskin/core/src/base/aligned.h>
+#include <tetskin/elastic/src/dynamics/time_scheme.h>
+#include <tetskin/elastic/src/matrix/block_matrix.h>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+template <class S>
+class StepHistory {
+ public:
+  bool isKnown() const { return seconds_ > 0.0; }
+  /// True if it is known, and the next step is about as long as the last.
+  bool fits(double seconds) const;
+  void forget() { seconds_ = 0.0; }
+
+  /// True if the node in this slot is where the last step has brought it, and as fast, but for rounding.
+  bool continues(std::size_t slot, const S* point, const S* velocity) const;
+  /// Adds a H to a right side in the wide layout. H is turned like its components, as the velocities are that belong to
+  /// it, and grows with the time for which forces act.
+  /// turns   by component; partOf: by slot, its component
+  void addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
+             const std::vector<Eigen::Matrix3d>& turns, const std::vector<std::uint32_t>& partOf);
+  /// Takes away what `addTo` has added.
+  void takeFrom(AlignedVector<S>& rightSide) const;
+  /// H becomes 0.
+  void clear(std::size_t wideSize) { mean_.assign(wideSize, S(0)); }
+  /// Call it when a step has been solved, after `addTo` or `clear`.
+  /// rightSide      of the step, in the wide layout; the matrix has its solution
+  /// seconds        for which forces have acted
+  /// points, rigid  4 scalars per slot: positions at the beginning, and the velocities to which the solution is
+  /// relative length         of the step
+  void keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
+            const AlignedVector<S>& points, const AlignedVector<S>& rigid, double length);
+
+ private:
+  AlignedVector<S> mean_;             ///< H, in the wide layout
+  AlignedVector<S> points_, speeds_;  ///< 4 scalars per slot: where the last step has ended
+  S near_ = S(0), length_ = S(0);     ///< distances up to which a node counts as there; the last step's length
+  double seconds_ = 0.0;              ///< for which forces acted in the last step; 0: H is not known
+};
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// How the motion of an ElasticBody depends on the length of its steps.
+#include <gtest/gtest.h>
+#include <tetskin/elastic/elastic_body.h>
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <functional>
+
+#include "elastic_motion.h"
+#include "support/odd_meshes.h"
+
+namespace tetskin::test {
+namespace {
+
+const std::array<double, 3> kDown = {0, -9.81, 0};
+
+TetMesh beamCage() {
+  return latticeCage(6, 1, 1, 0.25);
+}
+
+/// The motion of a held beam's free end for a second, at 20 instants.
+/// share  by number of the step: its length over `seconds`; two steps add up to 2
+Points swing(
+    double damping, int steps, const std::function<double(int)>& share = [](int) { return 1.0; },
+    double youngsModulus = 1e6) {
+  const TetMesh cage = beamCage();
+  ElasticOptions options;
+  options.youngsModulus = youngsModulus;
+  options.density = 1000.0;
+  options.stiffnessDamping = damping;
+  options.tolerance = 1e-8;
+  ElasticBody<double> body = made<double>(cage, options);
+  pinTheEnd(body, cage);
+  Points path;
+  for (int k = 0; k < steps; ++k) {
+    body.step(share(k) / steps, kDown);
+    if ((k + 1) % (steps / 20) == 0) path.push_back(pointsOf(body.positions()).back());
+  }
+  return path;
+}
+
+double difference(const Points& a, const Points& b) {
+  double squared = 0.0, way = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    squared += (a[k] - b[k]).squaredNorm();
+    way += (b[k] - beamCage().nodes.back()).squaredNorm();
+  }
+  return std::sqrt(squared / way);
+}
+
+TEST(OrderInTime, IsTwoAtEveryDamping) {
+  for (const double damping : {0.0, 0.003, 0.02, 0.1}) {
+    const Points exact = swing(damping, 8000);
+    const double coarse = difference(swing(damping, 120), exact), middle = difference(swing(damping, 240), exact),
+                 fine = difference(swing(damping, 480), exact);
+    EXPECT_LT(middle, 0.006) << damping;
+    EXPECT_LT(fine, 0.6 * middle) << damping;
+    // Then what is left is that of rotations since the matrix was made.
+    EXPECT_TRUE(fine < 0.18 * coarse || fine < 5e-4) << damping << ' ' << coarse << ' ' << fine;
+  }
+}
+
+TEST(OrderInTime, IsTwoForStepsOfVaryingLength) {
+  const auto byTurns = [](int step) { return step % 2 == 0 ? 0.6 : 1.4; };
+  for (const double damping : {0.0, 0.02}) {
+    const Points exact = swing(damping, 8000);
+    const double coarse = difference(swing(damping, 120, byTurns), exact),
+                 fine = difference(swing(damping, 480, byTurns), exact);
+    EXPECT_LT(coarse, 0.05) << damping;
+    EXPECT_LT(fine, 0.18 * coarse) << damping;
+  }
+}
+
+TEST(OrderInTime, StepsThatBecomeMuchLongerOrShorterAreStable) {
+  for (const double damping : {0.0, 0.02}) {
+    for (const double youngsModulus : {1e4, 1e6, 1e9}) {
+      const auto leaps = [](int step) { return step % 10 == 3 ? 6.0 : step % 10 == 7 ? 0.1 : 0.4875; };
+      for (const Eigen::Vector3d& tip : swing(damping, 200, leaps, youngsModulus)) {
+        EXPECT_LT((tip - beamCage().nodes.back()).norm(), 6.0) << damping << ' ' << youngsModulus;
+      }
+    }
+  }
+}
+
+/// Stiffness by differences of forces, and the modes of small vibrations that follow from it.
+struct Mode {
+  double frequency = 0.0;  ///< 1 / s
+  Points shape;
+};
+Mode modeOf(ElasticBody<double>& body, const TetMesh& cage, const std::vector<double>& masses, Eigen::Index number) {
+  const auto size = static_cast<Eigen::Index>(3 * cage.nodeCount());
+  constexpr double kShift = 1e-6;
+  const auto forces = [&](Eigen::Index changed, double by) {
+    body.positions()[static_cast<std::size_t>(changed / 3)][changed % 3] += by;
+    VectorXd all(size);
+    const auto at = body.forces();
+    for (Eigen::Index i = 0; i < size; ++i)
+      all[i] = at[static_cast<std::size_t>(i / 3)][static_cast<std::size_t>(i % 3)];
+    body.positions()[static_cast<std::size_t>(changed / 3)][changed % 3] -= by;
+    return all;
+  };
+  MatrixXd scaled(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    scaled.col(i) = (forces(i, -kShift) - forces(i, kShift)) / (2.0 * kShift);
+    for (Eigen::Index r = 0; r < size; ++r) {
+      scaled(r, i) /= std::sqrt(masses[static_cast<std::size_t>(r / 3)] * masses[static_cast<std::size_t>(i / 3)]);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen((scaled + scaled.transpose()) / 2.0);
+  Mode mode;
+  mode.frequency = std::sqrt(eigen.eigenvalues()[6 + number]);  // after the rigid motions
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    const auto at = static_cast<Eigen::Index>(3 * n);
+    mode.shape.emplace_back(eigen.eigenvectors().col(6 + number).segment<3>(at) / std::sqrt(masses[n]));
+  }
+  return mode;
+}
+
+/// A free body that is deformed by a small multiple of a mode and let go: the multiple after some time, over the first.
+double leftOfMode(const TetMesh& cage, const ElasticOptions& options, const Mode& mode,
+                  const std::vector<double>& masses, double seconds, int steps) {
+  ElasticBody<double> body = made<double>(cage, options);
+  constexpr double kAmount = 1e-5;
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    for (int k = 0; k < 3; ++k) body.positions()[n][k] += kAmount * mode.shape[n][k];
+  }
+  for (int k = 0; k < steps; ++k) body.step(seconds);
+  double left = 0.0;
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    left += masses[n] * mode.shape[n].dot(pointsOf(body.positions())[n] - cage.nodes[n]);
+  }
+  return left / kAmount;
+}
+
+/// q'' + damping frequency^2 q' + frequency^2 q = 0 from q = 1 at rest.
+double exactlyLeft(double frequency, double damping, double time) {
+  const std::complex<double> decay(damping * frequency * frequency / 2.0);
+  const auto swing = std::sqrt(std::complex<double>(frequency * frequency) - decay * decay);
+  return (std::exp(-decay * time) * (std::cos(swing * time) + decay / swing * std::sin(swing * time))).real();
+}
+
+TEST(OrderInTime, AModeDecaysAsTheMaterialSays) {
+  const TetMesh cage = latticeCage(3, 1, 1, 0.25);
+  ElasticOptions options;
+  options.density = 1000.0;
+  options.tolerance = 1e-9;
+  std::vector<double> masses = lumped(cage);
+  for (double& mass : masses) mass *= options.density;
+  for (const double youngsModulus : {1e3, 1e5, 1e7}) {
+    options.youngsModulus = youngsModulus;
+    ElasticBody<double> still = made<double>(cage, options);
+    for (const Eigen::Index number : {0, 4}) {
+      const Mode mode = modeOf(still, cage, masses, number);
+      for (const double perStep : {0.02, 0.05, 0.1}) {  // radians
+        const double seconds = perStep / mode.frequency;
+        const int steps = static_cast<int>(10.0 / perStep);
+        for (const double damping : {0.0, 0.001, 0.02, 0.1, 1.0}) {
+          if (damping * mode.frequency > 60.0) continue;  // it would not have moved yet
+          options.stiffnessDamping = damping;
+          EXPECT_NEAR(leftOfMode(cage, options, mode, masses, seconds, steps),
+                      exactlyLeft(mode.frequency, damping, steps * seconds), 6.0 * perStep * perStep)
+              << youngsModulus << ' ' << number << ' ' << perStep << ' ' << damping;
+        }
+      }
+    }
+  }
+}
+
+/// A beam in the middle of its swing, with the history of its steps.
+ElasticBody<double> swinging(const TetMesh& cage, double damping) {
+  ElasticOptions options;
+  options.youngsModulus = 1e5;
+  options.density = 1000.0;
+  options.stiffnessDamping = damping;
+  ElasticBody<double> body = made<double>(cage, options);
+  pinTheEnd(body, cage);
+  for (int k = 0; k < 30; ++k) body.step(1.0 / 240.0, kDown);
+  return body;
+}
+
+TEST(OrderInTime, ABodyThatIsPutBackToRestStaysThere) {
+  const TetMesh cage = beamCage();
+  for (const double damping : {0.0, 0.02}) {
+    ElasticBody<double> body = swinging(cage, damping);
+    ASSERT_GT(fastest(body), 0.5);
+    fill(body.positions(), cage.nodes);
+    fill(body.velocities(), Points(cage.nodeCount(), Vector3d::Zero()));
+    for (int k = 0; k < 5; ++k) body.step(1.0 / 240.0);
+    EXPECT_LT(fastest(body), 1e-9) << damping;
+  }
+}
+
+/// Without, the impulses that the last step has left would throw the stopped nodes back.
+TEST(OrderInTime, ABodyThatIsStoppedStartsAgainAsOneThatHasNeverMoved) {
+  const TetMesh cage = beamCage();
+  for (const double damping : {0.0, 0.02}) {
+    ElasticBody<double> body = swinging(cage, damping), other = swinging(cage, damping);
+    fill(body.velocities(), Points(cage.nodeCount(), Vector3d::Zero()));
+    const Points stopped = pointsOf(body.positions());
+    // Moved there and back, in two steps that begin with another shape.
+    fill(other.positions(), cage.nodes);
+    fill(other.velocities(), Points(cage.nodeCount(), Vector3d::Zero()));
+    other.step(1.0 / 240.0);
+    fill(other.positions(), stopped);
+    fill(other.velocities(), Points(cage.nodeCount(), Vector3d::Zero()));
+    body.step(1.0 / 240.0);
+    other.step(1.0 / 240.0);
+    const Points one = pointsOf(body.velocities()), another = pointsOf(other.velocities());
+    for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+      EXPECT_LT((one[n] - another[n]).norm(), 0.02 * fastest(body)) << damping << ' ' << n;
+    }
+  }
+}
+
+TEST(OrderInTime, ReadingForcesAndEnergyChangesNothing) {
+  const TetMesh cage = beamCage();
+  ElasticBody<double> body = swinging(cage, 0.0), read = swinging(cage, 0.0);
+  for (int k = 0; k < 10; ++k) {
+    body.step(1.0 / 240.0, kDown);
+    read.step(1.0 / 240.0, kDown);
+    EXPECT_GT(read.energy(), 0.0);
+    EXPECT_EQ(read.forces().size(), cage.nodeCount());
+  }
+  // But for the rotations with which those of the next step begin.
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+    EXPECT_LT((pointsOf(read.positions())[n] - pointsOf(body.positions())[n]).norm(), 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Of one vibration, whose steps are exact functions of its frequency, of the damping and of the step.
+#include <gtest/gtest.h>
+#include <tetskin/elastic/src/dynamics/time_scheme.h>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+namespace tetskin::test {
+namespace {
+
+using elastic_detail::TimeScheme;
+using Complex = std::complex<double>;
+
+const std::vector<double> kDampings = {0.0, 1e-3, 0.1, 0.3, 0.6, 0.74, 0.76, 0.99, 1.0, 1.01, 1.5, 2.0, 4.8, 30, 1e3};
+
+/// One step of a unit mass at position x, with velocity u and history H, on a spring of this frequency.
+Eigen::Matrix3d stepOf(const TimeScheme& scheme, double seconds, double frequency) {
+  const double stiffness = frequency * frequency, a = scheme.filter;
+  const Eigen::RowVector3d u =
+      Eigen::RowVector3d(-seconds * stiffness, 1.0, a) / (1.0 + scheme.alpha(seconds) * stiffness);
+  Eigen::Matrix3d step;
+  step.row(0) = Eigen::RowVector3d(1, 0, 0) + seconds * u;
+  step.row(1) = u;
+  step.row(2) = Eigen::RowVector3d(0, 0, a) + (1.0 - a) * seconds * (seconds - scheme.damping) * stiffness * u;
+  return step;
+}
+
+/// The factors by which a step multiplies its vibrations, largest first.
+std::vector<Complex> factorsOf(const TimeScheme& scheme, double seconds, double frequency) {
+  const auto values = stepOf(scheme, seconds, frequency).eigenvalues().eval();
+  std::vector<Complex> factors(values.begin(), values.end());
+  std::sort(factors.begin(), factors.end(),
+            [](const Complex& p, const Complex& q) { return std::abs(p) > std::abs(q); });
+  return factors;
+}
+
+/// The error of a step's rate of decay and of its frequency, relative to the frequency.
+double errorOf(const TimeScheme& scheme, double seconds, double frequency) {
+  const double decay = scheme.damping * frequency * frequency / 2.0;
+  const Complex exact(-decay, std::sqrt(frequency * frequency - decay * decay));
+  double least = 1e9;
+  for (const Complex& factor : factorsOf(scheme, seconds, frequency)) {
+    least = std::min(least, std::abs(std::log(factor) / seconds - exact));
+  }
+  return least / frequency;
+}
+
+TEST(TimeScheme, NoVibrationGrowsAtAnyFrequencyAndDamping) {
+  for (const double damping : kDampings) {
+    for (double frequency = 1e-3; frequency < 1e6; frequency *= 1.3) {
+      for (const TimeScheme& scheme :
+           {elastic_detail::secondOrder(1.0, damping), elastic_detail::backwardEuler(1.0, damping)}) {
+        EXPECT_LE(std::abs(factorsOf(scheme, 1.0, frequency).front()), 1.0 + 1e-9) << damping << ' ' << frequency;
+      }
+    }
+  }
+}
+
+TEST(TimeScheme, TheFastestVibrationsFallToAThirdInAStepOrAsSlowlyAsTheMaterialLetsThem) {
+  for (const double damping : kDampings) {
+    for (const Complex& factor : factorsOf(elastic_detail::secondOrder(1.0, damping), 1.0, 1e6)) {
+      EXPECT_GT(factor.real(), -0.334) << damping;
+      EXPECT_LT(factor.real(), 1.0 - 0.4 / std::max(damping, 1.0)) << damping;
+      EXPECT_LT(std::abs(factor.imag()), 0.01) << damping;
+    }
+  }
+}
+
+/// Over all lengths of the step: long steps have less damping in units of their own, and another a.
+TEST(TimeScheme, IsOfSecondOrderAtEveryDamping) {
+  for (const double damping : {0.0, 0.002, 0.01, 0.03, 0.1}) {
+    const double frequency = damping > 0.05 ? 8.0 : 10.0;
+    double before = 0.0;
+    for (const double seconds : {0.01, 0.005, 0.0025, 0.00125}) {
+      const double error = errorOf(elastic_detail::secondOrder(seconds, damping), seconds, frequency);
+      EXPECT_LT(error, 0.6 * std::pow(frequency * seconds, 2)) << damping << ' ' << seconds;
+      EXPECT_TRUE(before < 1e-6 || error < 0.5 * before) << damping << ' ' << seconds;
+      before = error;
+    }
+  }
+}
+
+TEST(TimeScheme, BackwardEulerDampsByOneStepMoreThanTheMaterial) {
+  const double seconds = 1e-3, frequency = 2.0;
+  for (const double damping : {0.0, 0.005, 0.02}) {
+    const Complex factor = factorsOf(elastic_detail::backwardEuler(seconds, damping), seconds, frequency).front();
+    const double decay = -std::log(std::abs(factor)) / seconds;
+    EXPECT_NEAR(decay / (frequency * frequency / 2.0), damping + seconds, 0.01 * seconds);
+  }
+}
+
+TEST(TimeScheme, AStepWithoutHistoryIsImplicitEnoughToBeStable) {
+  for (const double damping : kDampings) {
+    const TimeScheme first = elastic_detail::firstOrder(1.0, damping);
+    EXPECT_DOUBLE_EQ(first.alpha(1.0), std::max(damping, 1.0));
+    EXPECT_EQ(first.damping, damping);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test
