@@ -417,7 +417,7 @@ void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& 
 void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
   for (SolvedBody& body : bodies.bodies()) {
     body.frictionAnchors->clear();
-    *body.hasRows = false;
+    *body.hasRows = *body.hasContacts = false;
   }
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const ContactRow& row = rows_[r];
@@ -425,7 +425,9 @@ void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
     if (origins_[r].joint) origins_[r].joint->impulse = row.impulse;
     if (row.state == ContactRow::State::Apart && !row.constant) continue;
     for (const RowEnd& end : row.ends) {
-      if (end.isSoft()) *bodies.bodies()[end.body].hasRows = true;
+      if (!end.isSoft()) continue;
+      *bodies.bodies()[end.body].hasRows = true;
+      *bodies.bodies()[end.body].hasContacts |= !row.joined;
     }
     if (row.joined || !row.ends[0].isSoft()) continue;
     bodies.bodies()[row.ends[0].body].frictionAnchors->push_back(frictionAnchorOf(row, origins_[r], seconds));

@@ -188,6 +188,8 @@ void SolverBodies::attachPersistent() {
     body.bulletsContacts = &kept.bulletsContacts;
     body.hasRows = &kept.hasRows;
     body.hadRows = kept.hasRows;
+    body.hasContacts = &kept.hasContacts;
+    body.hadContacts = kept.hasContacts;
     body.paddedTrees = &kept.paddedTrees;
     body.byBullet = !body.elastic || needsBulletsTrees(*body.body);
     body.solve = &kept.solve;

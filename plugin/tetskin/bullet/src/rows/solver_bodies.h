@@ -53,6 +53,8 @@ struct SolvedBody {
   bool continues = false;        ///< it was solved in the step before, too
   bool* hasRows = nullptr;       ///< written for the next step: the body has rows
   bool hadRows = false;          ///< value of `hasRows` in the step before
+  bool* hasContacts = nullptr;   ///< written for the next step: some of the rows are contacts
+  bool hadContacts = false;      ///< value of `hasContacts` in the step before
   bool deferSolve = false;       ///< its solve begins only when contacts are known
   std::vector<FixedNode> fixed;  ///< without pinned ones
   double unseenSpeed = 0.0;      ///< the error of velocities that is not visible
@@ -132,8 +134,9 @@ class SolverBodies {
   struct PersistentState {
     std::unique_ptr<Dynamics> masses;  ///< of a body without an elastic force
     std::vector<FrictionAnchor> frictionAnchors;
-    bool hasRows = false;  ///< true if any row acts on the body
-    unsigned step = 0;     ///< number of the last step in which it was awake
+    bool hasRows = false;      ///< true if any row acts on the body
+    bool hasContacts = false;  ///< true if any of these is a contact
+    unsigned step = 0;         ///< number of the last step in which it was awake
     PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
     elastic_detail::ConjugateGradient<btScalar> solve;

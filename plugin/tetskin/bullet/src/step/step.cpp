@@ -245,7 +245,8 @@ void DeformableSolver::Impl::useOwnSettings() {
 
 void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
   Dynamics& dynamics = *body.dynamics;
-  dynamics.setTouched(body.hadRows);
+  dynamics.setPressed(body.hadRows);
+  dynamics.setTouched(body.hadContacts);
   dynamics.predict(static_cast<double>(dt()), inner);
   body.unseenSpeed = unseenSpeed(body);
   dynamics.matrix().free();
@@ -306,8 +307,15 @@ void DeformableSolver::Impl::assemble() {
   addDynamicFriction(projection(), bodies, solver.m_residual);
   listFixedNodes(projection(), bodies);
   collectRows();
+  std::vector<bool> touched(bodies.bodies().size(), false);
+  for (const ContactRow& row : rows.rows()) {
+    for (const RowEnd& end : row.ends) {
+      if (end.isSoft() && !row.joined) touched[end.body] = true;
+    }
+  }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
-    if (body.rowCount > 0) body.dynamics->beTouched(static_cast<double>(dt()), inner);
+    const auto index = static_cast<std::size_t>(&body - bodies.bodies().data());
+    if (touched[index]) body.dynamics->beTouched(static_cast<double>(dt()), inner);
   });
 }
 
@@ -371,7 +379,11 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
     first.iterations += report.iterations;
     system.passes = report.passes;
     system.converged = report.converged;
-    for (const std::size_t b : system.bodies) bodies.bodies()[b].solvedAgain = true;
+    for (const std::size_t b : system.bodies) {
+      SolvedBody& body = bodies.bodies()[b];
+      body.solvedAgain = true;
+      if (body.elastic) body.dynamics->rememberAmongOthers(static_cast<double>(dt()), inner);
+    }
   } else if (first.elastic) {
     // A body that has waited for contacts, and has none, is solved with all iterations; another one continues where it
     // stopped.

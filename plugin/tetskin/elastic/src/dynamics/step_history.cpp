@@ -65,7 +65,7 @@ void StepHistory<S>::takeFrom(AlignedVector<S>& rightSide) const {
 }
 
 template <class S>
-void StepHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& rightSide, const TimeScheme& scheme,
+void StepHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme,
                           double seconds, const AlignedVector<S>& points, const AlignedVector<S>& rigid,
                           double length) {
   assert(points.size() == 4 * matrix.slotCount() && rigid.size() == points.size());
@@ -74,7 +74,6 @@ void StepHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& 
   speeds_.resize(points.size());
   const S* solution = matrix.solution();
   const auto dt = static_cast<S>(length);
-  // What a solve has left of the residual counts as part of it.
   const auto share = static_cast<S>((1.0 - scheme.filter) * (length - scheme.damping) /
                                     ((1.0 - scheme.filter) * scheme.damping + scheme.filter * length));
   S reach = S(0);
@@ -83,7 +82,7 @@ void StepHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& 
     const S mass = matrix.massAt(slot);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = wide + k * kGroup;
-      mean_[at] = mass != S(0) ? mean_[at] + share * (rightSide[at] - mass * solution[at]) : S(0);
+      mean_[at] = mass != S(0) ? mean_[at] + share * (impulses[at] - mass * solution[at]) : S(0);
       const S velocity = rigid[4 * slot + k] + solution[at];
       speeds_[4 * slot + k] = velocity;
       points_[4 * slot + k] = points[4 * slot + k] + dt * velocity;

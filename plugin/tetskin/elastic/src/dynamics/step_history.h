@@ -35,11 +35,11 @@ class StepHistory {
   /// H becomes 0.
   void clear(std::size_t wideSize) { mean_.assign(wideSize, S(0)); }
   /// Call it when a step has been solved, after `addTo` or `clear`.
-  /// rightSide      of the step, in the wide layout; the matrix has its solution
+  /// impulses       A times the solution, in the wide layout; the matrix has the solution
   /// seconds        for which forces have acted
   /// points, rigid  4 scalars per slot: positions at the beginning, and the velocities to which the solution is
   /// relative length         of the step
-  void keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
+  void keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme, double seconds,
             const AlignedVector<S>& points, const AlignedVector<S>& rigid, double length);
 
  private:

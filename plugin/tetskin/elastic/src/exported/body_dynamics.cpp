@@ -35,7 +35,7 @@ constexpr double kStiff = 1e3;
 /// step stores noticeable energy.
 constexpr double kFeelsTurns = 1.0;
 
-/// alpha over dt^2 of flat and inverted tets of a touched body, at least: their forces change faster with a node's
+/// alpha over dt^2 of flat and inverted tets of a pressed body, at least: their forces change faster with a node's
 /// position than the matrix knows. Without, nodes of a body that is squashed flat jump between two positions for ever,
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
@@ -106,7 +106,6 @@ void BodyDynamics<S>::setMass(std::size_t node, S mass) {
 
 template <class S>
 void BodyDynamics<S>::setTouched(bool touched) {
-  touched_ = touched;
   untouched_ = touched ? 0 : std::min(untouched_ + 1, kUntouched);
 }
 
@@ -168,7 +167,7 @@ void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, Para
   const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
   const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
   if (!changed_ && alpha == alpha_ && !turned) return;
-  const auto flatAlpha = static_cast<S>(touched_ ? kFlatAlpha * seconds * seconds : 0.0);
+  const auto flatAlpha = static_cast<S>(pressed_ ? kFlatAlpha * seconds * seconds : 0.0);
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr, threads);
   alpha_ = alpha;
   changed_ = false;
@@ -334,11 +333,24 @@ void BodyDynamics<S>::startLater() {
   history_.forget();  // unless `remember` follows
 }
 
+/// The elastic impulses are what the right side and the momentum of the solution differ by, but for what is left of the
+/// residual.
 template <class S>
 void BodyDynamics<S>::remember(double seconds) {
-  if (!tets_ || stiff_ || untouched_ < kUntouched) return;
+  if (mayRemember()) keep(rightSide_, seconds);
+}
+
+template <class S>
+void BodyDynamics<S>::rememberAmongOthers(double seconds, ParallelFor* threads) {
+  if (!mayRemember()) return;
+  restart(threads);
+  keep(image_, seconds);
+}
+
+template <class S>
+void BodyDynamics<S>::keep(const AlignedVector<S>& impulses, double seconds) {
   if (!secondOrder_) history_.clear(matrix_.wideSize());
-  history_.keep(matrix_, rightSide_, scheme_, forceSeconds_, points_, velocities_, seconds);
+  history_.keep(matrix_, impulses, scheme_, forceSeconds_, points_, velocities_, seconds);
 }
 
 template <class S>

@@ -52,11 +52,12 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Takes effect at the next `predict`. By tet; `damping` in seconds.
   void setMaterial(const std::vector<Lame>& lame);
   void setDamping(double damping) { damping_ = damping; }
-  /// Whether something outside has held or pressed the body in the step before. Its flat tets are then damped, so that
-  /// they come to rest, and it takes some of backward Euler's steps: see time_scheme.h.
+  /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
+  void setPressed(bool pressed) { pressed_ = pressed; }
+  /// Whether the body had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
   void setTouched(bool touched);
-  /// Call it between `startLater` and `restart` where something turns out to hold the body in this step: the step
-  /// becomes one of a touched body.
+  /// Call it between `startLater` and `restart` where the body turns out to have contacts in this step, which becomes
+  /// one of a touched body.
   void beTouched(double seconds, ParallelFor* threads);
   /// The first step is half a step of velocities, as they are known at its beginning and belong to its middle from then
   /// on; each takes half of the lengths of the step before and of its own. Otherwise each takes its own length, as
@@ -91,6 +92,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void forget() { history_.forget(); }
   /// Call it when nothing but `solve` has changed the solution, for the next step to be of second order.
   void remember(double seconds);
+  /// The same where other forces and joints have changed it, too. Nothing is remembered of a touched body.
+  void rememberAmongOthers(double seconds, ParallelFor* threads);
   /// True if the last `predict` has begun a step of second order.
   bool isSecondOrder() const { return secondOrder_; }
 
@@ -156,6 +159,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::optional<CorotatedTets<S>>& tets() { return tets_; }
 
  private:
+  bool mayRemember() const { return tets_ && !stiff_ && untouched_ >= kUntouched; }
+  void keep(const AlignedVector<S>& impulses, double seconds);
   void beginForces(double seconds);
   void chooseScheme(double seconds);
   void findComponents(const std::vector<Tet>& tets);
@@ -174,7 +179,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
-  bool stiff_ = false, touched_ = false, staggered_ = false, secondOrder_ = false;
+  bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false;
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
   /// each time that it bounces.
   static constexpr int kUntouched = 8;
