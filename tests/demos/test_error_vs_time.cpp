@@ -95,29 +95,12 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
   }
 }
 
-/// The report of one cage in some numbers of substeps, in the sag.
+/// Options for cages of one size in some numbers of substeps, in a scene with contact.
 std::vector<std::string> inSubsteps(const std::string& substeps, const std::string& reference) {
-  return {"--quick",
-          "--quiet",
-          "--scenes",
-          "sag",
-          "--tets",
-          "300",
-          "--reference-tets",
-          "1000",
-          "--triangles",
-          "2000",
-          "--frames",
-          "24",
-          "--interpolation",
-          "linear",
-          "--no-reduction",
-          "--out",
-          "out",
-          "--substeps",
-          substeps,
-          "--reference-substeps",
-          reference};
+  std::vector<std::string> all = {"--quick", "--quiet", "--scenes", "drop", "--tets", "300", "--out", "out"};
+  all.insert(all.end(), {"--reference-tets", "1000", "--triangles", "2000", "--interpolation", "linear"});
+  all.insert(all.end(), {"--no-reduction", "--substeps", substeps, "--reference-substeps", reference});
+  return all;
 }
 
 TEST_F(ErrorVsTime, ErrorsInTimeVanishAtTheReferencesSubsteps) {
@@ -131,7 +114,8 @@ TEST_F(ErrorVsTime, ErrorsInTimeVanishAtTheReferencesSubsteps) {
     EXPECT_EQ(rows[k].at("error_embedding_rms"), rows[0].at("error_embedding_rms"));
   }
   EXPECT_GT(number(rows[0], "error_time_rms"), 1e-4);
-  EXPECT_LT(number(rows[4], "error_time_rms"), 0.02 * number(rows[0], "error_time_rms"));
+  EXPECT_LT(number(rows[4], "error_time_rms"), 0.1 * number(rows[0], "error_time_rms"));
+  EXPECT_GT(number(rows[4], "error_time_rms"), 0.0) << "the reference's solver leaves less";
   EXPECT_NEAR(number(rows[4], "error_total_rms") / number(rows[4], "error_space_rms"), 1.0, 1e-3);
   // Bare cages are simulated in the usual substeps only, the reference's tets in its own as well.
   EXPECT_EQ(rowsOf(scene, "linear").size(), 1u);
