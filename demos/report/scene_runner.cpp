@@ -367,16 +367,16 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
       progress(0.5 * static_cast<double>(++frame) / (frames_ * static_cast<double>(job.substeps.size())));
     }));
   }
-  const Trajectory converged = convergedMotion(job, cage, motions.front().nodes);
+  const Trajectory fine = convergedMotion(job, cage, motions.front().nodes);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
-    const double space = surfaceErrors(reference(), model_.mesh, cage, kind, converged).rms;
+    const double space = surfaceErrors(reference(), model_.mesh, cage, kind, fine).rms;
     const double embedding = surfaceErrors(reference(), model_.mesh, cage, kind, driven).rms;
     for (const Motion& motion : motions) {
       if (kind != job.surfaces.front() && &motion != &motions.front()) continue;
       Row& row = rows.emplace_back(compared(job, cage, kind, motion));
       row.errorSpaceRms = space;
-      row.errorTimeRms = surfaceDistance(model_.mesh, cage, kind, motion.nodes, converged);
+      row.errorTimeRms = surfaceDistance(model_.mesh, cage, kind, motion.nodes, fine);
       row.errorEmbeddingRms = embedding;
     }
   }
