@@ -7,7 +7,8 @@ its JSON file (or in the folder given).
 error_vs_time.py RESULTS.json [FOLDER] [--target-error X] [--tets N] [--no-surface] [--quiet]
 
 For every scene: a table, orders, the reference's own error, and the cheapest setting below an error of X;
-SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
+SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_substeps.png, errors in space and in time over the
+substeps; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
 deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
 installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
@@ -38,8 +39,9 @@ KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": 
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
          "calibrated": ", calibrated", "reduced": ", reduced"}
 
-HEAD = ("| tets | duplicates | stiffness | surface | error, RMS | largest | embedding only | at the nodes | normals, degrees | "
-        "simulation, ms | skin, µs | total, ms | speed-up | embedding, ms | memory, MB |{more}\n" + 15 * "|---" + "|{lines}\n")
+HEAD = ("| tets | duplicates | stiffness | surface | substeps | error, RMS | in space | in time | largest | embedding only | "
+        "at the nodes | normals, degrees | simulation, ms | skin, µs | total, ms | speed-up | embedding, ms | memory, MB |"
+        "{more}\n" + 18 * "|---" + "|{lines}\n")
 AGAINST = " error against Bullet's reference | speed-up against it |"
 SMOOTH = "\nOn a smooth map the theoretical orders are 2 (linear) and 3 (quadratic).\n"
 CLAMPED = ("\nThe theoretical orders, 2 for linear embedding and 3 for quadratic, hold for smooth maps. Here the body is clamped "
@@ -64,25 +66,38 @@ def tets_of(row):
     return f"| {row['tets']:,.0f} | {row['copies']:,.0f} | {factor} |"
 
 
+def substeps_of(row):
+    return f"{row['substeps']:.0f} substep{'s' if row['substeps'] != 1 else ''}"
+
+
 def is_choice(row):
     """Whether it is a setting that a user of the library may choose."""
     return row["interpolation"] not in ("reference", "bullet") and row["finite"]
 
 
-def table_line(row, reference_error, integrator, against):
-    memory = f"{row['memory_bytes'] / 1e6:.1f}"
+def reference_line(row, scene, against):
+    whose, total, space, time = "reference", "", "", ""
+    if row["integrator"] != scene["integrator"]:
+        whose = f"reference, Bullet's elasticity, {row['integrator']}"
+    elif row["error_time_rms"] > 0:
+        whose, total, time = "the reference's tets", f"{row['error_total_rms']:.2e}", f"{row['error_time_rms']:.1e}"
+    else:
+        space, time = (f"about {scene[key]:.1e}" if scene[key] > 0 else "" for key in ("reference_error", "reference_time_error"))
+    return (f"{tets_of(row)} {whose} | {row['substeps']:.0f} | {total} | {space} | {time} | | | | | {row['simulation_ms']:.3g} | | "
+            f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {row['memory_bytes'] / 1e6:.1f} |{' | |' if against else ''}\n")
+
+
+def table_line(row, scene, against):
     if row["interpolation"] == "reference":
-        whose = "reference" if row["integrator"] == integrator else f"reference, Bullet's elasticity, {row['integrator']}"
-        about = f"about {reference_error:.1e}" if row["integrator"] == integrator and reference_error > 0 else ""
-        return (f"{tets_of(row)} {whose} | {about} | | | | | {row['simulation_ms']:.3g} | | "
-                f"{row['total_ms']:.3g} | {row['speedup']:.3g} | | {memory} |{' | |' if against else ''}\n")
+        return reference_line(row, scene, against)
     surface = f"**{setting(row)}**" if row["pareto"] else setting(row)
     if not row["finite"]:
         surface += " (exploded)"
-    return (f"{tets_of(row)} {surface} | {row['error_total_rms']:.2e} | {row['error_total_max']:.1e} | "
+    return (f"{tets_of(row)} {surface} | {row['substeps']:.0f} | {row['error_total_rms']:.2e} | "
+            f"{row['error_space_rms']:.1e} | {row['error_time_rms']:.1e} | {row['error_total_max']:.1e} | "
             f"{row['error_embedding_rms']:.1e} | {row['error_simulation_rms']:.1e} | {row['normal_error_mean_deg']:.2f} | "
             f"{row['simulation_ms']:.3g} | {row['skin_us']:.0f} | {row['total_ms']:.3g} | {row['speedup']:.3g} | "
-            f"{row['attach_ms']:.3g} | {memory} |"
+            f"{row['attach_ms']:.3g} | {row['memory_bytes'] / 1e6:.1f} |"
             + (f" {row['error_against_bullet_rms']:.2e} | {row['speedup_against_bullet']:.4g} |" if against else "") + "\n")
 
 
@@ -91,15 +106,26 @@ NOT_REDUCED = ("\nNo reduced bodies: the ends of the bar are driven, and vibrati
 
 
 def orders_text(scene):
-    text = "\nObserved orders (error over edge length; total / embedding only):\n\n"
+    text = "\nObserved orders in space (error over edge length; all of it / embedding only):\n\n"
     for order in scene["orders"]:
         if order["material"] == "same":
-            steps = [f" {step['total']:.1f} / {step['embedding']:.1f} ({step['coarse_tets']:,.0f} to "
+            steps = [f" {step['space']:.1f} / {step['embedding']:.1f} ({step['coarse_tets']:,.0f} to "
                      f"{step['fine_tets']:,.0f} tets)" for step in order["steps"]]
             overall = order["overall"]
-            text += (f"- {order['interpolation']}: {overall['total']:.1f} / {overall['embedding']:.1f} overall;"
+            text += (f"- {order['interpolation']}: {overall['space']:.1f} / {overall['embedding']:.1f} overall;"
                      + ",".join(steps) + "\n")
-    return text + (SMOOTH if scene["integrator"] == "none" else CLAMPED)
+    return text + (SMOOTH if scene["integrator"] == "none" else CLAMPED) + time_orders_text(scene)
+
+
+def time_orders_text(scene):
+    if not scene["time_orders"]:
+        return ""
+    text = "\nObserved orders in time (error in time over the length of a substep):\n\n"
+    for tets in sorted({order["tets"] for order in scene["time_orders"]}):
+        text += f"- {tets:,.0f} tets: " + ", ".join(
+            f"{order['order']:.1f} ({order['coarse_substeps']:.0f} to {order['fine_substeps']:.0f} substeps)"
+            for order in scene["time_orders"] if order["tets"] == tets) + "\n"
+    return text
 
 
 def reduction_text(scene):
@@ -126,8 +152,9 @@ def cheapest_text(scene, target):
     if not good:
         return f"\nNo setting has an error below {target:g}.\n"
     best = min(good, key=lambda row: row["total_ms"])
-    return (f"\nCheapest setting with an error below {target:g}: {best['tets']:,.0f} tets, {setting(best)}: {best['total_ms']:.3g} ms "
-            f"per frame, error {best['error_total_rms']:.2e}.\n")
+    substeps = f", {substeps_of(best)}" if best["substeps"] else ""
+    return (f"\nCheapest setting with an error below {target:g}: {best['tets']:,.0f} tets, {setting(best)}{substeps}: "
+            f"{best['total_ms']:.3g} ms per frame, error {best['error_total_rms']:.2e}.\n")
 
 
 def reference_text(reference):
@@ -151,21 +178,26 @@ KINDS_TEXT = ("Cages: without a note, bare tets, each entirely full of material,
 def tables(results, target):
     """Everything that the results say in words, as Markdown."""
     text = (f"# Error against run time: {results['model']}\n\n{results['vertices']:,} vertices, {results['triangles']:,} "
-            "triangles. Errors are fractions of the diagonal of the mesh's bounding box, over all vertices and frames; times are "
-            "processor times in one thread, medians over the frames. Bold: no other setting is both faster and more accurate. "
+            "triangles. Errors are fractions of the diagonal of the mesh's bounding box, over all vertices and frames: *in space*, of "
+            "the same cage in the reference's substeps; *in time*, how far the cage is from that; the whole error is at most their "
+            "sum. Times are processor times in one thread, medians over the frames. Bold: no other setting is both faster and more "
+            "accurate. "
             + reference_text(results["reference"]) + KINDS_TEXT)
     for scene in results["scenes"]:
         integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
         against = any(row["speedup_against_bullet"] > 0 for row in scene["rows"])
         text += f"\n## {scene['scene']}{integrator}\n\n"
         text += HEAD.format(more=AGAINST if against else "", lines="---|---|" if against else "")
-        text += "".join(table_line(row, scene["reference_error"], scene["integrator"], against) for row in scene["rows"])
+        text += "".join(table_line(row, scene, against) for row in scene["rows"])
         if against:
             text += ("\nTwo references with the same cage and material: one with the library's elasticity and solver, one with "
                      "Bullet's elasticity, which handles rotation and damping differently.\n")
         if scene["reference_error"] > 0:
-            text += (f"\nThe error of the reference itself is about {scene['reference_error']:.1e}, estimated from the finest "
-                     "cages that are made as it is; smaller differences are not significant.\n")
+            text += (f"\nThe error of the reference itself in space is about {scene['reference_error']:.1e}, estimated from the "
+                     "finest cages that are made as it is; smaller differences are not significant.\n")
+        if scene["reference_time_error"] > 0:
+            text += (f"\nThe error of the reference itself in time is about {scene['reference_time_error']:.1e}, estimated from "
+                     f"the same tets in {substeps_of(scene)}.\n")
         text += reduction_text(scene)
         text += orders_text(scene)
         if target:
@@ -179,8 +211,22 @@ def title_of(scene):
 
 def series(scene, interpolation, material):
     """The rows of one line, fastest first."""
-    rows = [r for r in scene["rows"] if (r["interpolation"], r["material"]) == (interpolation, material) and r["finite"]]
+    rows = [r for r in usual_rows(scene) if (r["interpolation"], r["material"]) == (interpolation, material) and r["finite"]]
     return sorted(rows, key=lambda row: row["total_ms"])
+
+
+def usual_rows(scene):
+    """Those in the substeps in which everything was simulated."""
+    return [row for row in scene["rows"] if row["substeps"] == scene["substeps"]]
+
+
+def series_in_time(scene):
+    """The rows of each cage that was simulated with several numbers of substeps, fewest substeps first."""
+    cages = {}
+    for row in sorted(filter(is_choice, scene["rows"]), key=lambda row: row["substeps"]):
+        if not row["modes"]:
+            cages.setdefault((row["tets"], row["material"], row["interpolation"]), []).append(row)
+    return [rows for _, rows in sorted(cages.items()) if len(rows) > 1]
 
 
 def reference_of(scene):
@@ -220,6 +266,16 @@ def draw_reduced(axes, rows, look):
                           textcoords="offset points", xytext=(3, -9))
 
 
+def draw_substeps(axes, scene):
+    """One line per cage, by the number of substeps."""
+    for line in series_in_time(scene):
+        axes.plot([r["total_ms"] for r in line], [r["error_total_rms"] for r in line], color="#888888", linewidth=0.8,
+                  marker=".", markersize=4, zorder=2)
+        for row in line:
+            axes.annotate(f"{row['substeps']:.0f}", (row["total_ms"], row["error_total_rms"]), fontsize=7, color="#555555",
+                          textcoords="offset points", xytext=(-3, -9))
+
+
 def draw_embedding(axes, scene):
     """Draws the embedding errors of one kind of cage, as they do not depend on the material."""
     for interpolation in ("linear", "quadratic"):
@@ -251,11 +307,12 @@ def draw_reference(axes, scene):
     if not reference:
         return
     axes.axvline(reference["total_ms"], color="black", linewidth=1)
-    axes.annotate(f"reference: {reference['tets']:,.0f} tets, {reference['total_ms']:,.0f} ms",
+    axes.annotate(f"{reference['tets']:,.0f} tets, {substeps_of(reference)}: {reference['total_ms']:,.0f} ms",
                   (reference["total_ms"], 0.03), xycoords=("data", "axes fraction"), rotation=90, ha="right",
                   va="bottom", fontsize=8, textcoords="offset points", xytext=(-2, 0))
     if scene["reference_error"] > 0:
-        axes.axhspan(1e-12, scene["reference_error"], color="#000000", alpha=0.08, linewidth=0, zorder=0)
+        axes.axhspan(1e-12, scene["reference_error"] + scene["reference_time_error"], color="#000000", alpha=0.08, linewidth=0,
+                     zorder=0)
 
 
 def legend_of(axes, scene):
@@ -271,6 +328,8 @@ def legend_of(axes, scene):
                                   color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
     if series(scene, "bullet", "same"):
         entries.append(Line2D([], [], linestyle="", color=COLOURS["bullet"], marker="x", label="Bullet's render nodes"))
+    if series_in_time(scene):
+        entries.append(Line2D([], [], color="#888888", linewidth=0.8, marker=".", markersize=4, label="number: substeps"))
     entries.append(Line2D([], [], color="#F0E442", linewidth=7, alpha=0.75, label="Pareto-optimal: none faster and more accurate"))
     if reference_of(scene) and scene["reference_error"] > 0:
         entries.append(Line2D([], [], color="#000000", alpha=0.12, linewidth=9, label="below the reference's own error"))
@@ -285,6 +344,7 @@ def error_against_time(scene, name):
     if scene["integrator"] != "none":
         draw_embedding(axes, scene)
     draw_totals(axes, scene)
+    draw_substeps(axes, scene)
     errors = [r[key] for r in scene["rows"] for key in ("error_total_rms", "error_embedding_rms") if r[key] > 0]
     if errors:
         axes.set_ylim(0.5 * min(errors), 2.5 * max(errors))
@@ -298,8 +358,30 @@ def error_against_time(scene, name):
     return figure
 
 
+def error_over_substeps(scene, name):
+    """In space and in time, of each cage that was simulated with several numbers of substeps."""
+    figure, axes = plt.subplots(figsize=(6.4, 3.6))
+    for line, colour in zip(series_in_time(scene), 2 * (SKY, BLUE, GREEN, ORANGE, PINK, GREY)):
+        substeps = [row["substeps"] for row in line]
+        for key, style in (("error_total_rms", "-"), ("error_space_rms", ":"), ("error_time_rms", "--")):
+            axes.plot(substeps, [row[key] for row in line], linestyle=style, color=colour, linewidth=1.4,
+                      marker="o" if style == "-" else "", markersize=4)
+        axes.plot([], [], color=colour, label=f"{line[0]['tets']:,.0f} tets, {line[0]['material']}")
+    for label, style in (("both", "-"), ("in space", ":"), ("in time", "--")):
+        axes.plot([], [], color="black", linestyle=style, linewidth=1.2, label=label)
+    axes.set_xscale("log", base=2)
+    axes.set_yscale("log")
+    axes.xaxis.set_major_formatter("{x:.0f}")
+    axes.set_xlabel("substeps per frame")
+    axes.set_ylabel("error, RMS, over the box's diagonal")
+    axes.set_title(f"{title_of(scene)} ({name})", fontsize=11, loc="left")
+    axes.grid(True, color="#dddddd", linewidth=0.6)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9)
+    return figure
+
+
 def error_over_frames(scene, name, tets):
-    rows = [r for r in scene["rows"] if r["error_total_rms_by_frame"]]
+    rows = [r for r in usual_rows(scene) if r["error_total_rms_by_frame"]]
     shown = {material: min((r["tets"] for r in rows if r["material"] == material), key=lambda n: abs(math.log(n / tets)))
              for material in {r["material"] for r in rows}}
     figure, axes = plt.subplots(figsize=(6.4, 3.6))
@@ -325,7 +407,7 @@ def error_over_amplitude(scene, name, tets):
     figure, axes = plt.subplots(figsize=(6.4, 3.6))
     rows = [r for r in scene["rows"] if r["modes"] and r["finite"]]
     rows = [r for r in rows if r["tets"] == max(r["tets"] for r in rows)]
-    cages = [r for r in scene["rows"] if r["material"] == "calibrated" and r["interpolation"] == rows[0]["interpolation"]]
+    cages = [r for r in usual_rows(scene) if r["material"] == "calibrated" and r["interpolation"] == rows[0]["interpolation"]]
     rows += sorted(cages, key=lambda r: abs(math.log(r["tets"] / tets)))[:1]
     for k, row in enumerate(rows):
         label = setting(row) if row["modes"] else f"{setting(row)}, {row['tets']:,.0f} tets"
@@ -397,6 +479,8 @@ def draw(scene, model, arguments, folder):
     base = f"{scene['scene']}_{scene['integrator']}" if integrated else scene["scene"]
     name = f"{model}, {scene['integrator']}" if integrated else model
     yield save(error_against_time(scene, name), folder, base)
+    if series_in_time(scene):
+        yield save(error_over_substeps(scene, name), folder, f"{base}_substeps")
     if integrated and any(row["error_total_rms_by_frame"] for row in scene["rows"]):
         yield save(error_over_frames(scene, name, arguments.tets), folder, f"{base}_frames")
     if scene["scene"] == "sag" and any(row["modes"] for row in scene["rows"]):
@@ -422,7 +506,7 @@ def main():
         parser.error("--tets must be above 0")
     try:
         results = json.loads(arguments.results.read_text(encoding="utf-8"))
-        if not all("about" in scene and scene["rows"] for scene in results["scenes"]):
+        if not all("time_orders" in scene and scene["rows"] for scene in results["scenes"]):
             raise ValueError("of an older version")
     except (OSError, ValueError, KeyError, TypeError) as error:
         parser.error(f"{arguments.results} is not what tetskin_error_vs_time writes ({error}); run that again")

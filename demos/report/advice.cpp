@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <tuple>
 
 namespace tetskin::report {
 namespace {
@@ -16,19 +18,55 @@ namespace {
 constexpr double kVisible = 0.1;
 constexpr double kMinOrder = 1.0, kMaxOrder = 3.0;
 
-/// The rows of one kind, coarsest first.
+/// One row of each cage of one kind, coarsest first. Errors in space do not depend on the row's substeps.
 std::vector<Row> series(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material) {
   std::vector<Row> found;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(found), [&](const Row& row) {
     return row.isChoice() && row.interpolation == interpolation && row.material == material;
   });
   std::sort(found.begin(), found.end(), [](const Row& a, const Row& b) { return a.edge > b.edge; });
+  const auto isSameCage = [](const Row& a, const Row& b) { return a.edge == b.edge; };
+  found.erase(std::unique(found.begin(), found.end(), isSameCage), found.end());
   return found;
 }
 
-double orderOf(double coarseError, double fineError, const Row& coarse, const Row& fine) {
-  if (!(coarseError > 0.0 && fineError > 0.0) || !(coarse.edge > fine.edge)) return 0.0;
-  return std::log(coarseError / fineError) / std::log(coarse.edge / fine.edge);
+/// coarse, fine  edges or lengths of a step, in the same unit
+double orderOf(double coarseError, double fineError, double coarse, double fine) {
+  if (!(coarseError > 0.0 && fineError > 0.0) || !(coarse > fine)) return 0.0;
+  return std::log(coarseError / fineError) / std::log(coarse / fine);
+}
+
+/// The rows of each cage and surface with several numbers of substeps, fewest first; fewest tets first.
+std::vector<std::vector<Row>> seriesInTime(const std::vector<Row>& rows) {
+  std::map<std::tuple<double, std::string, std::string>, std::map<double, Row>> found;
+  for (const Row& row : rows) {
+    if (row.isChoice() && !row.isReduced()) found[{row.tets, row.material, row.interpolation}][row.substeps] = row;
+  }
+  std::vector<std::vector<Row>> series;
+  for (const auto& [cage, bySubsteps] : found) {
+    if (bySubsteps.size() < 2) continue;
+    series.emplace_back();
+    for (const auto& [substeps, row] : bySubsteps) series.back().push_back(row);
+  }
+  return series;
+}
+
+/// If errors against the truth fall as C x^p, then those against a reference are C (x^p - reference^p): this p, from
+/// two of them, kept between kMinOrder and kMaxOrder.
+double orderAgainst(double reference, double coarseError, double fineError, double coarse, double fine) {
+  double low = kMinOrder, high = kMaxOrder;
+  for (int k = 0; k < 60; ++k) {
+    const double p = 0.5 * (low + high), own = std::pow(reference, p);
+    // The ratio of the gaps increases with the order.
+    ((std::pow(coarse, p) - own) / (std::pow(fine, p) - own) < coarseError / fineError ? low : high) = p;
+  }
+  return low;
+}
+
+/// The reference's own error C reference^p, from the error C (x^p - reference^p) against it.
+double ownError(double reference, double p, double error, double x) {
+  const double own = std::pow(reference, p);
+  return error * own / (std::pow(x, p) - own);
 }
 
 /// The slope of the straight line through the logarithms of edge and error; 0 where an error is 0.
@@ -64,8 +102,8 @@ std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const st
   std::vector<ObservedOrder> orders;
   for (std::size_t k = 1; k < sorted.size(); ++k) {
     const Row &coarse = sorted[k - 1], &fine = sorted[k];
-    orders.push_back({coarse.tets, fine.tets, orderOf(coarse.errorTotalRms, fine.errorTotalRms, coarse, fine),
-                      orderOf(coarse.errorEmbeddingRms, fine.errorEmbeddingRms, coarse, fine)});
+    orders.push_back({coarse.tets, fine.tets, orderOf(coarse.errorSpaceRms, fine.errorSpaceRms, coarse.edge, fine.edge),
+                      orderOf(coarse.errorEmbeddingRms, fine.errorEmbeddingRms, coarse.edge, fine.edge)});
   }
   return orders;
 }
@@ -74,8 +112,20 @@ ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& inte
                            const std::string& material) {
   const std::vector<Row> sorted = series(rows, interpolation, material);
   if (sorted.size() < 2) return {};
-  return {sorted.front().tets, sorted.back().tets, slope(sorted, &Row::errorTotalRms),
+  return {sorted.front().tets, sorted.back().tets, slope(sorted, &Row::errorSpaceRms),
           slope(sorted, &Row::errorEmbeddingRms)};
+}
+
+std::vector<TimeOrder> timeOrders(const std::vector<Row>& rows) {
+  std::vector<TimeOrder> orders;
+  for (const std::vector<Row>& cage : seriesInTime(rows)) {
+    for (std::size_t k = 1; k < cage.size(); ++k) {
+      const Row &coarse = cage[k - 1], &fine = cage[k];
+      orders.push_back({coarse.material, coarse.tets, coarse.substeps, fine.substeps,
+                        orderOf(coarse.errorTimeRms, fine.errorTimeRms, 1.0 / coarse.substeps, 1.0 / fine.substeps)});
+    }
+  }
+  return orders;
 }
 
 ReductionLimit reductionLimit(const std::vector<Row>& rows) {
@@ -107,7 +157,8 @@ const Row* cageBeside(const Row& reduced, const std::vector<Row>& rows) {
 std::string inWords(const Row& row) {
   char text[128];
   std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms per frame", row.errorTotalRms, row.totalMs);
-  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets";
+  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets in " +
+                           std::to_string(std::lround(row.substeps)) + (row.substeps == 1.0 ? " substep" : " substeps");
   return (row.isReduced() ? std::to_string(std::lround(row.modes)) + " modes in " + cage : cage) + text;
 }
 
@@ -140,14 +191,24 @@ double referenceError(const std::vector<Row>& rows) {
   if (sorted.size() < 2 || reference == rows.end()) return 0.0;
   const Row &coarse = sorted[sorted.size() - 2], &fine = sorted.back();
   if (!(fine.edge > reference->edge)) return 0.0;
-  const auto gap = [&](const Row& row, double p) { return std::pow(row.edge, p) - std::pow(reference->edge, p); };
-  double low = kMinOrder, high = kMaxOrder;
-  for (int k = 0; k < 60; ++k) {
-    const double p = 0.5 * (low + high);
-    // The ratio of the gaps increases with the order.
-    (gap(coarse, p) / gap(fine, p) < coarse.errorTotalRms / fine.errorTotalRms ? low : high) = p;
-  }
-  return fine.errorTotalRms * std::pow(reference->edge, low) / gap(fine, low);
+  const double p = orderAgainst(reference->edge, coarse.errorSpaceRms, fine.errorSpaceRms, coarse.edge, fine.edge);
+  return ownError(reference->edge, p, fine.errorSpaceRms, fine.edge);
+}
+
+double referenceTimeError(const std::vector<Row>& rows) {
+  // The reference comes behind the same cage in fewer substeps.
+  const auto fewer = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.isReference(); });
+  if (fewer == rows.end() || std::next(fewer) == rows.end()) return 0.0;
+  const Row& reference = *std::next(fewer);
+  if (!reference.isReference() || reference.integrator != fewer->integrator) return 0.0;
+  const std::vector<std::vector<Row>> series = seriesInTime(rows);
+  if (series.empty()) return 0.0;
+  const auto step = [](const Row& row) { return 1.0 / row.substeps; };
+  const Row& coarse = series.back().front();
+  const Row& fine = series.back().back();
+  if (!(step(fine) > step(reference) && fine.errorTimeRms > 0.0)) return 0.0;
+  const double p = orderAgainst(step(reference), coarse.errorTimeRms, fine.errorTimeRms, step(coarse), step(fine));
+  return ownError(step(reference), p, fewer->errorTimeRms, step(*fewer));
 }
 
 }  // namespace tetskin::report

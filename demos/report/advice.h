@@ -18,7 +18,7 @@ void markPareto(std::vector<Row>& rows);
 /// The exponent of the edge length with which an error falls, from each cage to the next finer one.
 struct ObservedOrder {
   double coarseTets = 0, fineTets = 0;
-  double total = 0, embedding = 0;  ///< 0 where an error is 0
+  double space = 0, embedding = 0;  ///< 0 where an error is 0
 };
 /// The observed orders of the rows with this interpolation and material.
 std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
@@ -28,11 +28,24 @@ std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const st
 /// are fewer than two cages.
 ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material);
 
-/// The reference's own error, estimated from the two finest cages made as it is (duplicated elements, volume fractions,
-/// calibrated), or else from the two finest bare ones. If errors against the truth fall as C edge^p, then those against
-/// the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1 and 3). 0 if
-/// there are fewer than two.
+/// The exponent of the step's length with which a cage's error in time falls, from one number of substeps to the next.
+struct TimeOrder {
+  std::string material;
+  double tets = 0, coarseSubsteps = 0, fineSubsteps = 0;
+  double order = 0;  ///< 0 where an error is 0
+};
+/// The observed orders of all cages that were simulated with several numbers of substeps.
+std::vector<TimeOrder> timeOrders(const std::vector<Row>& rows);
+
+/// The reference's own error in space, estimated from the two finest cages made as it is (duplicated elements, volume
+/// fractions, calibrated), or else from the two finest bare ones. If errors against the truth fall as C edge^p, then
+/// those against the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1
+/// and 3). 0 if there are fewer than two.
 double referenceError(const std::vector<Row>& rows);
+
+/// The reference's own error in time, estimated from its error in fewer substeps and the order (kept between 1 and 3)
+/// that the finest cage has between the fewest and the most substeps. 0 if either is missing.
+double referenceTimeError(const std::vector<Row>& rows);
 
 /// How a reduced body compares with cages, by the size of the deformation.
 struct ReductionLimit {

@@ -55,7 +55,7 @@ class JobProgress {
 };
 
 SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobProgress& progress) {
-  SceneResult result{runner.scene(), runner.integrator(), {}, 0.0};
+  SceneResult result{runner.scene(), runner.integrator(), {}};
   for (const Job& job : runner.jobs()) {
     const double cost = runner.costOf(job);
     std::optional<std::vector<Row>> rows = runner.stored(job);
@@ -65,8 +65,9 @@ SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobPro
     result.rows.insert(result.rows.end(), rows->begin(), rows->end());
   }
   const Row& first = result.rows.front();
-  const auto bullets =
-      std::find_if(std::next(result.rows.begin()), result.rows.end(), [](const Row& row) { return row.isReference(); });
+  const auto bullets = std::find_if(result.rows.begin(), result.rows.end(), [&](const Row& row) {
+    return row.isReference() && row.integrator != first.integrator;
+  });
   const double bulletsMs = bullets == result.rows.end() ? 0.0 : bullets->totalMs;
   for (Row& row : result.rows) {
     if (first.isReference()) row.speedup = first.totalMs / row.totalMs;
@@ -74,6 +75,7 @@ SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobPro
   }
   markPareto(result.rows);
   if (isBuilt(reference)) result.referenceError = referenceError(result.rows);
+  result.referenceTimeError = referenceTimeError(result.rows);
   return result;
 }
 

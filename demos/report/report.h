@@ -12,7 +12,7 @@
 // driven_nodes       where it would take the nodes of other cages
 // surface_errors     errors of surfaces and nodes against it
 // scene_runner       all cages of a scene, or the results of an earlier run (result_store)
-//   advice             orders, Pareto front, the reference's own error
+//   advice             orders, Pareto front, the reference's own errors
 //   report_files       results for programs
 // plot_program       runs demos/plots, which makes tables and plots of them
 #pragma once
@@ -29,7 +29,8 @@ namespace tetskin::report {
 struct SceneResult {
   std::string scene, integrator;
   std::vector<Row> rows;
-  double referenceError = 0.0;  ///< estimated; in diagonals of the mesh's box; 0: not known
+  double referenceError = 0.0, referenceTimeError = 0.0;  ///< in space and in time, estimated; in diagonals of the
+                                                          ///< mesh's box; 0: not known
 };
 
 struct ReportResult {

@@ -14,7 +14,7 @@ namespace {
 nlohmann::ordered_json toJson(const ObservedOrder& order) {
   return {{"coarse_tets", order.coarseTets},
           {"fine_tets", order.fineTets},
-          {"total", order.total},
+          {"space", order.space},
           {"embedding", order.embedding}};
 }
 
@@ -31,6 +31,18 @@ nlohmann::ordered_json ordersOf(const SceneResult& scene) {
       }
       if (!one["steps"].empty()) json.push_back(std::move(one));
     }
+  }
+  return json;
+}
+
+nlohmann::ordered_json timeOrdersOf(const SceneResult& scene) {
+  auto json = nlohmann::ordered_json::array();
+  for (const TimeOrder& order : timeOrders(scene.rows)) {
+    json.push_back({{"material", order.material},
+                    {"tets", order.tets},
+                    {"coarse_substeps", order.coarseSubsteps},
+                    {"fine_substeps", order.fineSubsteps},
+                    {"order", order.order}});
   }
   return json;
 }
@@ -70,8 +82,11 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
     one["scene"] = scene.scene;
     one["about"] = scenes::sceneNamed(scene.scene).about;
     one["integrator"] = scene.integrator;
+    one["substeps"] = scene.rows.front().substeps;
     one["reference_error"] = scene.referenceError;
+    one["reference_time_error"] = scene.referenceTimeError;
     one["orders"] = ordersOf(scene);
+    one["time_orders"] = timeOrdersOf(scene);
     one["reduction_advice"] = reductionAdvice(scene.rows);
     const ReductionLimit limit = reductionLimit(scene.rows);
     one["reduction_limit"] = {{"modes", limit.modes}, {"amplitude", limit.amplitude}};

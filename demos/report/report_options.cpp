@@ -3,6 +3,7 @@
 #include "report/report_options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scenes/input_error.h"
 #include "scenes/table.h"
@@ -11,6 +12,12 @@ namespace tetskin::report {
 namespace {
 
 constexpr std::size_t kFullTets = 300000;
+constexpr int kMaxReferenceSubsteps = 1024;
+
+void sortUniquely(std::vector<std::size_t>& counts) {
+  std::sort(counts.begin(), counts.end());
+  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+}
 
 /// The names that the table knows, in its order.
 std::vector<std::string> inOrder(const std::vector<std::string>& wanted) {
@@ -32,6 +39,14 @@ std::string shownScene(const ReportOptions& options) {
   return first == scenes.end() ? std::string() : *first;
 }
 
+int usualSubsteps(const ReportOptions& options) {
+  const auto distance = [](std::size_t substeps) {
+    return std::abs(std::log(static_cast<double>(substeps) / scenes::SceneOptions().substeps));
+  };
+  return static_cast<int>(*std::min_element(options.substeps.begin(), options.substeps.end(),
+                                            [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); }));
+}
+
 void requireFiner(const ReportOptions& options, std::size_t referenceTets) {
   if (options.tets.back() < referenceTets) return;
   throw scenes::InputError("--tets: the cages must have fewer tets than the reference, which has " +
@@ -45,6 +60,11 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addCounts("--tets", o.tets, "a list");
   line.addCount("--reference-tets", o.referenceTets, "Approximate number of tets of the reference",
                 static_cast<int>(Limits::kMaxTargetTets));
+  line.addCounts("--substeps", o.substeps,
+                 "Steps of the simulation per frame, a list: the recommended kind of cage is simulated with each of "
+                 "them, everything else with the one nearest to " +
+                     std::to_string(scenes::SceneOptions().substeps));
+  line.addCount("--reference-substeps", o.referenceSubsteps, "Steps of the reference per frame", kMaxReferenceSubsteps);
   line.addInput("--reference", o.reference,
                 "Tet mesh to use as the reference, in which no components of the mesh are fused: .vtk, .ele/.node or "
                 ".msh, in the mesh's coordinates",
@@ -88,6 +108,20 @@ void ReportCommandLine::chooseCages() {
     throw scenes::InputError("--cages: no kind of cage is left with --no-calibration; name another kind");
 }
 
+void ReportCommandLine::chooseSubsteps() {
+  ReportOptions& o = options_;
+  if (o.bullet && (line_.given("--substeps") || line_.given("--reference-substeps"))) {
+    throw scenes::InputError(
+        "--substeps and --reference-substeps cannot be used with --elasticity bullet: Bullet's forces have as many as "
+        "they need to be stable");
+  }
+  if (o.substeps.empty()) throw scenes::InputError("--substeps: name at least one number");
+  sortUniquely(o.substeps);
+  if (o.substeps.back() <= o.referenceSubsteps) return;
+  throw scenes::InputError("--substeps: the cages must have no more substeps than the reference, which has " +
+                           std::to_string(o.referenceSubsteps));
+}
+
 const ReportOptions& ReportCommandLine::finish() {
   ReportOptions& o = options_;
   if (quick_ && full_) throw scenes::InputError("--quick and --full cannot be used together");
@@ -103,6 +137,8 @@ const ReportOptions& ReportCommandLine::finish() {
     preset("--triangles", o.model.triangles, std::size_t{6000});
     preset("--tets", o.tets, std::vector<std::size_t>{300, 1000, 3000});
     preset("--reference-tets", o.referenceTets, std::size_t{8000});
+    preset("--substeps", o.substeps, std::vector<std::size_t>{1, 2, 4});
+    preset("--reference-substeps", o.referenceSubsteps, std::size_t{16});
     preset("--frames", o.frames, 24);
     preset("--modes", o.modes, std::vector<std::size_t>{5, 20});
   }
@@ -113,12 +149,11 @@ const ReportOptions& ReportCommandLine::finish() {
   if (noReduction_) o.modes.clear();
   if (!o.view.empty() && shownScene(o).empty())
     throw scenes::InputError("--view: none of the scenes in --scenes is simulated; add sag, for example");
-  std::sort(o.modes.begin(), o.modes.end());
-  o.modes.erase(std::unique(o.modes.begin(), o.modes.end()), o.modes.end());
+  sortUniquely(o.modes);
   o.bullet = force_ == "bullet";
   if (o.implicit && !o.bullet) throw scenes::InputError("--implicit needs --elasticity bullet");
-  std::sort(o.tets.begin(), o.tets.end());
-  o.tets.erase(std::unique(o.tets.begin(), o.tets.end()), o.tets.end());
+  chooseSubsteps();
+  sortUniquely(o.tets);
   if (o.tets.empty()) throw scenes::InputError("--tets: name at least one number");
   if (o.reference.empty()) requireFiner(o, o.referenceTets);
   if (o.json.empty()) o.json = o.out + "/error_vs_time.json";

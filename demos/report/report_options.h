@@ -18,6 +18,10 @@ struct ReportOptions {
   std::vector<std::string> scenes = {"sag", "twist", "drop", "exact"};
   std::vector<std::size_t> tets = {300, 1000, 3000, 10000};
   std::size_t referenceTets = 30000;
+  /// Per frame, ascending: the recommended kind of cage is simulated with all of these, everything else with one of
+  /// them (see usualSubsteps). Bodies with Bullet's forces have as many as these need to be stable.
+  std::vector<std::size_t> substeps = {1, 2, 4, 8};
+  std::size_t referenceSubsteps = 64;
   std::string reference;  ///< file of tets that count as exact, in the mesh's space; empty: they are made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
@@ -36,6 +40,9 @@ struct ReportOptions {
 /// The scene that a page plays: sag, or the first one that is simulated; empty if none is.
 std::string shownScene(const ReportOptions& options);
 
+/// The one of the substeps that is nearest to what all demos take.
+int usualSubsteps(const ReportOptions& options);
+
 /// Throws InputError unless a reference of this many tets has more than every cage.
 void requireFiner(const ReportOptions& options, std::size_t referenceTets);
 
@@ -50,6 +57,7 @@ class ReportCommandLine {
   ReportOptions options_;
   scenes::CommandLine& line_;
   void chooseCages();
+  void chooseSubsteps();
 
   std::vector<std::string> cages_;
   std::string interpolation_ = "all", force_ = "tetskin";

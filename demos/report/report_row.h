@@ -23,9 +23,16 @@ struct Row {
   double edge = 0;    ///< mean length of the cage's edges
   double copies = 0;  ///< duplicate tets beyond the first at their position
   double stiffnessFactor = 1;
-  double calibrationLeft = 0;     ///< estimated remaining error, as a share of the displacement
-  double errorAgainstBullet = 0;  ///< total, RMS, against a reference with Bullet's forces; 0 without one
-  double errorTotalRms = 0, errorTotalMax = 0, errorEmbeddingRms = 0, errorSimulationRms = 0;
+  double calibrationLeft = 0;                   ///< estimated remaining error, as a share of the displacement
+  double errorAgainstBullet = 0;                ///< total, RMS, against a reference with Bullet's forces; 0 without one
+  double substeps = 0;                          ///< per frame; 0 where nothing is simulated
+  double errorTotalRms = 0, errorTotalMax = 0;  ///< against the reference: in space and in time
+  double errorSpaceRms = 0;                     ///< of this cage in the reference's substeps, against the reference
+  /// Against this cage in the reference's substeps; the total is at most space plus time. 0 with Bullet's forces, where
+  /// the reference has the row's own substeps.
+  double errorTimeRms = 0;
+  double errorEmbeddingRms = 0;   ///< if the nodes were where the reference would take them
+  double errorSimulationRms = 0;  ///< of the nodes, against where the reference would take them: in space and in time
   double normalErrorMeanDeg = 0;
   double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< per frame
   double attachMs = 0, calibrateMs = 0;              ///< once

@@ -16,7 +16,7 @@ namespace tetskin::report {
 namespace {
 
 /// Version of the stored results: raise it when older rows are no longer comparable.
-constexpr int kVersion = 4;
+constexpr int kVersion = 5;
 /// For the estimate of the reference's own error, the finest compared cage has the reference's number of tets divided
 /// by this.
 constexpr std::size_t kCoarserLevel = 3;
@@ -43,7 +43,13 @@ bool isReducible(const std::string& scene) {
   return scene == "sag" || scene == "drop";
 }
 
-std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool both) {
+void appendOthers(const std::vector<std::size_t>& all, std::vector<int>& substeps) {
+  for (const std::size_t one : all) {
+    if (static_cast<int>(one) != substeps.front()) substeps.push_back(static_cast<int>(one));
+  }
+}
+
+std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool tetskin) {
   std::vector<Job> jobs;
   const std::size_t level = options.referenceTets / kCoarserLevel;
   std::vector<std::size_t> sizes = options.tets;
@@ -55,8 +61,9 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   };
   const std::size_t shown = *std::min_element(options.tets.begin(), options.tets.end(),
                                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-  if (!exact) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, false});
-  if (!exact && both) jobs.push_back({options.referenceTets, CageKind::Same, {}, false, true});
+  const int usual = tetskin ? usualSubsteps(options) : 0;
+  if (!exact) jobs.push_back({options.referenceTets, CageKind::Same, {}, {usual}});
+  if (!exact && tetskin) jobs.push_back({options.referenceTets, CageKind::Same, {}, {0}, false, true});
   // Where nothing is simulated, the material does not matter.
   const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
   // The kind of the reference, if such cages are compared at all.
@@ -68,7 +75,9 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
     for (const CageKind kind : kinds) {
       const bool coloured = tets == shown && kind == kinds.front();
       if (asked || kind == levelKind) {
-        jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), coloured, false});
+        const bool isRecommended = asked && kind == kinds.back();
+        jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), {usual}, coloured});
+        if (tetskin && !exact && isRecommended) appendOthers(options.substeps, jobs.back().substeps);
       }
     }
   }
@@ -82,10 +91,32 @@ void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
   if (shown == jobs.end()) return;
   for (const std::size_t tets : std::set<std::size_t>{options.tets.front(), shown->tets}) {
     for (const std::size_t modes : options.modes) {
-      jobs.push_back(
-          {tets, CageKind::Calibrated, {ours(options.surfaces).front()}, false, false, static_cast<int>(modes)});
+      jobs.push_back({tets,
+                      CageKind::Calibrated,
+                      {ours(options.surfaces).front()},
+                      {usualSubsteps(options)},
+                      false,
+                      false,
+                      static_cast<int>(modes)});
     }
   }
+}
+
+/// What the solver may leave of the residual in the reference's substeps, and the limit of its iterations. With its
+/// defaults, what it leaves is more than what so many substeps gain where bodies touch.
+constexpr double kConvergedTolerance = 1e-6;
+constexpr int kConvergedIterations = 1000;
+
+/// substeps  0: the options' own
+scenes::SceneOptions withSubsteps(scenes::SceneOptions options, int substeps) {
+  if (substeps > 0) options.substeps = substeps;
+  return options;
+}
+
+scenes::SceneOptions converged(scenes::SceneOptions options) {
+  options.body.solverTolerance = kConvergedTolerance;
+  options.body.maxIterations = kConvergedIterations;
+  return options;
 }
 
 void addFindings(const Job& job, const Simulation& simulation, const scenes::Reduction& reduction, Row& row) {
@@ -126,7 +157,16 @@ double SceneRunner::costOf(const Job& job) const {
                       : elasticity_ == Elasticity::BulletImplicit ? kImplicit
                       : elasticity_ == Elasticity::Tetskin        ? kTetskin
                                                                   : 1.0;
-  return frames_ * (tets * step + (isReference(job) ? 0.0 : kCompareOneFrame));
+  int substeps = referenceSubsteps(job);
+  for (const int one : job.substeps) substeps += one;
+  const double frames = std::max(1.0, static_cast<double>(substeps) / scenes::SceneOptions().substeps);
+  const auto comparisons = isReference(job) ? 0.0 : static_cast<double>(job.substeps.size());
+  return frames_ * (tets * step * frames + kCompareOneFrame * comparisons);
+}
+
+int SceneRunner::referenceSubsteps(const Job& job) const {
+  return elasticity_ == Elasticity::Tetskin && !job.bullets && !isExact() ? static_cast<int>(options_.referenceSubsteps)
+                                                                          : 0;
 }
 
 nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
@@ -142,6 +182,8 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["reference"] = model_.reference.hash;
   json["tets"] = job.tets;
   json["cage"] = nameOf(job.kind);
+  json["substeps"] = job.substeps;
+  json["reference_substeps"] = referenceSubsteps(job);
   json["coloured"] = job.coloured;
   json["bullets"] = job.bullets;
   json["modes"] = job.modes;
@@ -169,7 +211,7 @@ ShownMotion SceneRunner::shownMotion() {
   assert(!isExact() && colouredJob());
   const Job& job = *colouredJob();
   const Cage& cage = cages_.at(job.tets, job.kind).cage;
-  Simulation simulation = simulate(entry_, cage, optionsOf(job, cage), model_.mesh, {}, [] {});
+  Simulation simulation = simulate(entry_, cage, optionsOf(job, cage, job.substeps.front()), model_.mesh, {}, [] {});
   (void)reference();
   return {cage, std::move(simulation.trajectory), cages_.reference().cage, right_[false].trajectory,
           std::move(simulation.obstacles)};
@@ -209,23 +251,45 @@ Row SceneRunner::rowOf(const Job& job, const ShelvedCage& shelved) const {
   return row;
 }
 
-std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& progress) {
+Row SceneRunner::referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done,
+                              Trajectory& trajectory) {
   const ShelvedCage& shelved = cages_.reference();
-  int frame = 0;
-  Simulation simulation = simulate(entry_, shelved.cage, material(job.bullets), model_.mesh, {},
-                                   [&] { progress(static_cast<double>(++frame) / frames_); });
+  Simulation simulation = simulate(entry_, shelved.cage, options, model_.mesh, {}, done);
   Row row = rowOf(job, shelved);
   row.interpolation = "reference";
   if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
+  row.substeps = options.substeps;
   row.simulationMs = row.totalMs = simulation.milliseconds;
   row.memoryBytes = static_cast<double>(simulation.bytes);
   row.frames = static_cast<double>(simulation.trajectory.size() - 1);
   row.finite = simulation.finite;
   row.speedup = 1.0;
-  right_[job.bullets].trajectory = std::move(simulation.trajectory);
-  store_.keep(settings(job), right_[job.bullets].trajectory);
-  store_.keep(settings(job), std::vector<Row>{row});
-  return {row};
+  trajectory = std::move(simulation.trajectory);
+  return row;
+}
+
+std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& progress) {
+  const scenes::SceneOptions usual = withSubsteps(material(job.bullets), job.substeps.front());
+  const int finest = referenceSubsteps(job);
+  int done = 0;
+  const auto count = [&](const scenes::SceneOptions& options) {
+    return [&, substeps = options.substeps] {
+      progress(static_cast<double>(done += substeps) / (frames_ * (finest + usual.substeps)));
+    };
+  };
+  Trajectory& right = right_[job.bullets].trajectory;
+  const scenes::SceneOptions own = finest > 0 ? converged(withSubsteps(usual, finest)) : usual;
+  std::vector<Row> rows = {referenceRow(job, own, count(own), right)};
+  store_.keep(settings(job), right);
+  if (own.substeps != usual.substeps) {
+    Trajectory nodes;
+    Row row = referenceRow(job, usual, count(usual), nodes);
+    row.errorTimeRms = surfaceDistance(model_.mesh, cages_.reference().cage, SurfaceKind::Quadratic, nodes, right);
+    row.errorTotalRms = row.errorTimeRms;
+    rows.insert(rows.begin(), row);
+  }
+  store_.keep(settings(job), rows);
+  return rows;
 }
 
 Reference& SceneRunner::reference(bool bullets) {
@@ -253,8 +317,8 @@ void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame)
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, maxOf(errors.rmsByVertex)));
 }
 
-scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage) {
-  scenes::SceneOptions options = material();
+scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage, int substeps) {
+  scenes::SceneOptions options = withSubsteps(material(), substeps);
   if (job.modes == 0) return options;
   options.force = scenes::Force::Reduced;
   options.reduction = modes_.reductionOf(model_.mesh, cages_.reference().cage, cage);
@@ -262,66 +326,94 @@ scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage) {
   return options;
 }
 
-SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved,
-                                      const std::function<void(double)>& progress) {
+SceneRunner::Motion SceneRunner::move(const Job& job, const ShelvedCage& shelved, int substeps,
+                                      const Trajectory& driven, const FrameDone& done) {
   const Cage& cage = shelved.cage;
   Motion motion;
+  motion.substeps = substeps;
   motion.row = rowOf(job, shelved);
-  motion.driven = reference().drive(cage);
   if (isExact()) {
-    motion.nodes = motion.driven;
+    motion.nodes = driven;
     motion.costs = surfaceCosts(cage, model_.mesh, job.surfaces);
   } else {
-    int frame = 0;
-    const scenes::SceneOptions options = optionsOf(job, cage);
-    Simulation simulation = simulate(entry_, cage, options, model_.mesh, job.surfaces,
-                                     [&] { progress(0.5 * static_cast<double>(++frame) / frames_); });
+    const scenes::SceneOptions options = optionsOf(job, cage, substeps);
+    std::vector<SurfaceKind> surfaces = job.surfaces;
+    if (substeps != job.substeps.front()) surfaces.resize(1);
+    Simulation simulation = simulate(entry_, cage, options, model_.mesh, surfaces, done);
     motion.nodes = std::move(simulation.trajectory);
     motion.costs = simulation.surfaces;
+    motion.row.substeps = options.substeps;
     motion.row.simulationMs = simulation.milliseconds;
     motion.row.memoryBytes = static_cast<double>(simulation.bytes);
     motion.row.finite = simulation.finite;
     if (job.modes > 0) addFindings(job, simulation, *options.reduction, motion.row);
   }
   // One of the two may have exploded.
-  const std::size_t frames = std::min(motion.nodes.size(), motion.driven.size());
-  motion.nodes.resize(frames);
-  motion.driven.resize(frames);
-  motion.row.frames = static_cast<double>(frames - 1);
-  motion.row.errorSimulationRms = nodeErrors(motion.nodes, motion.driven, model_.mesh);
+  motion.nodes.resize(std::min(motion.nodes.size(), driven.size()));
+  motion.row.frames = static_cast<double>(motion.nodes.size() - 1);
+  motion.row.errorSimulationRms = nodeErrors(motion.nodes, driven, model_.mesh);
   return motion;
 }
 
 std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(double)>& progress) {
   if (isReference(job)) return referenceRows(job, progress);
-  Reference& right = reference();
   const ShelvedCage& shelved = cages_.at(job.tets, job.kind);
   const Cage& cage = shelved.cage;
-  const Motion motion = move(job, shelved, progress);
+  const Trajectory driven = reference().drive(cage);
+  std::vector<Motion> motions;
+  int frame = 0;
+  for (const int substeps : job.substeps) {
+    motions.push_back(move(job, shelved, substeps, driven, [&] {
+      progress(0.5 * static_cast<double>(++frame) / (frames_ * static_cast<double>(job.substeps.size())));
+    }));
+  }
+  const Trajectory fine = convergedMotion(job, cage, motions.front().nodes);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
-    const SurfaceErrors total = surfaceErrors(right, model_.mesh, cage, kind, motion.nodes);
-    const SurfaceCost& cost = motion.costs[static_cast<std::size_t>(kind)];
-    Row& row = rows.emplace_back(motion.row);
-    row.interpolation = nameOf(kind);
-    row.errorTotalRms = total.rms;
-    row.errorTotalMax = total.max;
-    row.normalErrorMeanDeg = total.normalMeanDeg;
-    row.errorByFrame = total.rmsByFrame;
-    row.amplitudeByFrame = total.amplitudeByFrame;
-    if (referenceJob(true)) {
-      row.errorAgainstBullet = surfaceErrors(reference(true), model_.mesh, cage, kind, motion.nodes).rms;
+    const double space = surfaceErrors(reference(), model_.mesh, cage, kind, fine).rms;
+    const double embedding = surfaceErrors(reference(), model_.mesh, cage, kind, driven).rms;
+    for (const Motion& motion : motions) {
+      if (kind != job.surfaces.front() && &motion != &motions.front()) continue;
+      Row& row = rows.emplace_back(compared(job, cage, kind, motion));
+      row.errorSpaceRms = space;
+      row.errorTimeRms = surfaceDistance(model_.mesh, cage, kind, motion.nodes, fine);
+      row.errorEmbeddingRms = embedding;
     }
-    row.errorEmbeddingRms = surfaceErrors(right, model_.mesh, cage, kind, motion.driven).rms;
-    row.skinUs = cost.updateUs;
-    row.totalMs = row.simulationMs + cost.updateUs / 1000.0;
-    row.attachMs = cost.attachMs;
-    row.memoryBytes += static_cast<double>(cost.bytes);
-    if (job.coloured && rows.size() == 1) colour(job, total, static_cast<int>(motion.nodes.size()) - 1);
   }
+  std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.substeps < b.substeps; });
   progress(1.0);
   store_.keep(settings(job), rows);
   return rows;
+}
+
+Trajectory SceneRunner::convergedMotion(const Job& job, const Cage& cage, const Trajectory& usual) {
+  const int finest = referenceSubsteps(job);
+  if (finest == 0) return usual;
+  Trajectory nodes = simulate(entry_, cage, converged(optionsOf(job, cage, finest)), model_.mesh, {}, [] {}).trajectory;
+  nodes.resize(std::min(nodes.size(), right_[false].trajectory.size()));
+  return nodes;
+}
+
+Row SceneRunner::compared(const Job& job, const Cage& cage, SurfaceKind kind, const Motion& motion) {
+  const SurfaceErrors total = surfaceErrors(reference(), model_.mesh, cage, kind, motion.nodes);
+  const SurfaceCost& cost = motion.costs[static_cast<std::size_t>(kind)];
+  Row row = motion.row;
+  row.interpolation = nameOf(kind);
+  row.errorTotalRms = total.rms;
+  row.errorTotalMax = total.max;
+  row.normalErrorMeanDeg = total.normalMeanDeg;
+  row.errorByFrame = total.rmsByFrame;
+  row.amplitudeByFrame = total.amplitudeByFrame;
+  if (referenceJob(true)) {
+    row.errorAgainstBullet = surfaceErrors(reference(true), model_.mesh, cage, kind, motion.nodes).rms;
+  }
+  row.skinUs = cost.updateUs;
+  row.totalMs = row.simulationMs + cost.updateUs / 1000.0;
+  row.attachMs = cost.attachMs;
+  row.memoryBytes += static_cast<double>(cost.bytes);
+  const bool isFirst = kind == job.surfaces.front() && motion.substeps == job.substeps.front();
+  if (job.coloured && isFirst) colour(job, total, static_cast<int>(motion.nodes.size()) - 1);
+  return row;
 }
 
 }  // namespace tetskin::report

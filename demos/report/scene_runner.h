@@ -25,7 +25,8 @@ struct Job {
   std::size_t tets = 0;
   CageKind kind = CageKind::Same;
   std::vector<SurfaceKind> surfaces;  ///< none: a reference
-  bool coloured = false;              ///< also colour a mesh by the errors
+  std::vector<int> substeps;          ///< per frame; all surfaces for the first, one for the others; 0: the material's
+  bool coloured = false;              ///< also colour a mesh by the errors of the first
   bool bullets = false;               ///< a reference with Bullet's forces, beside ours
   int modes = 0;                      ///< not 0: a reduced body with this many of the reference's modes
 };
@@ -78,11 +79,11 @@ class SceneRunner {
   const Points& rightSurface(int frame) { return reference().surfaceAt(frame).positions; }
 
  private:
-  /// The motion of a cage, as simulated and as the reference would drive it, with what is known before surfaces are
-  /// compared.
+  /// The motion of a cage in some number of substeps, with what is known before surfaces are compared.
   struct Motion {
+    int substeps;  ///< as the job names them
     Row row;
-    Trajectory nodes, driven;
+    Trajectory nodes;
     SurfaceCosts costs;
   };
 
@@ -100,8 +101,17 @@ class SceneRunner {
   const Job* colouredJob() const;
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
-  scenes::SceneOptions optionsOf(const Job& job, const Cage& cage);
-  Motion move(const Job& job, const ShelvedCage& shelved, const std::function<void(double)>& progress);
+  int referenceSubsteps(const Job& job) const;
+  scenes::SceneOptions optionsOf(const Job& job, const Cage& cage, int substeps);
+  Motion move(const Job& job, const ShelvedCage& shelved, int substeps, const Trajectory& driven,
+              const FrameDone& done);
+  /// The motion of a job's cage in the reference's substeps; its usual one where these are the same.
+  Trajectory convergedMotion(const Job& job, const Cage& cage, const Trajectory& usual);
+  /// A row without its errors in space and in time, and of the embedding.
+  Row compared(const Job& job, const Cage& cage, SurfaceKind kind, const Motion& motion);
+  /// Simulates the reference's cage, and keeps its motion in `trajectory`.
+  Row referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done, Trajectory& trajectory);
+  /// The reference's own row, behind one of the same cage in the usual substeps if these are fewer.
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& progress);
   Row rowOf(const Job& job, const ShelvedCage& shelved) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);

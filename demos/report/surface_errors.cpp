@@ -87,6 +87,22 @@ SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, cons
   return errors;
 }
 
+double surfaceDistance(const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind, const Trajectory& nodes,
+                       const Trajectory& others) {
+  CarriedSurface surface(cage, mesh, kind), other(cage, mesh, kind);
+  const std::size_t frames = std::min(nodes.size(), others.size());
+  if (frames < 2) return 0.0;
+  double squared = 0.0;
+  for (std::size_t frame = 1; frame < frames; ++frame) {
+    surface.update(nodes[frame]);
+    other.update(others[frame]);
+    for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+      squared += (surface.position(v) - other.position(v)).squaredNorm();
+  }
+  return std::sqrt(squared / static_cast<double>((frames - 1) * mesh.vertexCount())) /
+         boundingBox(mesh.positions).diagonal().norm();
+}
+
 double nodeErrors(const Trajectory& nodes, const Trajectory& driven, const TriangleMesh& mesh) {
   double squared = 0.0;
   std::size_t count = 0;

@@ -24,6 +24,11 @@ struct SurfaceErrors {
 SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind,
                             const Trajectory& nodes);
 
+/// Root mean square distance between the surfaces that two motions of the same cage carry, in diagonals of the mesh's
+/// box, over all vertices and all frames after the first that both have.
+double surfaceDistance(const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind, const Trajectory& nodes,
+                       const Trajectory& others);
+
 /// Root mean square distance of a cage's nodes to where the reference would take them, in diagonals of the mesh's box,
 /// over all nodes and all frames after the first.
 double nodeErrors(const Trajectory& nodes, const Trajectory& driven, const TriangleMesh& mesh);

@@ -45,14 +45,25 @@ inline const nlohmann::json& sceneOf(const nlohmann::json& json, const std::stri
                        [&](const auto& scene) { return scene.at("scene") == name; });
 }
 
-/// The rows of one kind, from the coarsest to the finest.
+/// The rows of one kind, from the coarsest to the finest cage, fewest substeps first.
 inline std::vector<nlohmann::json> rowsOf(const nlohmann::json& scene, const std::string& interpolation,
                                           const std::string& material = "same") {
   std::vector<nlohmann::json> rows;
   for (const auto& row : scene.at("rows")) {
     if (row.at("interpolation") == interpolation && row.at("material") == material) rows.push_back(row);
   }
-  std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.at("tets") < b.at("tets"); });
+  std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
+    return std::make_pair(a.at("tets"), a.at("substeps")) < std::make_pair(b.at("tets"), b.at("substeps"));
+  });
+  return rows;
+}
+
+/// Those of them in the substeps in which every kind is simulated.
+inline std::vector<nlohmann::json> usualRowsOf(const nlohmann::json& scene, const std::string& interpolation,
+                                               const std::string& material = "same") {
+  std::vector<nlohmann::json> rows = rowsOf(scene, interpolation, material);
+  const auto other = [&](const auto& row) { return row.at("substeps") != scene.at("substeps"); };
+  rows.erase(std::remove_if(rows.begin(), rows.end(), other), rows.end());
   return rows;
 }
 

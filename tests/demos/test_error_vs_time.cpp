@@ -19,6 +19,7 @@ using test::number;
 using test::overall;
 using test::rowsOf;
 using test::sceneOf;
+using test::usualRowsOf;
 
 class ErrorVsTime : public test::ErrorVsTimeRun {};
 
@@ -41,7 +42,9 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
   for (const char* name : {"sag", "twist", "drop"}) {
     const auto& scene = sceneOf(json, name);
     EXPECT_GT(number(scene, "reference_error"), 0.0);
-    EXPECT_EQ(rowsOf(scene, "reference").size(), 2u);
+    EXPECT_GT(number(scene, "reference_time_error"), 0.0);
+    EXPECT_EQ(rowsOf(scene, "reference").size(), 3u);
+    EXPECT_EQ(scene.at("time_orders").size(), 6u);
     for (const auto& row : rowsOf(scene, "quadratic")) {
       // Both references simulate the same body: their motions differ by far less than those of coarse cages do.
       EXPECT_NEAR(number(row, "error_against_bullet_rms"), number(row, "error_total_rms"),
@@ -50,7 +53,8 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
       EXPECT_GT(number(row, "speedup_against_bullet"), 4.0 * number(row, "speedup")) << name;
     }
     EXPECT_EQ(rowsOf(scene, "bullet").size(), 3u);
-    EXPECT_EQ(rowsOf(scene, "linear", "calibrated").size(), 3u);
+    EXPECT_EQ(usualRowsOf(scene, "linear", "calibrated").size(), 3u);
+    EXPECT_EQ(rowsOf(scene, "linear", "calibrated").size(), 9u);
     const auto reduced = rowsOf(scene, "linear", "reduced");
     ASSERT_EQ(reduced.size(), std::string(name) == "twist" ? 0u : 4u) << name;
     for (const auto& row : reduced) {
@@ -69,6 +73,10 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
       }
     }
     for (const auto& row : scene.at("rows")) {
+      // Of three motions, the first and the last are no farther apart than by way of the second.
+      const double space = number(row, "error_space_rms"), time = number(row, "error_time_rms");
+      EXPECT_LE(number(row, "error_total_rms"), (1 + 1e-9) * (space + time)) << row;
+      EXPECT_GE(number(row, "error_total_rms"), (1 - 1e-9) * std::abs(space - time)) << row;
       EXPECT_EQ(row.at("finite"), 1.0);
       EXPECT_EQ(row.at("frames"), 24.0);
       EXPECT_GT(number(row, "simulation_ms"), 0.0);
@@ -78,13 +86,62 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
   // In the drop, contacts move single nodes: the motion is not smooth, so quadratic skinning gains nothing. Nor does it
   // gain in cages that fuse components which the reference keeps apart.
   for (const char* name : {"sag", "twist"}) {
-    const auto linear = rowsOf(sceneOf(json, name), "linear", "calibrated");
+    const auto linear = usualRowsOf(sceneOf(json, name), "linear", "calibrated");
     const auto quadratic = rowsOf(sceneOf(json, name), "quadratic", "calibrated");
     ASSERT_EQ(quadratic.size(), linear.size());
     for (std::size_t k = 0; k < linear.size(); ++k) {
       EXPECT_LT(number(quadratic[k], "error_embedding_rms"), number(linear[k], "error_embedding_rms")) << name << k;
     }
   }
+}
+
+/// Options for cages of one size in some numbers of substeps, in a scene with contact.
+std::vector<std::string> inSubsteps(const std::string& substeps, const std::string& reference) {
+  std::vector<std::string> all = {"--quick", "--quiet", "--scenes", "drop", "--tets", "300", "--out", "out"};
+  all.insert(all.end(), {"--reference-tets", "1000", "--triangles", "2000", "--interpolation", "linear"});
+  all.insert(all.end(), {"--no-reduction", "--substeps", substeps, "--reference-substeps", reference});
+  return all;
+}
+
+TEST_F(ErrorVsTime, ErrorsInTimeVanishAtTheReferencesSubsteps) {
+  ASSERT_EQ(run(inSubsteps("1,2,4,8,32", "32")).status, 0);
+  const auto scene = folder.json("out/error_vs_time.json").at("scenes").at(0);
+  const auto rows = rowsOf(scene, "linear", "calibrated");
+  ASSERT_EQ(rows.size(), 5u);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    EXPECT_LT(number(rows[k], "error_time_rms"), 0.8 * number(rows[k - 1], "error_time_rms")) << rows[k];
+    EXPECT_EQ(rows[k].at("error_space_rms"), rows[0].at("error_space_rms"));
+    EXPECT_EQ(rows[k].at("error_embedding_rms"), rows[0].at("error_embedding_rms"));
+  }
+  EXPECT_GT(number(rows[0], "error_time_rms"), 1e-4);
+  EXPECT_LT(number(rows[4], "error_time_rms"), 0.1 * number(rows[0], "error_time_rms"));
+  EXPECT_GT(number(rows[4], "error_time_rms"), 0.0) << "the reference's solver leaves less";
+  EXPECT_NEAR(number(rows[4], "error_total_rms") / number(rows[4], "error_space_rms"), 1.0, 1e-3);
+  // Bare cages are simulated in the usual substeps only, the reference's tets in its own as well.
+  EXPECT_EQ(rowsOf(scene, "linear").size(), 1u);
+  const auto& references = scene.at("rows");
+  EXPECT_EQ(references.at(0).at("substeps"), 4.0);
+  EXPECT_GT(number(references.at(0), "error_time_rms"), 1e-4);
+  EXPECT_EQ(references.at(0).at("speedup"), 1.0);
+  EXPECT_EQ(references.at(1).at("substeps"), 32.0);
+  EXPECT_EQ(references.at(1).at("error_total_rms"), 0.0);
+}
+
+TEST_F(ErrorVsTime, KeepsWhatItMeasuredInTheseSubsteps) {
+  const auto times = [&](const std::string& substeps, const std::string& reference) {
+    EXPECT_EQ(run(inSubsteps(substeps, reference)).status, 0);
+    const auto json = folder.json("out/error_vs_time.json");
+    const auto& scene = json.at("scenes").at(0);
+    return std::vector<double>{number(scene.at("rows").at(0), "simulation_ms"),
+                               number(rowsOf(scene, "linear").at(0), "simulation_ms"),
+                               number(rowsOf(scene, "linear", "calibrated").at(0), "simulation_ms")};
+  };
+  const auto first = times("2,4", "8"), fewer = times("1,4", "8"), finer = times("2,4", "16");
+  EXPECT_EQ(times("2,4", "8"), first);  // equal to the bit: not measured again
+  EXPECT_EQ(fewer[0], first[0]);
+  EXPECT_EQ(fewer[1], first[1]);
+  EXPECT_NE(fewer[2], first[2]);
+  for (std::size_t k = 0; k < first.size(); ++k) EXPECT_NE(finer[k], first[k]) << k;
 }
 
 TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
@@ -95,7 +152,7 @@ TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
   EXPECT_NE(result.out.find(", calibrated (stiffness scaled by 0."), std::string::npos) << result.out;
   const auto& scene = json.at("scenes").at(0);
   const auto row = [&](const char* kind) {
-    const auto rows = rowsOf(scene, "linear", kind);
+    const auto rows = usualRowsOf(scene, "linear", kind);
     EXPECT_FALSE(rows.empty()) << kind;
     return rows.at(0);
   };
@@ -116,9 +173,9 @@ TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
 
 /// In a cage that fuses the prongs, no reduction of stiffness separates them.
 TEST_F(ErrorVsTime, SplitCagesHaveTheProngsThatOthersFuse) {
-  const CommandResult result =
-      run({"--quick", "--quiet", "--model", "slotted_beam", "--scenes", "sag", "--tets", "3000", "--cages",
-           "calibrated,same_calibrated", "--interpolation", "linear", "--frames", "36", "--out", "out"});
+  const CommandResult result = run({"--quick", "--quiet", "--model", "slotted_beam", "--scenes", "sag", "--tets",
+                                    "3000", "--cages", "calibrated,same_calibrated", "--interpolation", "linear",
+                                    "--substeps", "4", "--frames", "36", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/error_vs_time.json");
   EXPECT_EQ(json.at("reference").at("from"), "formula");
@@ -186,16 +243,21 @@ TEST_F(ErrorVsTime, ComparesWithBothReferencesUnlessBulletsForcesAreAsked) {
   const auto bullets = folder.json("out/error_vs_time.json");
   EXPECT_EQ(bullets.at("scenes").at(0).at("integrator"), "explicit");
   EXPECT_EQ(rowsOf(bullets.at("scenes").at(0), "reference").size(), 1u);
-  for (const auto& row : bullets.at("scenes").at(0).at("rows")) EXPECT_EQ(number(row, "speedup_against_bullet"), 0.0);
+  for (const auto& row : bullets.at("scenes").at(0).at("rows")) {
+    EXPECT_EQ(number(row, "speedup_against_bullet"), 0.0);
+    EXPECT_EQ(number(row, "substeps"), 4.0);
+    EXPECT_EQ(number(row, "error_time_rms"), 0.0);
+  }
 
   *std::find(arguments.begin(), arguments.end(), "bullet") = "tetskin";
   ASSERT_EQ(run(arguments).status, 0);
   const auto ours = folder.json("out/error_vs_time.json");
   EXPECT_EQ(ours.at("scenes").at(0).at("integrator"), "tetskin");
   const auto references = rowsOf(ours.at("scenes").at(0), "reference");
-  ASSERT_EQ(references.size(), 2u);
+  ASSERT_EQ(references.size(), 3u);
   EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(0).at("integrator"), "tetskin");
-  EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(1).at("integrator"), "explicit");
+  EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(1).at("integrator"), "tetskin");
+  EXPECT_EQ(ours.at("scenes").at(0).at("rows").at(2).at("integrator"), "explicit");
   expectRefused(run({"--implicit", "--quick"}), "--elasticity bullet");
   expectRefused(run({"--elasticity", "havok"}), "--elasticity");
 }
@@ -229,6 +291,9 @@ TEST_F(ErrorVsTime, RefusesBadInput) {
   for (const scenes::SceneEntry& entry : scenes::sceneTable()) expectRefused(run({"--scenes", "fly"}), entry.name);
   expectRefused(run({"--tets", "0"}), "--tets");
   expectRefused(run({"--tets", "3000", "--reference-tets", "3000"}), "reference");
+  expectRefused(run({"--substeps", "0"}), "--substeps");
+  expectRefused(run({"--substeps", "4,128"}), "no more substeps than the reference, which has 64");
+  expectRefused(run({"--elasticity", "bullet", "--substeps", "4"}), "--elasticity bullet");
   expectRefused(run({"--target-error", "-1"}), "--target-error");
   expectRefused(run({"--full", "--quick"}), "--full");
   for (const report::CageKind kind : report::kCageKinds) {

@@ -23,8 +23,9 @@ Row rowWith(const std::string& interpolation, double edge, double ms, double err
   row.interpolation = interpolation;
   row.tets = 1.0 / (edge * edge * edge);
   row.edge = edge;
+  row.substeps = 4;
   row.totalMs = ms;
-  row.errorTotalRms = error;
+  row.errorTotalRms = row.errorSpaceRms = error;
   row.errorEmbeddingRms = edge * edge;
   return row;
 }
@@ -54,8 +55,9 @@ TEST(Advice, SaysWhetherAReducedBodyGainsOverCagesThatCostNoMore) {
                            rowWith("linear", 0.05, 5, 0.02)};
   EXPECT_EQ(report::reductionAdvice(rows), "");
   rows.push_back(reducedWith(20, 6, 0.03));  // a cage is better and faster than this
-  EXPECT_EQ(
-      report::reductionAdvice(rows).find("Use an embedding: a cage of 8000 tets has an error of 2.00e-02 at 5 ms"), 0u);
+  EXPECT_EQ(report::reductionAdvice(rows).find(
+                "Use an embedding: a cage of 8000 tets in 4 substeps has an error of 2.00e-02 at 5 ms"),
+            0u);
   rows.push_back(reducedWith(5, 1.5, 0.04));  // the cage that takes as long is worse
   EXPECT_EQ(report::reductionAdvice(rows).find("Use a reduced body: 5 modes"), 0u) << report::reductionAdvice(rows);
   rows.push_back(reducedWith(1, 0.1, 0.5));  // nothing else is as fast
@@ -87,6 +89,59 @@ TEST(Advice, FindsOrderAndTheReferencesOwnError) {
   EXPECT_TRUE(report::observedOrders(rows, "linear", "same").empty());
   rows.resize(2);
   EXPECT_EQ(report::referenceError(rows), 0.0);
+}
+
+/// A cage in some substeps, with an error in time that falls as 2 step^2 against the truth, seen from 64 substeps.
+Row rowInTime(const std::string& interpolation, double edge, double substeps) {
+  Row row = rowWith(interpolation, edge, substeps / (edge * edge * edge), 3.0 * edge * edge);
+  row.substeps = substeps;
+  row.errorTimeRms = 2.0 * (1.0 / (substeps * substeps) - 1.0 / (64.0 * 64.0));
+  row.errorTotalRms += row.errorTimeRms;
+  return row;
+}
+
+TEST(Advice, TheFrontChoosesSubsteps) {
+  // Errors of 0.03 and 0.0075 in space; in time 0.5, 0.12 and 0.03.
+  std::vector<Row> rows;
+  for (const double edge : {0.1, 0.05}) {
+    for (const double substeps : {2.0, 4.0, 8.0}) rows.push_back(rowInTime("linear", edge, substeps));
+  }
+  report::markPareto(rows);
+  std::vector<bool> front;
+  for (const Row& row : rows) front.push_back(row.pareto);
+  // Eight substeps of the coarse cage take half as long as two of the fine one.
+  EXPECT_EQ(front, std::vector<bool>({true, true, true, false, false, true}));
+}
+
+TEST(Advice, FindsTheOrderInTimeAndTheReferencesOwnError) {
+  std::vector<Row> rows = {rowInTime("reference", 0.01, 4), rowInTime("reference", 0.01, 64)};
+  rows[1].errorTimeRms = 0.0;
+  EXPECT_EQ(report::referenceTimeError(rows), 0.0) << "no cage shows the order";
+  for (const double substeps : {8.0, 2.0, 4.0}) rows.push_back(rowInTime("linear", 0.05, substeps));
+  rows.push_back(rowInTime("quadratic", 0.05, 4));
+  rows.push_back(rowInTime("linear", 0.1, 4));
+  rows.push_back(rowInTime("linear", 0.05, 1));
+  rows.back().modes = 5;
+  const auto orders = report::timeOrders(rows);
+  ASSERT_EQ(orders.size(), 2u) << "of the only cage in several numbers of substeps";
+  EXPECT_NEAR(orders[0].order, 2.0, 0.01);
+  EXPECT_EQ(orders[0].fineSubsteps, 4.0);
+  EXPECT_EQ(orders[1].coarseSubsteps, 4.0);
+  EXPECT_EQ(orders[1].tets, rows[2].tets);
+  EXPECT_NEAR(report::referenceTimeError(rows), 2.0 / (64.0 * 64.0), 1e-9);
+  rows[1].integrator = "explicit";  // another reference, not the same in more substeps
+  EXPECT_EQ(report::referenceTimeError(rows), 0.0);
+}
+
+TEST(Advice, OrdersInSpaceDoNotDependOnSubsteps) {
+  std::vector<Row> rows = {rowInTime("reference", 0.01, 4)}, more = rows;
+  for (const double edge : {0.08, 0.04, 0.02}) {
+    for (const double substeps : {1.0, 4.0}) more.push_back(rowInTime("quadratic", edge, substeps));
+    rows.push_back(more.back());
+  }
+  EXPECT_EQ(report::observedOrders(more, "quadratic", "same").size(), 2u);
+  EXPECT_NEAR(report::overallOrder(more, "quadratic", "same").space, 2.0, 1e-9);
+  EXPECT_EQ(report::referenceError(more), report::referenceError(rows));
 }
 
 TEST(ReportRow, ComesBackFromJson) {

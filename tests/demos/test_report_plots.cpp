@@ -39,19 +39,21 @@ TEST_F(ReportPlots, APlotProgramThatFailsIsAWarning) {
 }
 
 TEST_F(ReportPlots, HasTablesAndPlotsMade) {
-  std::vector<std::string> arguments = small("sag,exact", {"--target-error", "0.5"});
+  std::vector<std::string> arguments = small("sag,exact", {"--target-error", "0.5", "--elasticity", "tetskin"});
   arguments.erase(arguments.begin() + 1);  // removes --quiet
   const CommandResult result = folder.run(TETSKIN_ERROR_VS_TIME, arguments);
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string tables = folder.read("out/error_vs_time.md");
   EXPECT_NE(result.out.find(tables), std::string::npos) << result.out;
   for (const char* words :
-       {"# Error against run time: serpent", "## sag, explicit", "## exact", "| reference |",
-        "The error of the reference itself is about", "- quadratic: ", "calibrated**",
+       {"# Error against run time: serpent", "## sag, tetskin", "## exact", "| the reference's tets | 4 |",
+        "| reference | 16 |", "The error of the reference itself in space is about",
+        "The error of the reference itself in time is about", "Observed orders in time",
+        "linear, calibrated, 1 substep: ", "- quadratic: ", "calibrated**",
         "theoretical orders are 2 (linear) and 3 (quadratic)", "Cheapest setting with an error below 0.5: "}) {
     EXPECT_NE(tables.find(words), std::string::npos) << words << tables;
   }
-  for (const char* name : {"sag_explicit", "sag_explicit_frames", "exact"}) {
+  for (const char* name : {"sag_tetskin", "sag_tetskin_frames", "sag_tetskin_substeps", "exact"}) {
     for (const char* ending : {".png", ".svg"}) {
       EXPECT_TRUE(folder.exists("out/" + std::string(name) + ending)) << name << ending;
     }
