@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// How the motion in a world depends on the length of its steps.
+#include <gtest/gtest.h>
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/elastic/elastic_body.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "deformable_test.h"
+#include "rigid_bodies.h"
+
+namespace tetskin::test {
+namespace {
+
+using Path = std::vector<Eigen::Vector3d>;
+
+constexpr double kModulus = 1e4, kLength = 1.5, kHeight = 8.0, kGravity = 10.0;
+
+SoftBodyOptions beamOptions(double damping) {
+  SoftBodyOptions options;
+  options.youngsModulus = kModulus;
+  options.stiffnessDamping = damping;
+  options.solverTolerance = 1e-6;
+  return options;
+}
+
+/// High above the floor.
+TetMesh beamCage() {
+  TetMesh cage = latticeCage(6, 1, 1, kLength / 6);
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += kHeight;
+  return cage;
+}
+
+bool isAtTheWall(const TetMesh& cage, std::size_t node) {
+  return cage.nodes[node].x() == 0.0;
+}
+
+enum class Hold { Pins, Anchors };
+
+/// A beam that a wall holds, and the place of its free end's last node after each frame.
+class HeldBeam {
+ public:
+  HeldBeam(double damping, Hold hold)
+      : wall_(world_, std::make_unique<btBoxShape>(btVector3(btScalar(0.1), 1, 1)), 0,
+              btVector3(-1, btScalar(kHeight), 0)) {
+    const TetMesh cage = beamCage();
+    beam = added(world_, cage, beamOptions(damping));
+    for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
+      if (!isAtTheWall(cage, n)) continue;
+      if (hold == Hold::Pins) {
+        EXPECT_TRUE(beam->setPinned(static_cast<int>(n)).ok());
+      } else {
+        beam->body().appendDeformableAnchor(static_cast<int>(n), wall_.body.get());
+      }
+    }
+  }
+  Path swing(int frames, int substeps) {
+    Path path;
+    for (int f = 0; f < frames; ++f) {
+      const btScalar dt = btScalar(1) / 60 / static_cast<btScalar>(substeps);
+      for (int s = 0; s < substeps; ++s) world_.deformable().stepSimulation(dt, 0);
+      path.push_back(tip());
+    }
+    return path;
+  }
+  Eigen::Vector3d tip() const {
+    const btVector3& x = beam->body().m_nodes[beam->body().m_nodes.size() - 1].m_x;
+    return {x.x(), x.y(), x.z()};
+  }
+
+ private:
+  TetskinWorld world_;
+  Rigid wall_;
+
+ public:
+  std::unique_ptr<DeformableBody> beam;
+};
+
+double difference(const Path& a, const Path& b) {
+  double squared = 0.0, way = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    squared += (a[k] - b[k]).squaredNorm();
+    way += (b[k] - beamCage().nodes.back()).squaredNorm();
+  }
+  return std::sqrt(squared / way);
+}
+
+/// The same by an ElasticBody.
+Path swingAlone(const btSoftBody& body, double damping, int frames, int substeps) {
+  const TetMesh cage = beamCage();
+  ElasticOptions options;
+  options.youngsModulus = kModulus;
+  options.stiffnessDamping = damping;
+  options.tolerance = 1e-6;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    const bool held = isAtTheWall(cage, static_cast<std::size_t>(n));
+    options.nodeMasses.push_back(held ? 1.0 : 1.0 / static_cast<double>(body.m_nodes[n].m_im));
+  }
+  ElasticBody<double> alone = std::move(ElasticBody<double>::create(cage, options)).value();
+  for (std::size_t n = 0; n < cage.nodeCount(); ++n) alone.setPinned(n, isAtTheWall(cage, n));
+  Path path;
+  for (int f = 0; f < frames; ++f) {
+    for (int s = 0; s < substeps; ++s) alone.step(1.0 / 60.0 / substeps, {0, -kGravity, 0});
+    const double* tip = alone.positions()[cage.nodeCount() - 1];
+    path.emplace_back(tip[0], tip[1], tip[2]);
+  }
+  return path;
+}
+
+/// Also in its first step, which takes half of gravity's impulse.
+TEST(OrderInTimeOfAWorld, AHeldBodySwingsLikeAnElasticBody) {
+  for (const double damping : {0.0, 0.02}) {
+    HeldBeam beam(damping, Hold::Pins);
+    const Path alone = swingAlone(beam.beam->body(), damping, 60, 4), path = beam.swing(60, 4);
+    EXPECT_LT(difference(path, alone), 2e-3) << damping;
+  }
+}
+
+TEST(OrderInTimeOfAWorld, FourSubstepsAreEnoughHoweverABodyIsHeld) {
+  for (const Hold hold : {Hold::Pins, Hold::Anchors}) {
+    for (const double damping : {0.0, 0.003, 0.02}) {
+      HeldBeam beam(damping, hold);
+      const Path exact = swingAlone(beam.beam->body(), damping, 60, 64), path = beam.swing(60, 4);
+      EXPECT_LT(difference(path, exact), hold == Hold::Pins ? 0.004 : 0.012)
+          << damping << (hold == Hold::Pins ? " pins" : " anchors");
+    }
+  }
+}
+
+/// Half a step more or less of gravity would part them.
+TEST(OrderInTimeOfAWorld, AFreeBodyFallsBesideARigidOne) {
+  for (const int substeps : {1, 4}) {
+    TetskinWorld world;
+    const Rigid rigid(world, ball(), 1, btVector3(5, btScalar(kHeight), 0));
+    const auto beam = added(world, beamCage(), beamOptions(0.02));
+    for (int k = 0; k < 60 * substeps; ++k) {
+      world.deformable().stepSimulation(btScalar(1) / 60 / static_cast<btScalar>(substeps), 0);
+    }
+    const btScalar fallen = static_cast<btScalar>(rigid.height() - kHeight);
+    ASSERT_LT(fallen, -4.0);
+    for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+      const btScalar before = static_cast<btScalar>(beamCage().nodes[static_cast<std::size_t>(n)].y());
+      EXPECT_NEAR(beam->body().m_nodes[n].m_x.y() - before, fallen, 2e-5);
+    }
+  }
+}
+
+/// A free beam that trembles, for 30 steps.
+std::unique_ptr<DeformableBody> trembling(EmptyWorld& world, double damping) {
+  const TetMesh cage = beamCage();
+  world.deformable().setGravity(btVector3(0, 0, 0));
+  auto beam = added(world, cage, beamOptions(damping));
+  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+    const double x = cage.nodes[static_cast<std::size_t>(n)].x() / kLength - 0.5;
+    beam->body().m_nodes[n].m_v.setValue(0, static_cast<btScalar>(4.0 * x * x - 1.0 / 3.0), 0);
+  }
+  for (int k = 0; k < 30; ++k) world.deformable().stepSimulation(btScalar(1) / 240, 0);
+  return beam;
+}
+
+/// What the application writes, it finds: the impulses that the last step has left are those of another motion.
+TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToRestStaysAtRest) {
+  for (const double damping : {0.0, 0.02}) {
+    TetskinWorld world;
+    const auto beam = trembling(world, damping);
+    ASSERT_GT(rmsSpeed(beam->body()), 0.05) << damping;
+    for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+      btSoftBody::Node& node = beam->body().m_nodes[n];
+      const Eigen::Vector3d& p = beamCage().nodes[static_cast<std::size_t>(n)];
+      node.m_x.setValue(static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z()));
+      node.m_q = node.m_x;
+      node.m_v.setZero();
+    }
+    for (int k = 0; k < 5; ++k) world.deformable().stepSimulation(btScalar(1) / 240, 0);
+    EXPECT_LT(rmsSpeed(beam->body()), 1e-4) << damping;
+  }
+}
+
+/// The speeds of two bodies that were stopped in the same shape: one in the middle of its motion; the other one has
+/// never moved.
+TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedOrTurnedGoesOnAsOneThatHasNeverMoved) {
+  const btTransform turn(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI), btVector3(3, 0, 0));
+  for (const double damping : {0.0, 0.02}) {
+    for (const bool turned : {false, true}) {
+      TetskinWorld world, other;
+      const auto beam = trembling(world, damping);
+      if (turned) {
+        beam->body().transform(turn);
+      } else {
+        beam->body().setVelocity(btVector3(0, 0, 0));
+      }
+      const auto fresh = added(other, beamCage(), beamOptions(damping));
+      other.deformable().setGravity(btVector3(0, 0, 0));
+      for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+        fresh->body().m_nodes[n].m_x = fresh->body().m_nodes[n].m_q = beam->body().m_nodes[n].m_x;
+        fresh->body().m_nodes[n].m_v = beam->body().m_nodes[n].m_v;
+      }
+      world.deformable().stepSimulation(btScalar(1) / 240, 0);
+      other.deformable().stepSimulation(btScalar(1) / 240, 0);
+      for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+        const btScalar apart = (beam->body().m_nodes[n].m_v - fresh->body().m_nodes[n].m_v).length();
+        EXPECT_LT(apart, 0.003) << damping << (turned ? " turned" : " stopped");
+      }
+    }
+  }
+}
+
+TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToSleepWakesWithoutItsOldMotion) {
+  TetskinWorld world, other;
+  const auto beam = trembling(world, 0.02);
+  beam->body().forceActivationState(ISLAND_SLEEPING);
+  for (int k = 0; k < 3; ++k) world.deformable().stepSimulation(btScalar(1) / 240, 0);
+  const auto fresh = added(other, beamCage(), beamOptions(0.02));
+  other.deformable().setGravity(btVector3(0, 0, 0));
+  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+    beam->body().m_nodes[n].m_v.setZero();
+    fresh->body().m_nodes[n].m_x = fresh->body().m_nodes[n].m_q = beam->body().m_nodes[n].m_x;
+  }
+  beam->body().forceActivationState(ACTIVE_TAG);
+  world.deformable().stepSimulation(btScalar(1) / 240, 0);
+  other.deformable().stepSimulation(btScalar(1) / 240, 0);
+  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+    EXPECT_LT((beam->body().m_nodes[n].m_v - fresh->body().m_nodes[n].m_v).length(), 0.003);
+  }
+}
+
+TEST(OrderInTimeOfAWorld, ReadingTheEnergyChangesNothing) {
+  TetskinWorld world, read;
+  const auto beam = trembling(world, 0.0), other = trembling(read, 0.0);
+  for (int k = 0; k < 20; ++k) {
+    world.deformable().stepSimulation(btScalar(1) / 240, 0);
+    read.deformable().stepSimulation(btScalar(1) / 240, 0);
+    EXPECT_GT(elasticEnergyIn(read), 0.0);
+  }
+  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
+    EXPECT_LT((beam->body().m_nodes[n].m_x - other->body().m_nodes[n].m_x).length(), 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test
