@@ -181,20 +181,22 @@ TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToRestStaysAtRest) {
   }
 }
 
-/// The speeds of two bodies that were stopped in the same shape: one in the middle of its motion; the other one has
-/// never moved.
-TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedOrTurnedGoesOnAsOneThatHasNeverMoved) {
+/// Compares two bodies in the same state, of which one has come there by moving.
+TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedOrStiffenedGoesOnAsOneThatHasNeverMoved) {
+  enum class Change { Stopped, Turned, Stiffened };
   const btTransform turn(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI), btVector3(3, 0, 0));
   for (const double damping : {0.0, 0.02}) {
-    for (const bool turned : {false, true}) {
+    for (const Change change : {Change::Stopped, Change::Turned, Change::Stiffened}) {
       TetskinWorld world, other;
       const auto beam = trembling(world, damping);
-      if (turned) {
-        beam->body().transform(turn);
-      } else {
-        beam->body().setVelocity(btVector3(0, 0, 0));
+      SoftBodyOptions options = beamOptions(damping);
+      if (change == Change::Stopped) beam->body().setVelocity(btVector3(0, 0, 0));
+      if (change == Change::Turned) beam->body().transform(turn);
+      if (change == Change::Stiffened) {
+        options.youngsModulus = 20.0 * kModulus;
+        ASSERT_TRUE(beam->setYoungsModulus(20.0 * kModulus).ok());
       }
-      const auto fresh = added(other, beamCage(), beamOptions(damping));
+      const auto fresh = added(other, beamCage(), options);
       other.deformable().setGravity(btVector3(0, 0, 0));
       for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
         fresh->body().m_nodes[n].m_x = fresh->body().m_nodes[n].m_q = beam->body().m_nodes[n].m_x;
@@ -204,7 +206,7 @@ TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedOrTurnedGoesOnAsOneThatHasNeverMoved
       other.deformable().stepSimulation(btScalar(1) / 240, 0);
       for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
         const btScalar apart = (beam->body().m_nodes[n].m_v - fresh->body().m_nodes[n].m_v).length();
-        EXPECT_LT(apart, 0.003) << damping << (turned ? " turned" : " stopped");
+        EXPECT_LT(apart, 0.003) << damping << ' ' << static_cast<int>(change);
       }
     }
   }

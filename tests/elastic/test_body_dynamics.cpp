@@ -127,6 +127,64 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
   });
 }
 
+/// A body that trembles, at the beginning of its step of this number.
+BodyDynamics<double> stepsOf(const AssembledBody<double>& body, int steps) {
+  const VectorXd v = 0.1 * Random(51).vector(3 * body.nodes.size());
+  BodyDynamics<double> dynamics = dynamicsOf(body, v);
+  ConjugateGradient<double> gradient;
+  SolveLimits limits;
+  limits.tolerance = 1e-8;
+  for (int k = 1; k < steps; ++k) {
+    dynamics.predict(kSeconds, nullptr);
+    dynamics.start(nullptr);
+    dynamics.solve(gradient, limits, 100, nullptr);
+    dynamics.remember(kSeconds);
+    const VectorXd deviation = body.fromWide(dynamics.matrix().solution());
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        dynamics.velocity(n)[i] += deviation[static_cast<Eigen::Index>(3 * n + i)];
+        dynamics.point(n)[i] += kSeconds * dynamics.velocity(n)[i];
+      }
+    }
+  }
+  dynamics.predict(kSeconds, nullptr);
+  dynamics.start(nullptr);
+  return dynamics;
+}
+
+TEST(BodyDynamics, ABodyThatTurnsOutToBeTouchedTakesBackwardEulersStepAndSomeMore) {
+  const AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  EXPECT_FALSE(stepsOf(body, 1).isSecondOrder());
+  BodyDynamics<double> free = stepsOf(body, 4), touched = stepsOf(body, 4);
+  ASSERT_TRUE(free.isSecondOrder());
+  EXPECT_LT(free.alpha(), kAlpha);
+  touched.beTouched(kSeconds, nullptr);
+  EXPECT_FALSE(touched.isSecondOrder());
+  EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + kSeconds));
+  double history = 0.0, rest = 0.0;
+  for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+    double with[3], without[3];
+    free.rightSide(n, with);
+    touched.rightSide(n, without);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double impulse = kSeconds * touched.force(n)[k] +
+                             body.masses[n] * touched.deviation()[touched.matrix().wideOf(n) + k * kernels::kGroup];
+      history += std::abs(with[k] - without[k]);
+      rest += std::abs(without[k] - impulse);
+    }
+  }
+  EXPECT_GT(history, 1e-6);
+  EXPECT_LT(rest, 1e-12);
+  touched.remember(kSeconds);
+  EXPECT_FALSE(touched.remembers());
+  for (int k = 0; k < 7; ++k) touched.setTouched(false);
+  touched.predict(kSeconds, nullptr);
+  EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + kSeconds));
+  touched.setTouched(false);
+  touched.predict(kSeconds, nullptr);
+  EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * kDamping);
+}
+
 TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChangesNothingElse) {
   AssembledBody<TypeParam> body(cageForDynamics());
   for (const double speed : {0.0, 1.0, 20.0}) {  // the last is beyond a turn of 90 degrees per step

@@ -38,16 +38,17 @@ struct StepTimes {
 /// Bullet's solver of deformable bodies, extended by tetskin's own implicit solve. An application creates it in place
 /// of a `btDeformableBodySolver`, and passes it to its world and its constraint solver in the same way.
 ///
-/// Bodies of `ForceModel::Corotated` are solved implicitly, before collision detection, and again if there are
-/// contacts: with contacts and Bullet's anchors as rows of one system, until it has converged. Dynamic rigid bodies and
-/// multibodies that are touched are unknowns of the system, and so are those that these touch or are connected to, up
-/// to 2,000 of them; their own contacts and joints start from Bullet's solution. Bullet's constraints for such contacts
-/// and anchors are removed before Bullet solves. All other bodies are solved as Bullet does in an explicit world with
-/// projection of contacts, with its forces. For a sleeping body, only its neighbourhood is examined.
-/// `ForceModel::Corotated`, tetskin::contact and tetskin::touch need this solver, and a world with any of them uses its
-/// solve whatever the settings of Bullet's solve are. A world with Bullet's forces alone that is implicit, has line
-/// search, or has no projection (Bullet's default; `setUseProjection(true)` switches it on, and so does
-/// `DeformableBody::add`) is solved by Bullet's own code.
+/// Bodies of `ForceModel::Corotated` are solved implicitly, in steps of second order while nothing touches them: after
+/// a step, `m_x` are the positions at its end, and `m_v` the velocities at its middle. They are solved before collision
+/// detection, and again if there are contacts: with contacts and Bullet's anchors as rows of one system, until it has
+/// converged. Dynamic rigid bodies and multibodies that are touched are unknowns of the system, and so are those that
+/// these touch or are connected to, up to 2,000 of them; their own contacts and joints start from Bullet's solution.
+/// Bullet's constraints for such contacts and anchors are removed before Bullet solves. All other bodies are solved as
+/// Bullet does in an explicit world with projection of contacts, with its forces. For a sleeping body, only its
+/// neighbourhood is examined. `ForceModel::Corotated`, tetskin::contact and tetskin::touch need this solver, and a
+/// world with any of them uses its solve whatever the settings of Bullet's solve are. A world with Bullet's forces
+/// alone that is implicit, has line search, or has no projection (Bullet's default; `setUseProjection(true)` switches
+/// it on, and so does `DeformableBody::add`) is solved by Bullet's own code.
 ///
 /// Contact at nodes respects groups, masks, the world's overlap filter callback and the collision response flags of
 /// both bodies, evaluated in each step. Bodies fall asleep where they would stay, never in free flight. Sleeping bodies

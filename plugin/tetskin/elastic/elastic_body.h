@@ -40,14 +40,19 @@ struct ElasticOptions {
   int maxIterations = 200;  ///< limit of the conjugate gradient per step; at least 1
 };
 
-/// Corotated linear elasticity of a cage, stepped by backward Euler: stable, first order in the step, and conserving
-/// linear and angular momentum. Components that are not deformed move as rigid bodies, at any stiffness and any spin
-/// below one radian per step: only the deviation from rigid motion is solved for. Tets recover from being flat or
-/// inverted, and find their rotation from any other.
+/// Corotated linear elasticity of a cage, in implicit steps: stable, of second order in the step, and conserving linear
+/// and angular momentum. Vibrations decay as `stiffnessDamping` says, and no faster than that unless they are too fast
+/// for the step. Positions are those at the end of the last step, velocities those at its middle; for an energy, take
+/// the mean of the velocities of two steps. The first step takes the velocities as those at its beginning. Components
+/// that are not deformed move as rigid bodies, at any stiffness and any spin below one radian per step: only the
+/// deviation from rigid motion is solved for. Tets recover from being flat or inverted, and find their rotation from
+/// any other.
 ///
 /// This work is based on:
 ///     Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004
 ///     David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
+///     John C. Houbolt, "A Recurrence Matrix Solution for the Dynamic Response of Elastic Aircraft", Journal of the
+///     Aeronautical Sciences 17(9), 1950, doi 10.2514/8.1722
 template <class Scalar>
 class TETSKIN_ELASTIC_API ElasticBody {
  public:
@@ -68,7 +73,7 @@ class TETSKIN_ELASTIC_API ElasticBody {
 
   std::size_t nodeCount() const;  ///< number of nodes of the cage; 0 if empty
   /// nodeCount positions, world space, in the order of the cage; may be read and written between steps. Owned by the
-  /// body.
+  /// body. After a change of more than 1e-4 of the body's size the next step is of first order.
   PointView<Scalar> positions();
   PointView<Scalar>
   velocities();  ///< nodeCount velocities, world length per second; may be read and written between steps

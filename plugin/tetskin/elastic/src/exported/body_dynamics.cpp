@@ -93,6 +93,12 @@ void BodyDynamics<S>::setMaterial(const std::vector<Lame>& lame) {
 }
 
 template <class S>
+void BodyDynamics<S>::setDamping(double damping) {
+  changed_ |= damping != damping_;
+  damping_ = damping;
+}
+
+template <class S>
 void BodyDynamics<S>::setMass(std::size_t node, S mass) {
   assert(!(mass < S(0)));
   const S before = matrix_.mass(node);
@@ -146,7 +152,7 @@ void BodyDynamics<S>::beginForces(double seconds) {
 template <class S>
 void BodyDynamics<S>::chooseScheme(double seconds) {
   const bool free = untouched_ >= kUntouched;
-  secondOrder_ = free && !stiff_ && history_.fits(forceSeconds_);
+  secondOrder_ = free && !stiff_ && !changed_ && history_.fits(forceSeconds_);
   if (!secondOrder_) history_.forget();
   scheme_ = secondOrder_ ? secondOrder(seconds, damping_)
             : free       ? firstOrder(seconds, damping_)

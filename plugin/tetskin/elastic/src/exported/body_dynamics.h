@@ -16,8 +16,8 @@
 
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
+#include <tetskin/elastic/src/dynamics/impulse_history.h>
 #include <tetskin/elastic/src/dynamics/initial_guess.h>
-#include <tetskin/elastic/src/dynamics/step_history.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <array>
@@ -51,7 +51,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   /// Takes effect at the next `predict`. By tet; `damping` in seconds.
   void setMaterial(const std::vector<Lame>& lame);
-  void setDamping(double damping) { damping_ = damping; }
+  void setDamping(double damping);
   /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
   void setPressed(bool pressed) { pressed_ = pressed; }
   /// Whether the body had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
@@ -187,7 +187,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   TimeScheme scheme_;           ///< of the last `predict`
   double lastSeconds_ = 0.0;    ///< length of the last step; 0: there was none
   double forceSeconds_ = 0.0;   ///< for which forces act in this step
-  StepHistory<S> history_;
+  ImpulseHistory<S> history_;
   double stiffnessNumber_ = 0.0;
   bool changed_ = true;                   ///< masses or material have changed since the last assembly
   std::size_t pinned_;                    ///< number of pinned nodes

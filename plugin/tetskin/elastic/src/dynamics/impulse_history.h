@@ -16,7 +16,7 @@
 namespace tetskin::elastic_detail {
 
 template <class S>
-class StepHistory {
+class ImpulseHistory {
  public:
   bool isKnown() const { return seconds_ > 0.0; }
   /// True if it is known, and the next step is about as long as the last.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
-#include <tetskin/elastic/src/dynamics/step_history.h>
+#include <tetskin/elastic/src/dynamics/impulse_history.h>
 
 #include <algorithm>
 #include <array>
@@ -22,12 +22,12 @@ constexpr double kMostGrowth = 2.5;
 }  // namespace
 
 template <class S>
-bool StepHistory<S>::fits(double seconds) const {
+bool ImpulseHistory<S>::fits(double seconds) const {
   return seconds_ > 0.0 && seconds < kMostGrowth * seconds_ && seconds * kMostGrowth > seconds_;
 }
 
 template <class S>
-bool StepHistory<S>::continues(std::size_t slot, const S* point, const S* velocity) const {
+bool ImpulseHistory<S>::continues(std::size_t slot, const S* point, const S* velocity) const {
   assert(4 * slot < points_.size());
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(std::abs(point[k] - points_[4 * slot + k]) <= near_)) return false;
@@ -37,8 +37,8 @@ bool StepHistory<S>::continues(std::size_t slot, const S* point, const S* veloci
 }
 
 template <class S>
-void StepHistory<S>::addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
-                           const std::vector<Eigen::Matrix3d>& turns, const std::vector<std::uint32_t>& partOf) {
+void ImpulseHistory<S>::addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
+                              const std::vector<Eigen::Matrix3d>& turns, const std::vector<std::uint32_t>& partOf) {
   assert(fits(seconds) && rightSide.size() == mean_.size());
   std::vector<std::array<S, 9>> factors;
   for (const Eigen::Matrix3d& turn : turns) {
@@ -59,15 +59,15 @@ void StepHistory<S>::addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme
 }
 
 template <class S>
-void StepHistory<S>::takeFrom(AlignedVector<S>& rightSide) const {
+void ImpulseHistory<S>::takeFrom(AlignedVector<S>& rightSide) const {
   assert(rightSide.size() == mean_.size());
   for (std::size_t k = 0; k < mean_.size(); ++k) rightSide[k] -= mean_[k];
 }
 
 template <class S>
-void StepHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme,
-                          double seconds, const AlignedVector<S>& points, const AlignedVector<S>& rigid,
-                          double length) {
+void ImpulseHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme,
+                             double seconds, const AlignedVector<S>& points, const AlignedVector<S>& rigid,
+                             double length) {
   assert(points.size() == 4 * matrix.slotCount() && rigid.size() == points.size());
   assert(mean_.size() == matrix.wideSize());
   points_.resize(points.size());
@@ -94,7 +94,7 @@ void StepHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& 
   seconds_ = seconds;
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class StepHistory<Scalar>;
+#define TETSKIN_INSTANTIATE(Scalar) template class ImpulseHistory<Scalar>;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 
