@@ -4,6 +4,7 @@
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -125,6 +126,34 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
     EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - (right - image)).norm(),
               20.0 * this->kEpsilon * (right.norm() + image.norm()));
   });
+}
+
+TEST(ImpulseHistory, TurnsWithItsComponentAndGrowsWithTheTimeForWhichForcesAct) {
+  const AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  const auto dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
+  const BlockMatrix<double>& matrix = dynamics.matrix();
+  const VectorXd before = Random(55).vector(3 * body.nodes.size());
+  AlignedVector<double> impulses(matrix.wideSize(), 0.0), right = impulses;
+  body.toWide(before, impulses.data());
+  const AlignedVector<double> points(4 * matrix.slotCount(), 0.0);
+  ImpulseHistory<double> history;
+  history.clear(matrix.wideSize());
+  history.keep(matrix, impulses, {0.0, 0.5}, 0.1, points, points, 0.1);  // of which all but a fifth is damping
+  EXPECT_TRUE(history.fits(0.2));
+  EXPECT_FALSE(history.fits(0.3));
+  EXPECT_FALSE(history.fits(0.03));
+  const Matrix3d turn = turnBy(70.0, {1, 2, 3});
+  std::array<double, 9> rows{};
+  for (int k = 0; k < 9; ++k) rows[static_cast<std::size_t>(k)] = turn(k / 3, k % 3);
+  history.addTo(right, {0.25, 0.5}, 0.2, {rows}, std::vector<std::uint32_t>(matrix.slotCount(), 0));
+  const VectorXd added = body.fromWide(right.data());
+  for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+    const auto at = static_cast<Eigen::Index>(3 * n);
+    const Vector3d expected = 0.25 * 2.0 * -0.8 * (turn * before.segment<3>(at));
+    EXPECT_LT((added.segment<3>(at) - expected).norm(), 1e-12) << n;
+  }
+  history.takeFrom(right);
+  EXPECT_LT(body.fromWide(right.data()).norm(), 1e-12);
 }
 
 /// A body that trembles, at the beginning of its step of this number.

@@ -178,12 +178,9 @@ void SolverBodies::takeElastic(const ForceList& forces) {
 }
 
 void SolverBodies::attachPersistent() {
-  ++step_;
   for (SolvedBody& body : bodies_) {
     PersistentState& kept = persistent_[body.body];
     const auto nodes = static_cast<std::size_t>(body.body->m_nodes.size());
-    body.continues = kept.step + 1 == step_;
-    kept.step = step_;
     body.frictionAnchors = &kept.frictionAnchors;
     body.bulletsContacts = &kept.bulletsContacts;
     body.hasRows = &kept.hasRows;

@@ -50,7 +50,6 @@ struct SolvedBody {
   int iterations = 0;            ///< of this step; coupled bodies store them in the first one
   int rowCount = 0;              ///< rows of contacts and anchors
   std::size_t place = 0;         ///< in `SolvedSystem::bodies`, while its system is solved
-  bool continues = false;        ///< it was solved in the step before, too
   bool* hasRows = nullptr;       ///< written for the next step: the body has rows
   bool hadRows = false;          ///< value of `hasRows` in the step before
   bool* hasContacts = nullptr;   ///< written for the next step: some of the rows are contacts
@@ -136,7 +135,6 @@ class SolverBodies {
     std::vector<FrictionAnchor> frictionAnchors;
     bool hasRows = false;      ///< true if any row acts on the body
     bool hasContacts = false;  ///< true if any of these is a contact
-    unsigned step = 0;         ///< number of the last step in which it was awake
     PointContacts bulletsContacts;
     PaddedTrees paddedTrees;
     elastic_detail::ConjugateGradient<btScalar> solve;
@@ -146,7 +144,6 @@ class SolverBodies {
   std::vector<int> nodeCounts_;  ///< of all bodies, in the order of their numbers
   int nodeCount_ = 0, awakeCount_ = 0;
   btAlignedObjectArray<btSoftBody*> seen_;  ///< the world's bodies, as last seen
-  unsigned step_ = 0;                       ///< number of the step
   bool dropped_ = false;                    ///< bodies were dropped since the last `collect`
   std::vector<SolvedBody> bodies_;
   std::unordered_map<const btSoftBody*, std::size_t> indices_;  ///< index in `bodies_`

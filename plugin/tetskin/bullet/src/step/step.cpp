@@ -128,7 +128,7 @@ void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& t
       [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
 }
 
-/// True unless the application has moved the body since the last step, or changed its velocities.
+/// True unless the application has moved the body since the last step, or changed its velocities, as sleep does, too.
 bool continuesLastStep(const SolvedBody& solved) {
   if (!solved.dynamics->remembers()) return true;
   for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
@@ -214,7 +214,7 @@ void DeformableSolver::Impl::predict() {
   useOwnSettings();
   applyOthers();
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
-    if (!body.continues || !continuesLastStep(body)) body.dynamics->forget();
+    if (!continuesLastStep(body)) body.dynamics->forget();
     readNodes(*body.body, false, *body.dynamics);
     staggerHeld(body, dt());
   });

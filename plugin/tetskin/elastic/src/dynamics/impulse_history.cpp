@@ -4,7 +4,6 @@
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -38,14 +37,12 @@ bool ImpulseHistory<S>::continues(std::size_t slot, const S* point, const S* vel
 
 template <class S>
 void ImpulseHistory<S>::addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
-                              const std::vector<Eigen::Matrix3d>& turns, const std::vector<std::uint32_t>& partOf) {
+                              const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf) {
   assert(fits(seconds) && rightSide.size() == mean_.size());
   std::vector<std::array<S, 9>> factors;
-  for (const Eigen::Matrix3d& turn : turns) {
+  for (const std::array<double, 9>& turn : turns) {
     std::array<S, 9>& factor = factors.emplace_back();
-    for (int k = 0; k < 9; ++k) {
-      factor[static_cast<std::size_t>(k)] = static_cast<S>(scheme.filter * seconds / seconds_ * turn(k / 3, k % 3));
-    }
+    for (std::size_t k = 0; k < 9; ++k) factor[k] = static_cast<S>(scheme.filter * seconds / seconds_ * turn[k]);
   }
   for (std::size_t slot = 0; slot < partOf.size(); ++slot) {
     const std::array<S, 9>& factor = factors[partOf[slot]];

@@ -9,8 +9,7 @@
 #include <tetskin/elastic/src/dynamics/time_scheme.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
-#include <Eigen/Core>
-
+#include <array>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -27,9 +26,9 @@ class ImpulseHistory {
   bool continues(std::size_t slot, const S* point, const S* velocity) const;
   /// Adds a H to a right side in the wide layout. H is turned like its components, as the velocities are that belong to
   /// it, and grows with the time for which forces act.
-  /// turns   by component; partOf: by slot, its component
+  /// turns   by component: rotations, stored by rows;  partOf  by slot: its component
   void addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
-             const std::vector<Eigen::Matrix3d>& turns, const std::vector<std::uint32_t>& partOf);
+             const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf);
   /// Takes away what `addTo` has added.
   void takeFrom(AlignedVector<S>& rightSide) const;
   /// H becomes 0.

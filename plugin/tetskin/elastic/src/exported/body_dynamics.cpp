@@ -333,8 +333,10 @@ void BodyDynamics<S>::startLater() {
     }
   });
   if (!secondOrder_) return;
-  std::vector<Eigen::Matrix3d> turns;
-  for (const ComponentMotion& motion : motions_) turns.push_back(motion.turn());
+  std::vector<std::array<double, 9>> turns(motions_.size());
+  for (std::size_t part = 0; part < motions_.size(); ++part) {
+    for (std::size_t k = 0; k < 9; ++k) turns[part][k] = motions_[part].turn()(static_cast<int>(k) / 3, static_cast<int>(k) % 3);
+  }
   history_.addTo(rightSide_, scheme_, forceSeconds_, turns, partOf_);
   history_.forget();  // unless `remember` follows
 }
