@@ -27,7 +27,7 @@ class WarmRows : public testing::Test {
     for (const auto& body : {upper_.get(), lower_.get()}) all.push_back(&body->body());
     bodies_.collect(all, false, awake);
     bodies_.assign(*world_.bodySolver().getLagrangianForceArray());
-    for (SolvedBody& solved : bodies_.bodies()) readNodes(*solved.body, false, *solved.dynamics);
+    for (SolvedBody& solved : bodies_.bodies()) readNodes(*solved.body, *solved.dynamics);
   }
   PointContact contact(std::uint32_t point, std::uint32_t sample, const btVector3& normal = kUp) {
     PointContact made;

@@ -47,7 +47,7 @@ class System : public testing::Test {
     all.push_back(&body());
     bodies_.collect(all, false, awake);
     bodies_.assign(*world_.bodySolver().getLagrangianForceArray());
-    readNodes(body(), false, dynamics());
+    readNodes(body(), dynamics());
     dynamics().predict(static_cast<double>(kSeconds), nullptr);
     dynamics().matrix().free();
     dynamics().start(nullptr);

@@ -71,7 +71,8 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
     const VectorXd residual = right - body.dense() * (v - rigid);
     EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - residual).norm(), tolerance);
     BodyDynamics<TypeParam> there = dynamicsOf(body, v);
-    there.prepareForces(nullptr);
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) std::copy_n(there.point(n), 3, there.probe(n));
+    there.probeForces(nullptr);
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(dynamics.force(n)[k], there.force(n)[k], 0.1 * tolerance);
     }
@@ -135,10 +136,9 @@ TEST(ImpulseHistory, TurnsWithItsComponentAndGrowsWithTheTimeForWhichForcesAct) 
   const VectorXd before = Random(55).vector(3 * body.nodes.size());
   AlignedVector<double> impulses(matrix.wideSize(), 0.0), right = impulses;
   body.toWide(before, impulses.data());
-  const AlignedVector<double> points(4 * matrix.slotCount(), 0.0);
   ImpulseHistory<double> history;
   history.clear(matrix.wideSize());
-  history.keep(matrix, impulses, {0.0, 0.5}, 0.1, points, points, 0.1);  // of which all but a fifth is damping
+  history.keep(matrix, impulses, {0.0, 0.5}, 0.1, 0.1);  // of which all but a fifth is damping
   EXPECT_TRUE(history.fits(0.2));
   EXPECT_FALSE(history.fits(0.3));
   EXPECT_FALSE(history.fits(0.03));
@@ -361,7 +361,7 @@ TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
   dynamics.start(nullptr);
   EXPECT_EQ(dynamics.velocity(0)[0], TypeParam(5));
   EXPECT_EQ(dynamics.alpha(), 0.0);
-  EXPECT_EQ(dynamics.energy(nullptr), 0.0);
+  EXPECT_EQ(dynamics.probeEnergy(nullptr), 0.0);
   std::vector<TypeParam> points(4 * dynamics.matrix().slotCount(), 2), image(dynamics.matrix().wideSize());
   dynamics.matrix().multiply(points.data(), image.data(), nullptr);
   for (std::size_t n = 0; n < 3; ++n) {

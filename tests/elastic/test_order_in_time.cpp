@@ -18,6 +18,8 @@ namespace tetskin::test {
 namespace {
 
 const std::array<double, 3> kDown = {0, -9.81, 0};
+/// So little that tets do not turn enough for the matrix to be made anew.
+const std::array<double, 3> kFaintlyDown = {0, -0.01, 0};
 
 TetMesh beamCage() {
   return latticeCage(6, 1, 1, 0.25);
@@ -38,7 +40,7 @@ Points swing(
   pinTheEnd(body, cage);
   Points path;
   for (int k = 0; k < steps; ++k) {
-    body.step(share(k) / steps, kDown);
+    body.step(share(k) / steps, youngsModulus > 1e5 ? kFaintlyDown : kDown);
     if ((k + 1) % (steps / 20) == 0) path.push_back(pointsOf(body.positions()).back());
   }
   return path;
@@ -60,8 +62,7 @@ TEST(OrderInTime, IsTwoAtEveryDamping) {
                  fine = difference(swing(damping, 480), exact);
     EXPECT_LT(middle, 0.006) << damping;
     EXPECT_LT(fine, 0.6 * middle) << damping;
-    // Then what is left is that of rotations since the matrix was made.
-    EXPECT_TRUE(fine < 0.18 * coarse || fine < 5e-4) << damping << ' ' << coarse << ' ' << fine;
+    EXPECT_LT(fine, 0.18 * coarse) << damping;
   }
 }
 

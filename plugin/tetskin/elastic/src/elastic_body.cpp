@@ -7,6 +7,7 @@
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -100,6 +101,9 @@ struct ElasticBody<Scalar>::Impl {
       }
     }
   }
+  void fillProbes() {
+    for (std::size_t n = 0; n < masses.size(); ++n) std::copy_n(&positions[3 * n], 3, dynamics.probe(n));
+  }
   /// True unless the application has written positions or velocities since the last step.
   bool continues() const {
     for (std::size_t n = 0; dynamics.remembers() && n < masses.size(); ++n) {
@@ -189,8 +193,8 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
 template <class Scalar>
 std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
   if (!impl_) return {};
-  impl_->read({});
-  impl_->dynamics.prepareForces(nullptr);
+  impl_->fillProbes();
+  impl_->dynamics.probeForces(nullptr);
   std::vector<std::array<double, 3>> out(nodeCount());
   for (std::size_t n = 0; n < out.size(); ++n) {
     for (std::size_t k = 0; k < 3; ++k) out[n][k] = static_cast<double>(impl_->dynamics.force(n)[k]);
@@ -201,8 +205,8 @@ std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
 template <class Scalar>
 double ElasticBody<Scalar>::energy() {
   if (!impl_) return 0.0;
-  impl_->read({});
-  return impl_->dynamics.energy(nullptr);
+  impl_->fillProbes();
+  return impl_->dynamics.probeEnergy(nullptr);
 }
 
 #define TETSKIN_INSTANTIATE(Scalar) template class ElasticBody<Scalar>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/forces/elastic_force.h>
+#include <tetskin/bullet/src/forces/node_vectors.h>
 
 #include <cassert>
 
@@ -37,8 +38,10 @@ void ElasticForce::reinitialize(bool) {
 
 double ElasticForce::totalElasticEnergy(btScalar) {
   if (m_softBodies.size() == 0 || !body_.body->isActive()) return 0.0;
-  readNodes(*body_.body, true, *body_.dynamics);
-  return body_.dynamics->energy(nullptr);
+  const auto& nodes = body_.body->m_nodes;
+  assert(body_.dynamics->nodeCount() == static_cast<std::size_t>(nodes.size()));
+  for (int n = 0; n < nodes.size(); ++n) toPoint(nodes[n].m_q, body_.dynamics->probe(static_cast<std::size_t>(n)));
+  return body_.dynamics->probeEnergy(nullptr);
 }
 
 }  // namespace tetskin::bullet_detail

@@ -36,12 +36,12 @@ btScalar restMeasureOf(const btSoftBody& body) {
 
 }  // namespace
 
-void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics) {
+void readNodes(const btSoftBody& body, Dynamics& dynamics) {
   assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body.m_nodes[n];
     const auto at = static_cast<std::size_t>(n);
-    toPoint(predicted ? node.m_q : node.m_x, dynamics.point(at));
+    toPoint(node.m_x, dynamics.point(at));
     toPoint(node.m_v, dynamics.velocity(at));
     dynamics.setMass(at, node.m_im > 0 ? 1 / node.m_im : btScalar(0));
   }

@@ -28,8 +28,8 @@ struct SolverSettings {
 
 using Dynamics = elastic_detail::BodyDynamics<btScalar>;
 
-/// The state of a body's nodes; `predicted`: at m_q instead of m_x.
-void readNodes(const btSoftBody& body, bool predicted, Dynamics& dynamics);
+/// The state of a body's nodes.
+void readNodes(const btSoftBody& body, Dynamics& dynamics);
 
 /// The body's tets at rest, by Bullet's numbers: the same whether the body has just been created or has been scaled
 /// since.

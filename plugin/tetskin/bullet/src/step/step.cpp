@@ -215,7 +215,7 @@ void DeformableSolver::Impl::predict() {
   applyOthers();
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     if (!continuesLastStep(body)) body.dynamics->forget();
-    readNodes(*body.body, false, *body.dynamics);
+    readNodes(*body.body, *body.dynamics);
     staggerHeld(body, dt());
   });
   for (SolvedBody& body : bodies.bodies()) prepareSearch(body);

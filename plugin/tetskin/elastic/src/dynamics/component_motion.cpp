@@ -202,6 +202,10 @@ Vector3d ComponentMotion::anchor() const {
   return grid * (about_ / grid).array().round().matrix();
 }
 
+double ComponentMotion::radius() const {
+  return mass_ > 0.0 ? std::sqrt(std::max(central_.trace(), 0.0) / mass_) : 0.0;
+}
+
 double ComponentMotion::reach() const {
   return mass_ > 0.0 ? about_.norm() + std::sqrt(second_.trace() / mass_) : about_.norm();
 }

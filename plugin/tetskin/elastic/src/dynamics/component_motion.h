@@ -102,6 +102,8 @@ class ComponentMotion {
   /// A point near `about()`, on a grid as wide as the component, so that it seldom changes: positions relative to it
   /// have as many digits as they can, and the same rounding from step to step.
   Eigen::Vector3d anchor() const;
+  /// The root of the mean square of the distance from the centre of mass; 0 where there is no mass.
+  double radius() const;
   /// The distance from the origin to about the farthest node.
   double reach() const;
   /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.

@@ -3,18 +3,14 @@
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace tetskin::elastic_detail {
 namespace {
 
 using kernels::kGroup;
+using kernels::kWideVector;
 
-/// Share of a body's size up to which a node counts as where it was: far more than rounding, and far less than one
-/// sees.
-constexpr double kNear = 1e-4;
 /// Most by which one step may be longer or shorter than the one before.
 constexpr double kMostGrowth = 2.5;
 
@@ -26,30 +22,24 @@ bool ImpulseHistory<S>::fits(double seconds) const {
 }
 
 template <class S>
-bool ImpulseHistory<S>::continues(std::size_t slot, const S* point, const S* velocity) const {
-  assert(4 * slot < points_.size());
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (!(std::abs(point[k] - points_[4 * slot + k]) <= near_)) return false;
-    if (!(length_ * std::abs(velocity[k] - speeds_[4 * slot + k]) <= near_)) return false;
-  }
-  return true;
-}
-
-template <class S>
 void ImpulseHistory<S>::addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
-                              const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf) {
-  assert(fits(seconds) && rightSide.size() == mean_.size());
+                              const std::vector<std::array<double, 9>>& turns,
+                              const std::vector<std::uint32_t>& partOf) {
+  assert(fits(seconds) && rightSide.size() == mean_.size() && mean_.size() == 3 * partOf.size());
   std::vector<std::array<S, 9>> factors;
   for (const std::array<double, 9>& turn : turns) {
     std::array<S, 9>& factor = factors.emplace_back();
     for (std::size_t k = 0; k < 9; ++k) factor[k] = static_cast<S>(scheme.filter * seconds / seconds_ * turn[k]);
   }
-  for (std::size_t slot = 0; slot < partOf.size(); ++slot) {
-    const std::array<S, 9>& factor = factors[partOf[slot]];
-    S* mean = &mean_[BlockMatrix<S>::wideOfSlot(slot)];
-    const S from[3] = {mean[0], mean[kGroup], mean[2 * kGroup]};
-    for (std::size_t k = 0; k < 3; ++k) {
-      mean[k * kGroup] = factor[3 * k] * from[0] + factor[3 * k + 1] * from[1] + factor[3 * k + 2] * from[2];
+  const bool several = factors.size() > 1;
+  for (std::size_t chunk = 0; chunk < partOf.size() / kGroup; ++chunk) {
+    S* mean = &mean_[kWideVector * chunk];
+    for (std::size_t lane = 0; lane < kGroup; ++lane) {
+      const std::array<S, 9>& factor = factors[several ? partOf[kGroup * chunk + lane] : 0];
+      const S x = mean[lane], y = mean[kGroup + lane], z = mean[2 * kGroup + lane];
+      mean[lane] = factor[0] * x + factor[1] * y + factor[2] * z;
+      mean[kGroup + lane] = factor[3] * x + factor[4] * y + factor[5] * z;
+      mean[2 * kGroup + lane] = factor[6] * x + factor[7] * y + factor[8] * z;
     }
   }
   for (std::size_t k = 0; k < mean_.size(); ++k) rightSide[k] += mean_[k];
@@ -63,31 +53,20 @@ void ImpulseHistory<S>::takeFrom(AlignedVector<S>& rightSide) const {
 
 template <class S>
 void ImpulseHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme,
-                             double seconds, const AlignedVector<S>& points, const AlignedVector<S>& rigid,
-                             double length) {
-  assert(points.size() == 4 * matrix.slotCount() && rigid.size() == points.size());
-  assert(mean_.size() == matrix.wideSize());
-  points_.resize(points.size());
-  speeds_.resize(points.size());
+                             double length, double seconds) {
+  assert(mean_.size() == matrix.wideSize() && impulses.size() == mean_.size());
+  const auto share = static_cast<S>((1.0 - scheme.filter) * length * (length - scheme.damping) / scheme.alpha(length));
   const S* solution = matrix.solution();
-  const auto dt = static_cast<S>(length);
-  const auto share = static_cast<S>((1.0 - scheme.filter) * (length - scheme.damping) /
-                                    ((1.0 - scheme.filter) * scheme.damping + scheme.filter * length));
-  S reach = S(0);
-  for (std::size_t slot = 0; slot < matrix.slotCount(); ++slot) {
-    const std::size_t wide = BlockMatrix<S>::wideOfSlot(slot);
-    const S mass = matrix.massAt(slot);
+  for (std::size_t chunk = 0; chunk < matrix.slotCount() / kGroup; ++chunk) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t at = wide + k * kGroup;
-      mean_[at] = mass != S(0) ? mean_[at] + share * (impulses[at] - mass * solution[at]) : S(0);
-      const S velocity = rigid[4 * slot + k] + solution[at];
-      speeds_[4 * slot + k] = velocity;
-      points_[4 * slot + k] = points[4 * slot + k] + dt * velocity;
-      if (mass != S(0)) reach = std::max(reach, std::abs(points[4 * slot + k] - points[k]));
+      const std::size_t first = kWideVector * chunk + kGroup * k;
+      for (std::size_t lane = 0; lane < kGroup; ++lane) {
+        const S mass = matrix.massAt(kGroup * chunk + lane);
+        const S kept = mean_[first + lane] + share * (impulses[first + lane] - mass * solution[first + lane]);
+        mean_[first + lane] = mass != S(0) ? kept : S(0);
+      }
     }
   }
-  near_ = static_cast<S>(kNear) * reach;
-  length_ = dt;
   seconds_ = seconds;
 }
 

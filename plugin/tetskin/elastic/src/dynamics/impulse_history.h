@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a body's step of second order takes from the steps before: H of time_scheme.h, and where they have ended, from
-// which one sees that the application has moved the body since.
+// What a body's step of second order takes from the steps before: H of time_scheme.h.
 #pragma once
 
 #include <tetskin/core/src/base/aligned.h>
@@ -22,8 +21,6 @@ class ImpulseHistory {
   bool fits(double seconds) const;
   void forget() { seconds_ = 0.0; }
 
-  /// True if the node in this slot is where the last step has brought it, and as fast, but for rounding.
-  bool continues(std::size_t slot, const S* point, const S* velocity) const;
   /// Adds a H to a right side in the wide layout. H is turned like its components, as the velocities are that belong to
   /// it, and grows with the time for which forces act.
   /// turns   by component: rotations, stored by rows;  partOf  by slot: its component
@@ -34,18 +31,14 @@ class ImpulseHistory {
   /// H becomes 0.
   void clear(std::size_t wideSize) { mean_.assign(wideSize, S(0)); }
   /// Call it when a step has been solved, after `addTo` or `clear`.
-  /// impulses       A times the solution, in the wide layout; the matrix has the solution
-  /// seconds        for which forces have acted
-  /// points, rigid  4 scalars per slot: positions at the beginning, and the velocities to which the solution is
-  /// relative length         of the step
-  void keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme, double seconds,
-            const AlignedVector<S>& points, const AlignedVector<S>& rigid, double length);
+  /// impulses  A times the solution, in the wide layout; the matrix has the solution
+  /// length    of the step;  seconds  for which forces have acted
+  void keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme, double length,
+            double seconds);
 
  private:
-  AlignedVector<S> mean_;             ///< H, in the wide layout
-  AlignedVector<S> points_, speeds_;  ///< 4 scalars per slot: where the last step has ended
-  S near_ = S(0), length_ = S(0);     ///< distances up to which a node counts as there; the last step's length
-  double seconds_ = 0.0;              ///< for which forces acted in the last step; 0: H is not known
+  AlignedVector<S> mean_;  ///< H, in the wide layout
+  double seconds_ = 0.0;   ///< for which forces acted in the last step; 0: H is not known
 };
 
 }  // namespace tetskin::elastic_detail

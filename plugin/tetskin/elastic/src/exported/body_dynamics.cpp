@@ -21,9 +21,6 @@ constexpr double kMeanTurn = 0.015, kMaxTurn = 0.3;
 /// These angles apply to steps of this many seconds and more; for shorter ones they are reduced in proportion, so that
 /// the simulation converges.
 constexpr double kFullTurnStep = 1.0 / 240.0;
-/// Share of these angles in steps of second order whose damping, which the matrix makes, is longer than the step: the
-/// error of a beam's way at four substeps is 0.25 % with 1, 0.04 with 0.3, and 0.03 with 0.1.
-constexpr double kDampedTurn = 0.3;
 /// A matrix with rotations that are outdated by an angle of phi takes rigid rotation for strain; its stress rotates the
 /// body, by dt (dt + damping) phi^2 times the sum of V (2 mu + lambda) over the least inertia, times the rotation. This
 /// much is allowed: values from 1 to 0.01 are stable.
@@ -39,6 +36,9 @@ constexpr double kFeelsTurns = 1.0;
 /// position than the matrix knows. Without, nodes of a body that is squashed flat jump between two positions for ever,
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
+
+/// Share of a body's radius up to which a node counts as where it was: far more than rounding.
+constexpr double kNear = 1e-4;
 
 /// Sums side by side, none of which waits for the one before.
 struct LaneSums {
@@ -160,15 +160,19 @@ void BodyDynamics<S>::chooseScheme(double seconds) {
 }
 
 template <class S>
-void BodyDynamics<S>::prepareForces(ParallelFor* threads) {
-  if (tets_) tets_->forces(points_.data(), forces_.data(), threads);
+void BodyDynamics<S>::probeForces(ParallelFor* threads) {
+  if (tets_) tets_->forces(moved_.data(), forces_.data(), threads);
+}
+
+template <class S>
+double BodyDynamics<S>::probeEnergy(ParallelFor* threads) {
+  return tets_ ? tets_->energy(moved_.data(), threads) : 0.0;
 }
 
 template <class S>
 void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads) {
   const double alpha = tets_ ? scheme_.alpha(seconds) * forceSeconds_ / seconds : 0.0;
-  const bool damped = secondOrder_ && damping_ > seconds;
-  const double fraction = turnFraction * std::min(1.0, seconds / kFullTurnStep) * (damped ? kDampedTurn : 1.0);
+  const double fraction = turnFraction * std::min(1.0, seconds / kFullTurnStep);
   // A stiff component rotates as a whole, and may be a single tet among many of other components.
   const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
   const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
@@ -335,7 +339,8 @@ void BodyDynamics<S>::startLater() {
   if (!secondOrder_) return;
   std::vector<std::array<double, 9>> turns(motions_.size());
   for (std::size_t part = 0; part < motions_.size(); ++part) {
-    for (std::size_t k = 0; k < 9; ++k) turns[part][k] = motions_[part].turn()(static_cast<int>(k) / 3, static_cast<int>(k) % 3);
+    for (std::size_t k = 0; k < 9; ++k)
+      turns[part][k] = motions_[part].turn()(static_cast<int>(k) / 3, static_cast<int>(k) % 3);
   }
   history_.addTo(rightSide_, scheme_, forceSeconds_, turns, partOf_);
   history_.forget();  // unless `remember` follows
@@ -358,7 +363,11 @@ void BodyDynamics<S>::rememberAmongOthers(double seconds, ParallelFor* threads) 
 template <class S>
 void BodyDynamics<S>::keep(const AlignedVector<S>& impulses, double seconds) {
   if (!secondOrder_) history_.clear(matrix_.wideSize());
-  history_.keep(matrix_, impulses, scheme_, forceSeconds_, points_, velocities_, seconds);
+  history_.keep(matrix_, impulses, scheme_, seconds, forceSeconds_);
+  double radius = 0.0;
+  for (const ComponentMotion& motion : motions_) radius = std::max(radius, motion.radius());
+  near_ = static_cast<S>(kNear * radius);
+  length_ = static_cast<S>(seconds);
 }
 
 template <class S>
@@ -444,11 +453,6 @@ void BodyDynamics<S>::restart(ParallelFor* threads) {
   matrix_.multiply(relative_.data(), image_.data(), threads);
   S* residual = matrix_.residual();
   for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
-}
-
-template <class S>
-double BodyDynamics<S>::energy(ParallelFor* threads) {
-  return tets_ ? tets_->energy(points_.data(), threads) : 0.0;
 }
 
 /// Moments of the velocities of the current solution.

@@ -21,6 +21,7 @@
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -73,18 +74,27 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// mass  0: the node is pinned
   void setMass(std::size_t node, S mass);
 
-  /// A node's state, 4 scalars each, which the caller fills before `prepareForces` or `predict`.
+  /// A node's state, 4 scalars each, which the caller fills before `predict`.
   S* point(std::size_t node) { return &points_[4 * matrix_.slotOf(node)]; }
   S* velocity(std::size_t node) { return &velocities_[4 * matrix_.slotOf(node)]; }
-  /// The elastic force on a node, of the last `prepareForces` or `predict`.
+  /// The elastic force on a node, of the last `probeForces` or `predict`.
   const S* force(std::size_t node) const { return &forces_[4 * matrix_.slotOf(node)]; }
 
-  /// Computes the forces only.
-  void prepareForces(ParallelFor* threads);
+  /// A node's position, 4 scalars, for `probeForces` and `probeEnergy`: they leave the state as it is. The caller fills
+  /// it between steps.
+  S* probe(std::size_t node) { return &moved_[4 * matrix_.slotOf(node)]; }
+  void probeForces(ParallelFor* threads);
+  double probeEnergy(ParallelFor* threads);
 
-  /// True if the node is where the last step has brought it, and as fast.
+  /// True if the node is where the last step has brought it, and as fast, but for less than one sees.
   bool continues(std::size_t node, const S* point, const S* velocity) const {
-    return history_.continues(matrix_.slotOf(node), point, velocity);
+    const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S reached = velocities_[4 * slot + k] + matrix_.solution()[wide + k * kernels::kGroup];
+      if (!(std::abs(length_ * (velocity[k] - reached)) <= near_)) return false;
+      if (!(std::abs(point[k] - points_[4 * slot + k] - length_ * reached) <= near_)) return false;
+    }
+    return true;
   }
   /// True if the last step is remembered for the next one.
   bool remembers() const { return history_.isKnown(); }
@@ -136,8 +146,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void restart(ParallelFor* threads);
 
   double alpha() const { return alpha_; }
-  double energy(ParallelFor* threads);
-
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
   /// scalars per slot. Returns false, and writes nothing, if some node of the component is pinned, or it has no mass.
   bool rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const;
@@ -188,6 +196,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double lastSeconds_ = 0.0;    ///< length of the last step; 0: there was none
   double forceSeconds_ = 0.0;   ///< for which forces act in this step
   ImpulseHistory<S> history_;
+  S length_ = S(0), near_ = S(0);  ///< of the last step that is remembered: see `continues`
   double stiffnessNumber_ = 0.0;
   bool changed_ = true;                   ///< masses or material have changed since the last assembly
   std::size_t pinned_;                    ///< number of pinned nodes
