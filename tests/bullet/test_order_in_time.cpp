@@ -211,26 +211,25 @@ double speedRange(const btSoftBody& body) {
 }
 
 TEST(OrderInTimeOfAWorld, AStepInWhichAContactBeginsIsBackwardEulersAsAreSomeAfterItHasEnded) {
-  for (const double damping : {0.0, 0.02}) {
-    TetskinWorld world;
-    const auto block = added(world, cageAbove(0.5), beamOptions(damping));
-    const auto stepOnce = [&] {
-      world.deformable().stepSimulation(btScalar(1) / 240, 0);
-      return wasBackwardEulers(world, damping);
-    };
-    std::vector<bool> steps = {stepOnce()};
-    while (speedRange(block->body()) < 0.01 && steps.size() < 240) steps.push_back(stepOnce());
-    ASSERT_LT(steps.size(), 240U);
-    EXPECT_TRUE(steps.back()) << "it has landed in this step";
-    // The floor may have been near before.
-    EXPECT_EQ(std::find(steps.begin() + 1, steps.end() - 3, true), steps.end() - 3);
-    for (int k = 0; k < 60; ++k) stepOnce();
-    EXPECT_TRUE(stepOnce()) << "at rest";
-    block->body().setVelocity(btVector3(0, 5, 0));
-    EXPECT_TRUE(stepOnce());
-    for (int k = 0; k < 20; ++k) stepOnce();
-    EXPECT_FALSE(stepOnce());
-  }
+  constexpr double kDamping = 0.02;  // without, backward Euler's step is that of a body that has no step before
+  TetskinWorld world;
+  const auto block = added(world, cageAbove(0.5), beamOptions(kDamping));
+  const auto stepOnce = [&] {
+    world.deformable().stepSimulation(btScalar(1) / 240, 0);
+    return wasBackwardEulers(world, kDamping);
+  };
+  std::vector<bool> steps = {stepOnce()};
+  while (speedRange(block->body()) < 0.01 && steps.size() < 240) steps.push_back(stepOnce());
+  ASSERT_LT(steps.size(), 240U);
+  EXPECT_TRUE(steps.back()) << "it has landed in this step";
+  // The floor may have been near before.
+  EXPECT_EQ(std::find(steps.begin(), steps.end() - 3, true), steps.end() - 3);
+  for (int k = 0; k < 60; ++k) stepOnce();
+  EXPECT_TRUE(stepOnce()) << "at rest";
+  block->body().setVelocity(btVector3(0, 5, 0));
+  EXPECT_TRUE(stepOnce());
+  for (int k = 0; k < 20; ++k) stepOnce();
+  EXPECT_FALSE(stepOnce());
 }
 
 /// A free beam that trembles, for 30 steps.

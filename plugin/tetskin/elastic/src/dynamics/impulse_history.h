@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a body's step of second order takes from the steps before: H of time_scheme.h.
+// What a body's step of second order takes from the steps before: H of time_scheme.h, and whether its motion is one of
+// which steps of this length follow. A deformed body may be stiffer than its matrix says; a step of second order then
+// lets vibrations grow that are too fast for it, and that one of first order takes away. They show as a change of
+// dt^2 K y from step to step, y being the deviation from rigid motion, that is not small beside y itself.
 #pragma once
 
 #include <tetskin/core/src/base/aligned.h>
@@ -17,15 +20,19 @@ template <class S>
 class ImpulseHistory {
  public:
   bool isKnown() const { return seconds_ > 0.0; }
-  /// True if it is known, and the next step is about as long as the last.
+  /// True if the next step may be of second order: the last one is known, about as long, and steps have followed the
+  /// motion for a while.
   bool fits(double seconds) const;
-  void forget() { seconds_ = 0.0; }
+  void forget() {
+    seconds_ = 0.0;
+    calm_ = 0;
+  }
 
-  /// Adds a H to a right side in the wide layout. H is turned like its components, as the velocities are that belong to
-  /// it, and grows with the time for which forces act.
+  /// Turns what is known like its components, as the velocities that belong to it.
   /// turns   by component: rotations, stored by rows;  partOf  by slot: its component
-  void addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds,
-             const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf);
+  void turn(const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf);
+  /// Adds a H to a right side in the wide layout. It grows with the time for which forces act.
+  void addTo(AlignedVector<S>& rightSide, const TimeScheme& scheme, double seconds);
   /// Takes away what `addTo` has added.
   void takeFrom(AlignedVector<S>& rightSide) const;
   /// H becomes 0.
@@ -38,7 +45,9 @@ class ImpulseHistory {
 
  private:
   AlignedVector<S> mean_;  ///< H, in the wide layout
-  double seconds_ = 0.0;   ///< for which forces acted in the last step; 0: H is not known
+  AlignedVector<S> last_;  ///< dt^2 K y of the last step, in the wide layout
+  double seconds_ = 0.0;   ///< for which forces acted in the last step; 0: it is not known
+  int calm_ = 0;           ///< number of steps that have followed the motion
 };
 
 }  // namespace tetskin::elastic_detail

@@ -152,8 +152,8 @@ void BodyDynamics<S>::beginForces(double seconds) {
 template <class S>
 void BodyDynamics<S>::chooseScheme(double seconds) {
   const bool free = untouched_ >= kUntouched;
-  secondOrder_ = free && !stiff_ && !changed_ && history_.fits(forceSeconds_);
-  if (!secondOrder_) history_.forget();
+  if (!free || stiff_ || changed_ || !remembered_) history_.forget();
+  secondOrder_ = history_.fits(forceSeconds_);
   scheme_ = secondOrder_ ? secondOrder(seconds, damping_)
             : free       ? firstOrder(seconds, damping_)
                          : backwardEuler(seconds, damping_);
@@ -336,14 +336,15 @@ void BodyDynamics<S>::startLater() {
       solution[wide + k * kGroup] = deviation[k];
     }
   });
-  if (!secondOrder_) return;
+  remembered_ = false;
+  if (!history_.isKnown()) return;
   std::vector<std::array<double, 9>> turns(motions_.size());
   for (std::size_t part = 0; part < motions_.size(); ++part) {
-    for (std::size_t k = 0; k < 9; ++k)
-      turns[part][k] = motions_[part].turn()(static_cast<int>(k) / 3, static_cast<int>(k) % 3);
+    const Eigen::Matrix3d& turn = motions_[part].turn();
+    for (std::size_t k = 0; k < 9; ++k) turns[part][k] = turn(static_cast<int>(k) / 3, static_cast<int>(k) % 3);
   }
-  history_.addTo(rightSide_, scheme_, forceSeconds_, turns, partOf_);
-  history_.forget();  // unless `remember` follows
+  history_.turn(turns, partOf_);
+  if (secondOrder_) history_.addTo(rightSide_, scheme_, forceSeconds_);
 }
 
 /// The elastic impulses are what the right side and the momentum of the solution differ by, but for what is left of the
@@ -364,6 +365,7 @@ template <class S>
 void BodyDynamics<S>::keep(const AlignedVector<S>& impulses, double seconds) {
   if (!secondOrder_) history_.clear(matrix_.wideSize());
   history_.keep(matrix_, impulses, scheme_, seconds, forceSeconds_);
+  remembered_ = true;
   double radius = 0.0;
   for (const ComponentMotion& motion : motions_) radius = std::max(radius, motion.radius());
   near_ = static_cast<S>(kNear * radius);

@@ -188,6 +188,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
   bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false;
+  bool remembered_ = false;  ///< the last step
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
   /// each time that it bounces.
   static constexpr int kUntouched = 8;
