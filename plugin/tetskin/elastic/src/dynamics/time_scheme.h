@@ -16,6 +16,7 @@
 // An undamped step is stable for a from 1/3 on; with 1/2 it is Houbolt's, which leaves nothing of the fastest
 // vibrations. Longer damping takes another a, for which it acts at the instant of the forces, too. A step of first
 // order has no H: a is 0, or, where the damping is shorter than dt, 1, which is backward Euler's step without damping.
+// See impulse_history.h for when it is taken.
 //
 // This work is based on:
 //   John C. Houbolt, "A Recurrence Matrix Solution for the Dynamic Response of Elastic Aircraft", Journal of the
