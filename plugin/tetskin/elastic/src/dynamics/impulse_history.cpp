@@ -15,8 +15,8 @@ using kernels::kWideVector;
 
 /// Most by which one step may be longer or shorter than the one before.
 constexpr double kMostGrowth = 2.5;
-/// The change of dt^2 K y over the size of y, both with respect to the masses, up to which steps follow the motion: of a
-/// vibration by w radians per step it is w^3. With 2, undamped bars that are bent far gain energy without bound; with
+/// The change of dt^2 K y over the size of y, both with respect to the masses, up to which steps follow the motion: of
+/// a vibration by w radians per step it is w^3. With 2, undamped bars that are bent far gain energy without bound; with
 /// 0.3, those that are twisted far gain some. And the number of such steps after which steps are of second order.
 constexpr double kMostChange = 0.1;
 constexpr int kCalm = 4;
