@@ -253,7 +253,7 @@ TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToRestStaysAtRest) {
     ASSERT_GT(rmsSpeed(beam->body()), 0.05) << damping;
     for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
       btSoftBody::Node& node = beam->body().m_nodes[n];
-      const Eigen::Vector3d& p = beamCage().nodes[static_cast<std::size_t>(n)];
+      const Eigen::Vector3d p = beamCage().nodes[static_cast<std::size_t>(n)];
       node.m_x.setValue(static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z()));
       node.m_q = node.m_x;
       node.m_v.setZero();
