@@ -34,7 +34,7 @@ struct TimeScheme {
 
 /// seconds  above 0;  damping  the material's, in seconds, at least 0
 TimeScheme secondOrder(double seconds, double damping);
-/// Where there is no step before.
+/// Where there is no step before, or steps do not follow the motion: see impulse_history.h.
 TimeScheme firstOrder(double seconds, double damping);
 /// Where contacts may hold the body. With less damping, what is squashed flat trembles: nodes at 0.3 instead of 0.01
 /// sizes per second under 300 times a body's weight, and a body crushed by a plate gains energy.
