@@ -4,7 +4,7 @@
 """Runs the commands of a page as they are written: every command in its sh blocks, in a folder with the input files
 that pages mention.
 
-run_commands.py --build BUILD --folder FOLDER PAGE          a page of the repository
+run_commands.py --build BUILD --folder FOLDER PAGE [PAGE ...]        pages of the repository
 run_commands.py --build BUILD --folder FOLDER --help-of PROGRAM [PROGRAM ...]     the examples in their --help
 
 A command that fails is a fault; commands.txt lists those that are not run, with the reason.
@@ -96,14 +96,14 @@ def main():
     parser.add_argument("--build", type=Path, required=True)
     parser.add_argument("--folder", type=Path, required=True)
     parser.add_argument("--help-of", nargs="+")
-    parser.add_argument("page", nargs="?")
+    parser.add_argument("pages", nargs="*")
     arguments = parser.parse_args()
 
     environment = dict(os.environ, PATH=f"{arguments.build / 'demos'}:{os.environ['PATH']}")
     make_folder(arguments.folder, arguments.build)
     make_inputs(arguments.folder, environment)
-    if arguments.page:
-        commands = page.commands((REPOSITORY / arguments.page).read_text())
+    if arguments.pages:
+        commands = [command for name in arguments.pages for command in page.commands((REPOSITORY / name).read_text())]
     else:
         commands = [line for program in arguments.help_of for line in examples(arguments.build, program)]
     handling = Handling()
