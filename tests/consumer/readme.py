@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Follows the first page with the page's own blocks, as somebody who has just cloned the repository: builds and
-installs the library, builds and runs the first program with it, and then the lines after it. Prints each block and its
-time.
+installs the library, builds the first program with it, and runs it. Prints each block and its time.
 
 readme.py --folder FOLDER --prefix PREFIX --generator GENERATOR
 
@@ -54,23 +53,16 @@ def run(name, script, folder, environment):
         sys.exit(f"FAILED, exit status {done.returncode}, or with a warning:\n{script}\n{done.stdout}")
 
 
-def with_lines(program, lines):
-    """The program with more lines at its end; they are in a function of their own, because one of them may return."""
-    end = "  return 0;\n}\n"
-    if not program.endswith(end):
-        sys.exit("README.md: the first program no longer ends as it did: follow it here")
-    call = f"  [&] {{\n{lines}std::puts(fit.status().message.c_str());\nif (!fit.ok()) std::exit(1);\n}}();\n"
-    return f"#include <tetskin/tetskin.h>\n{program[:-len(end)]}{call}{end}"
-
-
-def run_program(name, program, libraries, prefix, folder, environment):
+def run_program(prefix, folder, environment):
     folder.mkdir()
-    (folder / "main.cpp").write_text(program)
-    text = block("cmake", "find_package(tetskin").replace("tetskin::cage)", f"tetskin::cage{libraries})")
-    (folder / "CMakeLists.txt").write_text(text)
+    (folder / "main.cpp").write_text(block("cpp", "int main("))
+    (folder / "CMakeLists.txt").write_text(block("cmake", "find_package(tetskin"))
     write_ring(folder / "dragon.obj")
-    run(name, f"cmake -DCMAKE_PREFIX_PATH={prefix} -DCMAKE_BUILD_TYPE=Release -S . -B build && cmake --build build && build/app",
+    run("first program", f"cmake -DCMAKE_PREFIX_PATH={prefix} -DCMAKE_BUILD_TYPE=Release -S . -B build && cmake --build build",
         folder, environment)
+    run("without a mesh", "build/app", folder, environment)
+    run("with a mesh", "build/app dragon.obj", folder, environment)
+    run("with a path that is wrong", "status=0; build/app none.obj || status=$?; [ $status -eq 2 ]", folder, environment)
 
 
 def main():
@@ -88,10 +80,7 @@ def main():
     copy_repository(folder / "tetskin")
     run("build and install", block("sh", "cmake -S tetskin").replace("--prefix PREFIX", f"--prefix {prefix}"), folder,
         environment)
-    program = block("cpp", "int main()")
-    run_program("first program", program, "", prefix, folder / "first", environment)
-    run_program("a mesh of yours", with_lines(program, block("cpp", "\"dragon.obj\"")), " tetskin::io", prefix,
-                folder / "yours", environment)
+    run_program(prefix, folder / "first", environment)
 
 
 if __name__ == "__main__":
