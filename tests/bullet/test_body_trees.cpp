@@ -4,7 +4,6 @@
 
 #include <tetskin/bullet/src/base/body_trees.h>
 
-
 namespace tetskin {
 
 using namespace bullet_detail;
