@@ -47,6 +47,20 @@ function linked(line, result, text, target, picture) {
 
 /^```/ { code = !code }
 code || /^```/ { print; next }
+# A link's text may go on in the next line.
+{
+  while (/\[[^]]*$/ && (getline more) > 0) {
+    if (more ~ /^(```|$)/) {
+      print linked($0)
+      $0 = more
+      if (more != "") code = 1
+      break
+    }
+    sub(/^ +/, "", more)
+    $0 = $0 " " more
+  }
+}
+code { print; next }
 /^#+ / {
   heading = linked($0)
   name = $0
