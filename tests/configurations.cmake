@@ -68,8 +68,9 @@ endif()
 # - OfABodyOnAnotherAreItsWeight, FineCageOfThinPartsLandsAndRests, SquashedSurfaces: long runs. ABodyRestsOnAnother...,
 #   FallingBodyReachesTheFloor... and SquashedBodies are shorter.
 # - UpdatesHaveTheSameBitsOnAnyNumberOfThreads: runs in the configuration with the thread sanitizer.
-# - BulletsBinding, BulletsFaces, BulletsUpdates, BulletsContact, BulletsSoftContact: errors of Bullet itself, in float,
-#   and Bullet is not instrumented. BulletsReduction also applies to double precision, and is run.
+# - BulletsBinding, BulletsFaces, BulletsUpdates, BulletsContact, BulletsSoftContact: defects of Bullet itself
+#   (BULLET_DEFECTS.md), in float, and Bullet is not instrumented. BulletsReduction also applies to double precision, and
+#   is run.
 # SortedOrderIs...ToTheLastBit holds with GCC: clang fuses multiplications and additions in some lanes and not in
 # others.
 function(tetskin_test_sanitized name label folders_from)
@@ -245,6 +246,8 @@ endfunction()
 if(PYTHON_OF_SYSTEM)
   tetskin_test_style(comments ${PYTHON_OF_SYSTEM} -B tests/style/comments.py)
   tetskin_test_style(tiers ${PYTHON_OF_SYSTEM} -B tests/tiers/test_tiers.py)
+  tetskin_test_style(drawing ${PYTHON_OF_SYSTEM} -B tests/style/drawing.py)
+  tetskin_test_style(pages ${PYTHON_OF_SYSTEM} -B tests/style/pages.py)
 endif()
 if(python_with_matplotlib)
   tetskin_test_style(links ${python_with_matplotlib} -B tests/style/links.py)

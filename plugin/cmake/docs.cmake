@@ -1,24 +1,28 @@
-# Target docs: pages of the public API, by Doxygen, in build/docs. Any warning is an error: everything public has a
-# comment, and every name that a comment mentions exists.
+# Target docs: pages of the public API and of the guide, by Doxygen, in build/docs. Any warning is an error: everything
+# public has a comment, and every name that a comment mentions exists.
 find_package(Doxygen QUIET)
 if(NOT DOXYGEN_FOUND)
   return()
 endif()
 
-set(main_page ${PROJECT_SOURCE_DIR}/README.md)
-if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/README.md)
-  set(main_page ${CMAKE_CURRENT_SOURCE_DIR}/README.md)
+find_program(AWK awk)
+if(NOT AWK)
+  return()
 endif()
+
+set(main_page ${CMAKE_CURRENT_SOURCE_DIR}/README.md)
+file(GLOB guide CONFIGURE_DEPENDS docs/*.md)
+list(APPEND guide ${CMAKE_CURRENT_SOURCE_DIR}/CHANGES.md)
 file(GLOB public_headers CONFIGURE_DEPENDS tetskin/*.h tetskin/*/*.h)
 list(FILTER public_headers EXCLUDE REGEX "/export[.]h$")  # export macros of the libraries themselves
 
 set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
 set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${main_page})
-set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR}/demos/pictures)
+set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR}/demos/pictures ${CMAKE_CURRENT_SOURCE_DIR}/docs)
 set(DOXYGEN_STRIP_FROM_PATH ${CMAKE_CURRENT_SOURCE_DIR})
 set(DOXYGEN_STRIP_FROM_INC_PATH ${CMAKE_CURRENT_SOURCE_DIR})
 set(DOXYGEN_FILTER_PATTERNS "*.h=sed -E -f ${CMAKE_CURRENT_LIST_DIR}/docs_comments.sed"
-  "*.md=sed -E -f ${CMAKE_CURRENT_LIST_DIR}/docs_page.sed")
+  "*.md=${AWK} -f ${CMAKE_CURRENT_LIST_DIR}/docs_page.awk")
 set(DOXYGEN_HTML_EXTRA_STYLESHEET ${CMAKE_CURRENT_LIST_DIR}/docs.css)
 set(DOXYGEN_ALIASES)
 foreach(fact Cost Error Errors Lifetime Memory Ownership)
@@ -41,4 +45,4 @@ set(DOXYGEN_HAVE_DOT NO)
 set(DOXYGEN_QUIET YES)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)  # a parameter needs no line of its own if its type and name are clear
-doxygen_add_docs(docs ${main_page} ${public_headers} COMMENT "Pages of the public headers: ${PROJECT_BINARY_DIR}/docs")
+doxygen_add_docs(docs ${main_page} ${guide} ${public_headers} COMMENT "Pages of the public headers: ${PROJECT_BINARY_DIR}/docs")

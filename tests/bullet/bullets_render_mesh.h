@@ -36,7 +36,7 @@ inline void setRenderNodes(btSoftBody& body, const Points& points) {
   }
 }
 
-/// Prints a measured figure, for the table in tests/README.md.
+/// Prints a measured figure, for the table in tests/BULLET_DEFECTS.md.
 inline void figure(const char* what, double value) {
   std::printf("[  figure  ] %s: %.3g\n", what, value);
 }

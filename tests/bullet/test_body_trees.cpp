@@ -4,10 +4,6 @@
 
 #include <tetskin/bullet/src/base/body_trees.h>
 
-#include <chrono>
-#include <cstdlib>
-#include <thread>
-
 namespace tetskin {
 
 using namespace bullet_detail;
@@ -227,20 +223,6 @@ TEST(BodyTrees, OfAnExplodedBodyAreBuilt) {
   buildTrees(*body);
   EXPECT_EQ(body->m_fdbvt.m_leaves, body->m_faces.size());
   EXPECT_EQ(body->m_ndbvt.m_leaves, body->m_nodes.size());
-}
-
-TEST(BulletsFaceTreeDeathTest, NeverEndsForABodyOfTwoParts) {
-  EXPECT_EXIT(
-      {
-        btSoftBodyWorldInfo info;
-        const std::unique_ptr<btSoftBody> body(createSoftBody(twoComponents(test::singleTet()), info).value());
-        std::thread([] {
-          std::this_thread::sleep_for(std::chrono::seconds(1));  // ample for eight faces
-          std::_Exit(3);
-        }).detach();
-        body->initializeFaceTree();
-      },
-      testing::ExitedWithCode(3), "");
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How Bullet binds a render mesh to tets or faces, compared with this library: where both agree, and the defects of
-// Bullet's path that can be reproduced with the installed version. The table in tests/README.md names these tests.
+// Bullet's path that can be reproduced with the installed version. The table in tests/BULLET_DEFECTS.md names these
+// tests.
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <algorithm>

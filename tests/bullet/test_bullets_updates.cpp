@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // When and what Bullet updates in a render mesh, compared with this library: the defects of Bullet's path that can be
-// reproduced with the installed version. The table in tests/README.md names these tests.
+// reproduced with the installed version. The table in tests/BULLET_DEFECTS.md names these tests.
 #include "bullets_render_mesh.h"
 #include "worlds.h"
 

@@ -130,7 +130,7 @@ TEST(DeformableBody, SaysThatNoForceActsOnceItWasTakenOutOfItsWorld) {
   }
 }
 
-/// The replacement follows the guide.
+/// As plugin/docs/troubleshooting.md says.
 TEST(DeformableBody, ThatIsNoMoreFiniteIsReplacedByOneThatIsAddedAgain) {
   TetskinWorld world;
   const TetMesh cage = test::smallCageAbove(1);

@@ -6,7 +6,7 @@
 
 namespace tetskin::test {
 
-/// Prints a measured figure, for the table in tests/README.md.
+/// Prints a measured figure, for the table in tests/BULLET_DEFECTS.md.
 inline void figure(const char* what, double value) {
   std::printf("[  figure  ] %s: %.3g\n", what, value);
 }

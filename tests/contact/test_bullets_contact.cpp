@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How Bullet's own contact between soft and rigid bodies fails, as far as this can be reproduced with the installed
-// version, and how SurfaceContact does it right. The table in tests/README.md names these tests.
+// version, and how SurfaceContact does it right. The table in tests/BULLET_DEFECTS.md names these tests.
 #include "bullets_figure.h"
 #include "contact_test.h"
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How Bullet's own contact between soft bodies of a deformable world fails, as far as this can be reproduced with the
-// installed version. The table in tests/README.md names these tests.
+// installed version. The table in tests/BULLET_DEFECTS.md names these tests.
 #include "bullets_figure.h"
 #include "soft_fixtures.h"
 

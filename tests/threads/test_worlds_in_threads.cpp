@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the guide says may be done at the same time, tested under the thread sanitizer and for the same bits as with one
-// thread. Bullet itself is not instrumented: only the library is checked.
+// What plugin/docs/many_bodies.md says may be done at the same time, tested under the thread sanitizer and for the same
+// bits as with one thread. Bullet itself is not instrumented: only the library is checked.
 #include "contact/contact_test.h"
 
 #include <tetskin/contact/soft_contacts.h>

@@ -32,7 +32,7 @@ LAST = "tests/last_full_run"
 READ = re.compile(r"[.](md|csv|png|svg|jpg|html|js|css)$|^(LICENSE|[.]gitignore|[.]editorconfig|tests/pages/.*[.]txt)$|"
                   r"^demos/plots/.*[.]py$")
 # What makes the tests: if it has changed, anything may have. Of tests/, all but sources and the lists of those.
-ORDINARY_TEST = re.compile(r"^tests/[^/]+/([^/]+[.](cpp|h|js|md)|CMakeLists[.]txt)$|^tests/README[.]md$|^tests/pages/.*[.]txt$")
+ORDINARY_TEST = re.compile(r"^tests/[^/]+/([^/]+[.](cpp|h|js|md)|CMakeLists[.]txt)$|^tests/[^/]+[.]md$|^tests/pages/.*[.]txt$")
 MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|platforms))/|^demos/(setup[.]sh|run)$|"
                        r"[.]cmake([.]in)?$|"
                        r"^((plugin/|tests/|demos/)?CMakeLists[.]txt|CMakePresets[.]json|[.]clang-tidy|[.]clang-format)$")

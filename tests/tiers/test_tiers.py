@@ -187,7 +187,8 @@ class Selection(InASmallProject):
         self.assertEqual(self.result()[0], "io")
 
     def test_what_is_only_read_selects_nothing(self):
-        for name in ("README.md", "plugin/README.md", "tests/pages/commands.txt"):
+        for name in ("README.md", "plugin/README.md", "plugin/docs/step.svg", "tests/BULLET_DEFECTS.md",
+                     "tests/pages/commands.txt"):
             self.write(name)
         self.assertEqual(self.result(), ("", [], ""))
 
