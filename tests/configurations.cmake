@@ -111,7 +111,7 @@ function(tetskin_test_consumer name)
       ${PROJECT_BINARY_DIR}/consumers/${name} ${nested_options}
       --build-options -DCMAKE_BUILD_TYPE=Release -DSOURCE=${PROJECT_SOURCE_DIR} ${ARGN}
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error)
-  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 600 LABELS "${labels_full}")
+  set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 1200 LABELS "${labels_full}")
 endfunction()
 
 if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
