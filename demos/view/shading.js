@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Normals of what is drawn: smooth, also across vertices that coincide, but for creases. What is a crease is found once,
-// where a body starts: an edge that turned into one while its body bends would flicker.
+// Normals of what is drawn: smooth, also across vertices that coincide, but for creases. What is a crease is found
+// once, where a body starts: an edge that turned into one while its body bends would flicker.
 
 /** Cosine of the angle between two faces from which their edge is a crease. */
 const CREASE = Math.cos(50 * Math.PI / 180);
-/** Vertices so near to each other, as a share of the mesh's size, are at one place: those of a seam that are in different
-    tets differ by the rounding of the nodes. */
+/** Vertices so near to each other, as a share of the mesh's size, are at one place: those of a seam that are in
+    different tets differ by the rounding of the nodes. */
 const SAME_PLACE = 2e-5;
 
 /** Largest side of the box around points. */

@@ -178,8 +178,8 @@ class Prop {
   }
 }
 
-/** Lines on the floor: a fine one every tenth of a body's size, a clear one every half. Each is at least a pixel wide, and
-    fades where its neighbours are but a few pixels away, before they could make patterns. */
+/** Lines on the floor: a fine one every tenth of a body's size, a clear one every half. Each is at least a pixel wide,
+    and fades where its neighbours are but a few pixels away, before they could make patterns. */
 const GRID = `
   varying vec2 vGround;
   uniform float bodySize;
@@ -209,10 +209,10 @@ function drawGrid(material, bodySize) {
 }
 
 /** Soft shadows of a sun that is a disk: sharp where things touch, and the softer the farther away they are from what
-    they shade. First the mean distance of what is between a point and the sun is searched around it, mostly nearby; by it
-    the width of the half-shadow is known. Where the search finds nothing, or nothing but shadow, it is all that is done.
-    What shades a point from aside must be the more above it: otherwise slopes would shade themselves. A real half-shadow
-    loses nothing by it, as SLOPE is less than 1 / SUN_SIZE. Lengths are in widths of the shadow map. */
+    they shade. First the mean distance of what is between a point and the sun is searched around it, mostly nearby; by
+    it the width of the half-shadow is known. Where the search finds nothing, or nothing but shadow, it is all that is
+    done. What shades a point from aside must be the more above it: otherwise slopes would shade themselves. A real
+    half-shadow loses nothing by it, as SLOPE is less than 1 / SUN_SIZE. Lengths are in widths of the shadow map. */
 const SOFT_SHADOW = `
   #ifdef USE_SHADOWMAP
   const float SUN_SIZE = 0.11, WIDEST = 0.014, SHARPEST = 0.0008, DEPTH = SHADOW_DEPTH, SLACK = 0.0012, SLOPE = 3.0;
@@ -224,12 +224,12 @@ const SOFT_SHADOW = `
     vec3 at = coordinates.xyz / coordinates.w;
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
     float count = 0.0, sum = 0.0;
-    for (int k = 0; k < 16; ++k) {
-      float away = WIDEST * pow(float(k) / 15.0, 1.5), height = heightOver(map, at, away * aside(k));
+    for (int k = 0; k < 24; ++k) {
+      float away = WIDEST * float(k) / 23.0, height = heightOver(map, at, away * aside(k));
       if (height > SLACK + SLOPE * away) { count += 1.0; sum += height; }
     }
     if (count < 0.5) return 1.0;
-    if (count > 15.5) return 0.0;
+    if (count > 23.5) return 0.0;
     float width = clamp(SUN_SIZE * sum / count, SHARPEST, WIDEST), light = 0.0;
     vec2 next = vec2(1.0 / mapSize.x, 0.0);
     for (int k = 0; k < 32; ++k) {
@@ -248,10 +248,11 @@ const SOFT_SHADOW = `
 
 /** Puts them in the place of those of three.js, in revisions that have the function as it was. */
 function useSoftShadows(depth) {
-  const chunks = THREE.ShaderChunk, theirs = 'float getShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowBias, ' +
-    'float shadowRadius, vec4 shadowCoord ) {';
-  if (!chunks.shadowmap_pars_fragment.includes(theirs)) return;
-  chunks.shadowmap_pars_fragment = chunks.shadowmap_pars_fragment.replace(theirs, theirs.replace('getShadow', 'plainShadow')) +
+  const chunks = THREE.ShaderChunk, theirs = 'float getShadow( sampler2D shadowMap, vec2 shadowMapSize, ' +
+    'float shadowBias, float shadowRadius, vec4 shadowCoord ) {';
+  const before = chunks.shadowmap_pars_fragment;
+  if (!before.includes(theirs)) return;
+  chunks.shadowmap_pars_fragment = before.replace(theirs, theirs.replace('getShadow', 'plainShadow')) +
     SOFT_SHADOW.replace('SHADOW_DEPTH', depth.toFixed(3));
 }
 

@@ -54,8 +54,8 @@ function positions(player) {
   return all;
 }
 
-/** How a body is shaded as it starts. smooth: the share of edges, of those flatter than 45 degrees, across which normals do
-    not change; agreement: the least cosine of the angle between a triangle and a normal at its corners. */
+/** How a body is shaded as it starts. smooth: the share of edges, of those flatter than 45 degrees, across which
+    normals do not change; agreement: the least cosine of the angle between a triangle and a normal at its corners. */
 function shading({drawn, positions}) {
   const {triangles, index, normals} = drawn, vector = (array, v) => new THREE.Vector3().fromArray(array, 3 * v);
   const size = new THREE.Box3().setFromArray(positions).getSize(new THREE.Vector3()), unit = 1e-4 * size.length();
@@ -87,7 +87,9 @@ class FloorView {
     this.sun = stage.scene.children.find(child => child.isDirectionalLight);
     for (const solid of stage.solids) solid.visible = solid.material.alphaMap !== undefined && solid.renderOrder < 0;
     stage.setVisible(true, 'none');
-    for (const {mesh} of stage.bodies) mesh.material.forEach(m => Object.assign(m, {colorWrite: false, depthWrite: false}));
+    for (const {mesh} of stage.bodies) {
+      for (const material of mesh.material) Object.assign(material, {colorWrite: false, depthWrite: false});
+    }
     const {x, z} = stage.centre;
     stage.camera.position.set(x, stage.floorY + 4 * this.size, z);
     stage.camera.up.set(0, 0, -1);
@@ -117,7 +119,8 @@ class FloorView {
     const {gl: {drawingBufferWidth: width, drawingBufferHeight: height}, stage, size} = this, samples = [];
     const pixels = this.drawn(false), z = (Math.floor(stage.centre.z / (0.1 * size)) + 0.5) * 0.1 * size;
     for (let k = 0; k <= 1000; ++k) {
-      const point = new THREE.Vector3(stage.centre.x + size * (0.001 * k - 0.48), stage.floorY, z).project(stage.camera);
+      const x = stage.centre.x + size * (0.001 * k - 0.48);
+      const point = new THREE.Vector3(x, stage.floorY, z).project(stage.camera);
       const column = Math.floor((1 + point.x) / 2 * width), row = Math.floor((1 + point.y) / 2 * height);
       samples.push(pixels[row * width + column]);
     }

@@ -59,6 +59,6 @@ def links(text):
     for number, line in enumerate(re.sub(r"`[^`\n]*`", "", prose(text)).splitlines(), 1):
         found += [(number, target) for target in re.findall(r"\]\(([^)\s]+)\)", line)]
         for name, value in re.findall(r"""\s(src|srcset|href)=["']([^"']*)["']""", " " + line):
-            targets = [choice.split()[0] for choice in value.split(",") if choice.strip()] if name == "srcset" else [value]
-            found += [(number, target) for target in targets or [""]]
+            choices = value.split(",") if name == "srcset" else [value]
+            found += [(number, choice.split()[0]) for choice in choices if choice.strip()]
     return found
