@@ -26,8 +26,8 @@ INK = (84, 86, 92)
 SUN = np.array((0.30, -1.0, -0.25))  # the direction of the sun's light, for the shadows
 FLOOR_HALF_SIDE = 8.0
 
-# Position, focus, angle.
-DROP_VIEW = (-1.6, 2.0, 5.0), (-0.02, -0.08, 0.1), 28.5
+# Position, focus, angle. The drop is seen from where the serpent looks to when it lies.
+DROP_VIEW = (0.35, 1.75, 5.15), (0.06, -0.10, 0.1), 28.5
 GAP_VIEW = (-0.5, -0.80, 5.5), (-0.05, -0.72, 0.0), 20.0
 PILE_VIEWS = ((0.0, 5.5, 13.0), (0.0, 1.5, 0.0), 29.0), ((13.0, 5.0, -3.0), (0.0, 1.5, 0.0), 29.0)
 PIT_VIEWS = ((4.4, 4.3, 6.6), (0.0, 0.15, 0.15), 32.0), ((2.0, 1.3, 2.5), (0.75, 0.45, 0.45), 29.0)

@@ -1,18 +1,53 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Normals of what is drawn: smooth, also across vertices that coincide, but for hard edges.
+// Normals of what is drawn: smooth, also across vertices that coincide, but for creases. What is a crease is found
+// once, where a body starts: an edge that turned into one while its body bends would flicker.
 
-/** Cosine of the angle between two faces from which their edge is hard. */
-const HARD_EDGE = Math.cos(80 * Math.PI / 180);
+/** Cosine of the angle between two faces from which their edge is a crease. */
+const CREASE = Math.cos(50 * Math.PI / 180);
+/** Vertices so near to each other, as a share of the mesh's size, are at one place: those of a seam that are in
+    different tets differ by the rounding of the nodes. */
+const SAME_PLACE = 2e-5;
 
-/** By vertex: a number that vertices at one place share. */
+/** Largest side of the box around points. */
+function sizeOf(positions) {
+  let size = 0;
+  for (let k = 0; k < 3; ++k) {
+    let low = Infinity, high = -Infinity;
+    for (let i = k; i < positions.length; i += 3) {
+      low = Math.min(low, positions[i]);
+      high = Math.max(high, positions[i]);
+    }
+    size = Math.max(size, high - low);
+  }
+  return size;
+}
+
+/** By vertex: a number that vertices at one place share, the first one of them. */
 function placesOf(positions) {
-  const known = new Map(), places = new Uint32Array(positions.length / 3);
+  const near = SAME_PLACE * sizeOf(positions), cell = 16 * near || 1;
+  const cells = new Map(), places = new Uint32Array(positions.length / 3);
+  const isNear = (v, w) => [0, 1, 2].every(k => Math.abs(positions[3 * v + k] - positions[3 * w + k]) <= near);
+  const cellOf = (v, k, shift) => Math.floor((positions[3 * v + k] + shift) / cell);
+  /** The first place near a vertex: in its cell, or beyond a side of the cell that is near. */
+  const placeNear = v => {
+    for (let x = cellOf(v, 0, -near); x <= cellOf(v, 0, near); ++x) {
+      for (let y = cellOf(v, 1, -near); y <= cellOf(v, 1, near); ++y) {
+        for (let z = cellOf(v, 2, -near); z <= cellOf(v, 2, near); ++z) {
+          const found = (cells.get(`${x},${y},${z}`) || []).find(w => isNear(v, w));
+          if (found !== undefined) return found;
+        }
+      }
+    }
+    return v;
+  };
   for (let v = 0; v < places.length; ++v) {
-    const key = positions[3 * v] + ',' + positions[3 * v + 1] + ',' + positions[3 * v + 2];
-    if (!known.has(key)) known.set(key, known.size);
-    places[v] = known.get(key);
+    places[v] = placeNear(v);
+    if (places[v] !== v) continue;
+    const key = [0, 1, 2].map(k => cellOf(v, k, 0)).join();
+    if (!cells.has(key)) cells.set(key, []);
+    cells.get(key).push(v);
   }
   return places;
 }
@@ -34,7 +69,8 @@ function addAreaVector(positions, triangles, at, sums, to) {
 
 /** Unit normal of each corner's triangle, three numbers a corner. */
 function cornerNormals(positions, triangles) {
-  const normals = new Float32Array(3 * triangles.length), itself = triangles.map((v, corner) => corner);
+  const normals = new Float32Array(3 * triangles.length);
+  const itself = Uint32Array.from(triangles, (v, corner) => corner);  // beyond 65535, whatever holds the vertices
   for (let at = 0; at < triangles.length; at += 3) addAreaVector(positions, triangles, at, normals, itself);
   for (let i = 0; i < normals.length; i += 3) {
     const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
@@ -56,7 +92,7 @@ function smoothGroups(positions, triangles) {
   const joined = (a, b) => {
     let cosine = 0;
     for (let k = 0; k < 3; ++k) cosine += normals[3 * a + k] * normals[3 * b + k];
-    return cosine > HARD_EDGE;
+    return cosine > CREASE;
   };
   const placeAt = i => places[triangles[corners[i]]];
   let count = 0;
@@ -82,7 +118,7 @@ function smoothGroups(positions, triangles) {
 
 /** A mesh as it is drawn: each vertex as often as it has normals. */
 class DrawnMesh {
-  /** positions: by which hard edges are found */
+  /** positions: by which creases are found */
   constructor(triangles, positions) {
     const {groups, count} = smoothGroups(positions, triangles);
     const known = new Map(), sources = [], drawnGroups = [];

@@ -8,7 +8,7 @@ const BACKGROUND = 0xf4f2ee;
 const PLAIN_COLOURS = [
   [0.42, 0.55, 0.68], [0.72, 0.58, 0.42], [0.50, 0.62, 0.45], [0.66, 0.48, 0.55], [0.62, 0.62, 0.60],
 ];
-const FIRST_DIRECTION = [-0.20, 0.36, 1.0];  // from what is looked at to the camera
+const FIRST_DIRECTION = [-0.20, 0.36, 1.0];
 const SHINE = 0.5;  // of the materials' own, under these lights
 const SUN_DIRECTION = [-0.45, 1.0, 0.45];
 const NEAREST = 0.01;  // that is drawn, in radii of what is looked at
@@ -178,6 +178,84 @@ class Prop {
   }
 }
 
+/** Lines on the floor: a fine one every tenth of a body's size, a clear one every half. Each is at least a pixel wide,
+    and fades where its neighbours are but a few pixels away, before they could make patterns. */
+const GRID = `
+  varying vec2 vGround;
+  uniform float bodySize;
+  float gridLines(float spacing, float width) {
+    vec2 place = vGround / spacing, pixel = fwidth(place) + 1e-9;
+    vec2 half_width = 0.5 * max(vec2(width / spacing), pixel);
+    vec2 away = abs(fract(place - 0.5) - 0.5);
+    vec2 cover = clamp((half_width - away) / pixel + 0.5, 0.0, 1.0) * (1.0 - smoothstep(0.08, 0.3, pixel));
+    return max(cover.x, cover.y);
+  }
+`;
+const GRID_SHADE = `
+  diffuseColor.rgb *= 1.0 - max(0.055 * gridLines(0.1 * bodySize, 0.003 * bodySize),
+                                0.13 * gridLines(0.5 * bodySize, 0.005 * bodySize));
+`;
+
+/** Has a material of the floor draw the grid. */
+function drawGrid(material, bodySize) {
+  material.extensions = {derivatives: true};
+  material.onBeforeCompile = shader => {
+    shader.uniforms.bodySize = {value: bodySize};
+    shader.vertexShader = shader.vertexShader.replace('#include <common>', '#include <common>\nvarying vec2 vGround;')
+      .replace('#include <begin_vertex>', '#include <begin_vertex>\nvGround = position.xz;');
+    shader.fragmentShader = shader.fragmentShader.replace('#include <common>', '#include <common>\n' + GRID)
+      .replace('#include <alphamap_fragment>', '#include <alphamap_fragment>\n' + GRID_SHADE);
+  };
+}
+
+/** Soft shadows of a sun that is a disk: sharp where things touch, and the softer the farther away they are from what
+    they shade. First the mean distance of what is between a point and the sun is searched around it, mostly nearby; by
+    it the width of the half-shadow is known. Where the search finds nothing, or nothing but shadow, it is all that is
+    done. What shades a point from aside must be the more above it: otherwise slopes would shade themselves. A real
+    half-shadow loses nothing by it, as SLOPE is less than 1 / SUN_SIZE. Lengths are in widths of the shadow map. */
+const SOFT_SHADOW = `
+  #ifdef USE_SHADOWMAP
+  const float SUN_SIZE = 0.11, WIDEST = 0.014, SHARPEST = 0.0008, DEPTH = SHADOW_DEPTH, SLACK = 0.0012, SLOPE = 3.0;
+  vec2 aside(int k) { return vec2(cos(2.39996 * float(k)), sin(2.39996 * float(k))); }  // the golden angle
+  float heightOver(sampler2D map, vec3 at, vec2 shift) {
+    return DEPTH * (at.z - unpackRGBAToDepth(texture2D(map, at.xy + shift)));
+  }
+  float getShadow(sampler2D map, vec2 mapSize, float bias, float radius, vec4 coordinates) {
+    vec3 at = coordinates.xyz / coordinates.w;
+    if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+    float count = 0.0, sum = 0.0;
+    for (int k = 0; k < 24; ++k) {
+      float away = WIDEST * float(k) / 23.0, height = heightOver(map, at, away * aside(k));
+      if (height > SLACK + SLOPE * away) { count += 1.0; sum += height; }
+    }
+    if (count < 0.5) return 1.0;
+    if (count > 23.5) return 0.0;
+    float width = clamp(SUN_SIZE * sum / count, SHARPEST, WIDEST), light = 0.0;
+    vec2 next = vec2(1.0 / mapSize.x, 0.0);
+    for (int k = 0; k < 32; ++k) {
+      float away = width * sqrt((float(k) + 0.5) / 32.0);
+      vec2 texel = (at.xy + away * aside(k)) * mapSize - 0.5, part = fract(texel);
+      vec3 corner = vec3((floor(texel) + 0.5) / mapSize, at.z);
+      vec4 heights = vec4(heightOver(map, corner, next.yy), heightOver(map, corner, next.xy),
+                          heightOver(map, corner, next.yx), heightOver(map, corner, next.xx));
+      vec4 lit = step(heights, vec4(SLACK + SLOPE * away));
+      light += mix(mix(lit.x, lit.y, part.x), mix(lit.z, lit.w, part.x), part.y);
+    }
+    return light / 32.0;
+  }
+  #endif
+`;
+
+/** Puts them in the place of those of three.js, in revisions that have the function as it was. */
+function useSoftShadows(depth) {
+  const chunks = THREE.ShaderChunk, theirs = 'float getShadow( sampler2D shadowMap, vec2 shadowMapSize, ' +
+    'float shadowBias, float shadowRadius, vec4 shadowCoord ) {';
+  const before = chunks.shadowmap_pars_fragment;
+  if (!before.includes(theirs)) return;
+  chunks.shadowmap_pars_fragment = before.replace(theirs, theirs.replace('getShadow', 'plainShadow')) +
+    SOFT_SHADOW.replace('SHADOW_DEPTH', depth.toFixed(3));
+}
+
 /** Opaque in the middle, nothing at the rim. */
 function fadingTexture() {
   const size = 256, canvas = document.createElement('canvas');
@@ -225,16 +303,16 @@ class Stage {
 
   addLights() {
     this.scene.fog = new THREE.Fog(BACKGROUND);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb8aa98, 0.6));
-    const sun = new THREE.DirectionalLight(0xffffff, 0.48);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xcabeac, 0.64));
+    const sun = new THREE.DirectionalLight(0xffffff, 0.45);
     sun.position.set(...SUN_DIRECTION).setLength(4 * this.radius).add(this.centre);
     sun.target.position.copy(this.centre);
     sun.castShadow = true;
-    sun.shadow.mapSize.set(2048, 2048);
+    sun.shadow.mapSize.set(1024, 1024);
     sun.shadow.bias = -0.002;
-    const reach = 1.6 * this.radius;
-    Object.assign(sun.shadow.camera, {left: -reach, right: reach, bottom: -reach, top: reach,
-      near: 0.5 * this.radius, far: 8 * this.radius});
+    const reach = 1.6 * this.radius, near = 0.5 * this.radius, far = 8 * this.radius;
+    Object.assign(sun.shadow.camera, {left: -reach, right: reach, bottom: -reach, top: reach, near, far});
+    useSoftShadows((far - near) / (2 * reach));
     this.scene.add(sun, sun.target);
   }
 
@@ -268,14 +346,16 @@ class Stage {
     setAttribute(mesh.geometry, 'uv', places, 2);
     mesh.material = new THREE.MeshLambertMaterial({color: FLOOR_COLOUR, alphaMap: fadingTexture(), dithering: true,
       blending: THREE.CustomBlending});
+    drawGrid(mesh.material, Math.max(...this.bodies.map(body => sizeOf(body.positions))));
     mesh.geometry.clearGroups();
     mesh.renderOrder = -1;
     mesh.castShadow = false;
   }
 
-  resetView() {
+  /** direction: from what is looked at to the camera */
+  resetView(direction = FIRST_DIRECTION) {
     this.untouched = true;
-    const back = new THREE.Vector3(...FIRST_DIRECTION).normalize();
+    const back = new THREE.Vector3(...direction).normalize();
     const right = new THREE.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
     const [x, y, z] = this.closestPlace(right, up, back);
     this.camera.position.set(0, 0, 0).addScaledVector(right, x).addScaledVector(up, y).addScaledVector(back, z);

@@ -71,5 +71,39 @@ TEST(ViewInBrowser, PlaysBothSkinsSideBySideOnAPhone) {
   EXPECT_LT(distance(seen["quadratic_100"], expected), kSame) << "each body has its own skin, whatever the switch";
 }
 
+TEST(ViewInBrowser, ShadesSmoothlyAcrossSeamsOfAnyMesh) {
+  const CommandFolder folder;
+  // More corners of triangles than 16 bits can count, of fewer vertices.
+  const CommandResult result = folder.run(TETSKIN_DROP, {"--triangles", "24000", "--tets", "300", "--frames", "101",
+                                                         "--every", "100", "--out", "o", "--contact", "cage"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json seen = seenIn(folder, "o/view.html", "640,480");
+  ASSERT_TRUE(seen.is_object());
+  const nlohmann::json& serpent = seen["shading"][0];
+  EXPECT_GT(serpent["flat"], 30000);
+  EXPECT_GT(serpent["smooth"], 0.999);
+  EXPECT_LT(serpent["agreement"], 0.9) << "it is shaded flat";
+}
+
+TEST(ViewInBrowser, KeepsCreasesAndShowsASoftShadowOnAGrid) {
+  const CommandFolder folder;
+  folder.write("box.obj",
+               "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\n"
+               "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n");
+  const CommandResult result = folder.run(TETSKIN_DROP, {"--mesh", folder.path("box.obj"), "--tets", "100", "--frames",
+                                                         "101", "--every", "100", "--out", "o"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json seen = seenIn(folder, "o/view.html", "640,480");
+  ASSERT_TRUE(seen.is_object());
+  EXPECT_GT(seen["shading"][0]["agreement"], 0.999);
+  EXPECT_NEAR(seen["grid"]["all"], 10, 1) << "in a body's size";
+  EXPECT_NEAR(seen["grid"]["clear"], 2, 1) << "in a body's size";
+  EXPECT_GT(seen["high"]["dark"], 30);
+  EXPECT_GT(seen["high"]["size"], 0.01);
+  // Of a shadow with sharp edges, 0.03 of the pixels are neither light nor dark, wherever the box is.
+  EXPECT_GT(seen["high"]["half"], 0.1) << "the shadow is sharp";
+  EXPECT_LT(seen["low"]["half"], 0.85 * seen["high"]["half"].get<double>()) << "the shadow is as soft where it lies";
+}
+
 }  // namespace
 }  // namespace tetskin

@@ -54,6 +54,82 @@ function positions(player) {
   return all;
 }
 
+/** How a body is shaded as it starts. smooth: the share of edges, of those flatter than 45 degrees, across which
+    normals do not change; agreement: the least cosine of the angle between a triangle and a normal at its corners. */
+function shading({drawn, positions}) {
+  const {triangles, index, normals} = drawn, vector = (array, v) => new THREE.Vector3().fromArray(array, 3 * v);
+  const size = new THREE.Box3().setFromArray(positions).getSize(new THREE.Vector3()), unit = 1e-4 * size.length();
+  const place = v => vector(positions, v).divideScalar(unit).round().toArray().join();
+  const normalAt = corner => vector(normals, index[corner]).normalize(), edges = new Map();
+  let flat = 0, smooth = 0, agreement = 1;
+  for (let at = 0; at < triangles.length; at += 3) {
+    const [a, b, c] = [0, 1, 2].map(k => vector(positions, triangles[at + k]));
+    const face = b.sub(a).cross(c.sub(a)).normalize();
+    for (let k = 0; k < 3; ++k) {
+      const from = at + k, to = at + (k + 1) % 3, key = [place(triangles[from]), place(triangles[to])];
+      agreement = Math.min(agreement, face.dot(normalAt(from)));
+      const other = edges.get(key.reverse().join());
+      edges.set(key.reverse().join(), {face, from, to});
+      if (!other || other.face.dot(face) < Math.SQRT1_2) continue;
+      ++flat;
+      smooth += normalAt(from).dot(normalAt(other.to)) > 0.9999 && normalAt(to).dot(normalAt(other.from)) > 0.9999;
+    }
+  }
+  return {flat, smooth: smooth / flat, agreement};
+}
+
+/** The page's floor alone, seen from above: bodies are there for their shadows, and not drawn. */
+class FloorView {
+  constructor(stage) {
+    this.stage = stage;
+    this.gl = stage.renderer.getContext();
+    this.size = sizeOf(stage.bodies[0].positions);
+    this.sun = stage.scene.children.find(child => child.isDirectionalLight);
+    for (const solid of stage.solids) solid.visible = solid.material.alphaMap !== undefined && solid.renderOrder < 0;
+    stage.setVisible(true, 'none');
+    for (const {mesh} of stage.bodies) {
+      for (const material of mesh.material) Object.assign(material, {colorWrite: false, depthWrite: false});
+    }
+    const {x, z} = stage.centre;
+    stage.camera.position.set(x, stage.floorY + 4 * this.size, z);
+    stage.camera.up.set(0, 0, -1);
+    stage.camera.lookAt(x, stage.floorY, z);
+  }
+
+  /** The green of all pixels. */
+  drawn(hasShadow) {
+    const {gl, stage} = this, {drawingBufferWidth: width, drawingBufferHeight: height} = gl;
+    this.sun.castShadow = hasShadow;
+    stage.draw();
+    const data = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
+    return data.filter((value, i) => i % 4 === 1);
+  }
+
+  /** The share of the shadow that is neither light nor all dark; and its size, as a share of the picture. */
+  shadow() {
+    const light = this.drawn(false), shade = this.drawn(true).map((value, i) => light[i] - value);
+    const dark = shade.reduce((most, value) => Math.max(most, value < 128 ? value : 0), 0);
+    const all = shade.filter(value => value < 128 && value > 0.15 * dark);
+    return {half: all.filter(value => value < 0.85 * dark).length / all.length, size: all.length / shade.length, dark};
+  }
+
+  /** How many lines cross a body's size of the floor, and how many of them are clear ones. */
+  gridLines() {
+    const {gl: {drawingBufferWidth: width, drawingBufferHeight: height}, stage, size} = this, samples = [];
+    const pixels = this.drawn(false), z = (Math.floor(stage.centre.z / (0.1 * size)) + 0.5) * 0.1 * size;
+    for (let k = 0; k <= 1000; ++k) {
+      const x = stage.centre.x + size * (0.001 * k - 0.48);
+      const point = new THREE.Vector3(x, stage.floorY, z).project(stage.camera);
+      const column = Math.floor((1 + point.x) / 2 * width), row = Math.floor((1 + point.y) / 2 * height);
+      samples.push(pixels[row * width + column]);
+    }
+    const floor = Math.max(...samples);
+    const runsBelow = grey => samples.filter((value, k) => k > 0 && value < grey && samples[k - 1] >= grey).length;
+    return {all: runsBelow(floor - 4), clear: runsBelow(floor - 14)};
+  }
+}
+
 function report(player) {
   const found = {}, images = [], skin = document.getElementById('skin');
   player.play(false);
@@ -75,6 +151,15 @@ function report(player) {
   const bar = document.querySelector('footer').getBoundingClientRect();
   found.fits = bar.left >= 0 && bar.right <= innerWidth && bar.bottom <= innerHeight &&
     document.documentElement.scrollWidth <= innerWidth;
+  player.seek(0);
+  found.shading = player.stage.bodies.map(shading);
+  if (player.stage.solids.length > 0) {
+    const view = new FloorView(player.stage);
+    found.grid = view.gridLines();
+    found.high = view.shadow();
+    player.seek(player.data.moments - 1);
+    found.low = view.shadow();
+  }
   return found;
 }
 

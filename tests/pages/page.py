@@ -54,8 +54,11 @@ def anchors(text):
 
 
 def links(text):
-    """Targets of links and pictures, with their line numbers."""
+    """Targets of links and pictures, also of those in HTML tags, with their line numbers."""
     found = []
     for number, line in enumerate(re.sub(r"`[^`\n]*`", "", prose(text)).splitlines(), 1):
         found += [(number, target) for target in re.findall(r"\]\(([^)\s]+)\)", line)]
+        for name, value in re.findall(r"""\s(src|srcset|href)=["']([^"']*)["']""", " " + line):
+            choices = value.split(",") if name == "srcset" else [value]
+            found += [(number, choice.split()[0]) for choice in choices if choice.strip()]
     return found
