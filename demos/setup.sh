@@ -7,8 +7,10 @@ library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-de
 drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
 demo_packages=(libbenchmark-dev python3-matplotlib)
 test_packages=(libgtest-dev)
-check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen chromium libegl-dev libgl1-mesa-dri
+check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen libegl-dev libgl1-mesa-dri
   qemu-user-static)
+# Another browser of its kind will do: Ubuntu has none as a package.
+if ! command -v chromium-browser google-chrome >/dev/null; then check_packages+=(chromium); fi
 
 # Installs the packages that are missing, and prints their names first. Without root or sudo, or without apt, prints
 # what to do.

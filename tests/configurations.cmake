@@ -103,6 +103,11 @@ tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 4 OPTIONS 
   -DTETSKIN_DEMOS=OFF)
 set_tests_properties(configuration.fuzzed PROPERTIES LABELS "fuzz;full")
 
+# Files without assimp, which is not even looked for.
+tetskin_test_configuration(without_assimp LABELS full TARGET test_io TESTS ^io OPTIONS -DCMAKE_BUILD_TYPE=Debug
+  "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_ASSIMP=OFF -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DTETSKIN_BULLET=OFF
+  -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_DEMOS=OFF)
+
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 set(labels_full "config;full")
 function(tetskin_test_consumer name)
@@ -113,6 +118,16 @@ function(tetskin_test_consumer name)
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error)
   set_tests_properties(consumer.${name} PROPERTIES TIMEOUT 1200 LABELS "${labels_full}")
 endfunction()
+
+# The package of io without assimp: neither its users nor their CMake need it.
+set(own_formats ${PROJECT_BINARY_DIR}/consumers/own_formats_prefix)
+add_test(NAME consumer.own_formats_install
+  COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR}/configurations/without_assimp --prefix ${own_formats})
+set_tests_properties(configuration.without_assimp PROPERTIES FIXTURES_SETUP built_without_assimp)
+set_tests_properties(consumer.own_formats_install PROPERTIES FIXTURES_SETUP own_formats
+  FIXTURES_REQUIRED built_without_assimp LABELS "${labels_full}")
+tetskin_test_consumer(own_formats -DCMAKE_PREFIX_PATH=${own_formats} -DCONSUME=io)
+set_tests_properties(consumer.own_formats PROPERTIES FIXTURES_REQUIRED own_formats)
 
 if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
   # The installation that the other tests use is made as the README says, without any earlier build.
@@ -256,6 +271,8 @@ if(python_with_matplotlib)
 endif()
 tetskin_test_style(layers ${CMAKE_COMMAND} -P tests/style/layers.cmake)
 tetskin_test_style(portable ${CMAKE_COMMAND} -P tests/style/portable.cmake)
+tetskin_test_style(workflow tests/platforms/workflow)
+set_tests_properties(style.workflow PROPERTIES SKIP_RETURN_CODE 77)  # without npm, or without a registry for it
 if(TARGET docs)
   tetskin_test_style(docs ${DOXYGEN_EXECUTABLE} ${PROJECT_BINARY_DIR}/plugin/Doxyfile.docs)
 endif()

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#ifndef _WIN32  // which has no such limit
 #include <sys/resource.h>
 #include <tetskin/core/types.h>
 
@@ -25,3 +26,4 @@ Status onAFullDisk(rlim_t bytes, Write&& write) {
 }
 
 }  // namespace tetskin::test
+#endif

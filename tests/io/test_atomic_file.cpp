@@ -3,13 +3,15 @@
 #include "full_disk.h"
 #include "temp_folder.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 #include <tetskin/io/src/text/atomic_file.h>
-#include <unistd.h>
 
 #include <filesystem>
+#ifndef _WIN32
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#endif
 
 namespace tetskin::io {
 namespace {
@@ -36,6 +38,7 @@ TEST(WriteFile, RefusesAFolder) {
   expectError(writeFile(folder.path(), "new"), StatusCode::FileNotWritable, {folder.path(), "is a folder"});
 }
 
+#ifndef _WIN32  // links need a right there, and neither these pipes nor this limit exist
 TEST(WriteFile, WritesThroughASymbolicLink) {
   const TempFolder folder;
   const std::string target = folder.write("target.txt", "old");
@@ -68,6 +71,7 @@ TEST(WriteFile, KeepsTheOldFileIfTheNewOneDoesNotFit) {
   EXPECT_EQ(TempFolder::read(path), "old");
   EXPECT_EQ(folder.fileCount(), 1u);
 }
+#endif
 
 }  // namespace
 }  // namespace tetskin::io

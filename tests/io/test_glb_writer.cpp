@@ -337,10 +337,12 @@ TEST(GlbWriter, LeavesTheOldFileUntilTheNewOneIsComplete) {
   };
   { const GlbWriter abandoned = begun(); }
   EXPECT_EQ(TempFolder::read(path), "old");
+#ifndef _WIN32
   GlbWriter writer = begun();
   const Status status = onAFullDisk(1000, [&] { return writer.finish(); });
   expectError(status, StatusCode::FileNotWritable, {path, "cannot be written"});
   EXPECT_EQ(TempFolder::read(path), "old");
+#endif
   EXPECT_EQ(folder.fileCount(), 1u);
 }
 

@@ -193,7 +193,7 @@ TETSKIN_BULLET_API Result<EmbedReport> bindRenderNodes(btSoftBody& body);
 class BulletParallelFor : public ParallelFor {
  public:
   void run(std::size_t count, Task task) override {
-    assert(count <= static_cast<std::size_t>(std::numeric_limits<int>::max()));
+    assert(count <= static_cast<std::size_t>((std::numeric_limits<int>::max)()));
     const Body body(task);
     // Not btParallelFor itself: it asserts that there is a scheduler, and, without BT_THREADSAFE, that it is not
     // called.

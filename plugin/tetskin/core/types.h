@@ -207,7 +207,8 @@ struct Limits {
 /// Largest absolute coordinate of the points in a box, which must not be empty; in the box's units.
 inline double maxCoordinate(const Box3& box) {
   assert(!box.isEmpty());
-  return std::max(box.max().maxCoeff(), -box.min().minCoeff());
+  // In brackets, as Windows' header defines macros of these names.
+  return (std::max)((box.max)().maxCoeff(), -(box.min)().minCoeff());
 }
 
 /// Index of the first point with a coordinate that is not finite or beyond Limits::kMaxCoordinate, or `points.size()`.

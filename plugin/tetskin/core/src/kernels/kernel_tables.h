@@ -11,6 +11,10 @@ namespace tetskin::kernels {
 
 template <class Scalar>
 const Table<Scalar>& tableInUse();
+template <>
+const Table<float>& tableInUse();
+template <>
+const Table<double>& tableInUse();
 SelectEntries selectInUse();
 
 }  // namespace tetskin::kernels

@@ -131,5 +131,9 @@ TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const ElasticTable<float> elasticFloat;
 /// The table for the processor's `instructionSet()`.
 template <class S>
 const ElasticTable<S>& elasticInUse();
+template <>
+const ElasticTable<float>& elasticInUse();
+template <>
+const ElasticTable<double>& elasticInUse();
 
 }  // namespace tetskin::kernels

@@ -8,7 +8,8 @@
 
 namespace tetskin::io {
 
-/// Reads any format that assimp reads, as `loadMesh` describes. Throws nothing.
+/// Reads any format that assimp reads, as `loadMesh` describes. In a build without assimp: UnsupportedFormat, if there
+/// is such a file. Throws nothing.
 Result<TriangleMesh> readWithAssimp(const std::string& path);
 
 }  // namespace tetskin::io

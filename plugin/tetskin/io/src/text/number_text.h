@@ -10,6 +10,15 @@
 #include <limits>
 #include <string_view>
 #include <system_error>
+#ifndef __cpp_lib_to_chars  // libc++, which has had no std::from_chars of floating-point numbers for long
+#include <stdlib.h>
+#include <string>
+#if __has_include(<xlocale.h>)
+#include <xlocale.h>  // macOS
+#else
+#include <locale.h>
+#endif
+#endif
 
 namespace tetskin::io {
 
@@ -44,6 +53,7 @@ inline bool isLarge(std::string_view token) {
 /// "nan". Correctly rounded, whatever the locale. A number too large for double is infinite, of its sign, and one
 /// too small is 0. Returns false, with `value` unspecified, if the token is not a number.
 inline bool parseDouble(std::string_view token, double& value) {
+#ifdef __cpp_lib_to_chars
   const char* first = token.data();
   const char* last = first + token.size();
   // std::from_chars takes no plus sign.
@@ -55,6 +65,16 @@ inline bool parseDouble(std::string_view token, double& value) {
     value = !isLarge(token) ? 0.0 : *first == '-' ? -huge : huge;
   }
   return true;
+#else
+  // strtod reads more than std::from_chars: numbers after blanks, and in hexadecimal.
+  if (token.empty() || token.find_first_of(" \t\n\v\f\rxX") != token.npos || token.find('\0') != token.npos)
+    return false;
+  static const locale_t kPlain = newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string text(token);
+  char* end = nullptr;
+  value = strtod_l(text.c_str(), &end, kPlain);
+  return end == text.c_str() + text.size();
+#endif
 }
 
 /// Memory that `formatNumber` needs: the longest double is -2.2250738585072014e-308.
