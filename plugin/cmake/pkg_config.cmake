@@ -30,7 +30,7 @@ if(TARGET tetskin_bullet)
   get_target_property(bullet_includes tetskin::bullet_physics INTERFACE_INCLUDE_DIRECTORIES)
   get_target_property(bullet_libraries tetskin::bullet_physics INTERFACE_LINK_LIBRARIES)
   foreach(folder ${bullet_includes})
-    list(APPEND pc_definitions -I${folder})
+    list(APPEND pc_definitions "-isystem ${folder}")  # as CMake does it: Bullet's headers are full of warnings
   endforeach()
   foreach(library ${bullet_libraries})
     set(type FILE)
