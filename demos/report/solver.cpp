@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "report/solver.h"
+
+#include <algorithm>
+
+#include "report/material.h"
+#include "scenes/input_error.h"
+
+namespace tetskin::report {
+namespace {
+
+constexpr const char* kAll = "all";
+
+bool isImplicit(Solver solver) {
+  return solver == Solver::BulletNeoHookeanImplicit || solver == Solver::BulletLinearImplicit;
+}
+
+void requireKnown(const std::string& name) {
+  const auto hasName = [&](Solver solver) { return name == nameOf(solver); };
+  if (name == kAll || std::any_of(kSolvers.begin(), kSolvers.end(), hasName)) return;
+  std::string known;
+  for (const Solver solver : kSolvers) known += std::string(nameOf(solver)) + ", ";
+  throw scenes::InputError("--solvers: there is no '" + name + "'; known: " + known + kAll);
+}
+
+}  // namespace
+
+const char* nameOf(Solver solver) {
+  constexpr const char* kNames[] = {"tetskin",
+                                    "xpbd",
+                                    "bullet_neo_hookean",
+                                    "bullet_linear",
+                                    "bullet_neo_hookean_implicit",
+                                    "bullet_linear_implicit"};
+  return kNames[static_cast<std::size_t>(solver)];
+}
+
+bool isBullets(Solver solver) {
+  return solver != Solver::Tetskin && solver != Solver::Xpbd;
+}
+
+std::vector<Solver> solversOf(const std::vector<std::string>& names) {
+  std::for_each(names.begin(), names.end(), requireKnown);
+  const auto named = [&](const char* name) { return std::count(names.begin(), names.end(), name) > 0; };
+  std::vector<Solver> solvers;
+  std::copy_if(kSolvers.begin(), kSolvers.end(), std::back_inserter(solvers),
+               [&](Solver solver) { return named(kAll) || named(nameOf(solver)); });
+  return solvers;
+}
+
+scenes::SceneOptions withSolver(scenes::SceneOptions options, Solver solver, int substeps) {
+  options.substeps = substeps;
+  if (!isBullets(solver)) return options;
+  const bool linear = solver == Solver::BulletLinear || solver == Solver::BulletLinearImplicit;
+  options.force = linear ? scenes::Force::LinearElasticity : scenes::Force::NeoHookean;
+  options.body.implicit = isImplicit(solver);
+  return options;
+}
+
+std::vector<double> dampings(const scenes::SceneOptions& material, Solver solver, int substeps) {
+  std::vector<double> seconds = {material.body.stiffnessDamping};
+  if (solver == Solver::Xpbd || isImplicit(solver)) seconds.push_back(0.0);
+  const double least = stableDamping(material.frameSeconds / substeps);
+  if (isBullets(solver) && !isImplicit(solver) && least < seconds.front()) seconds.push_back(least);
+  return seconds;
+}
+
+}  // namespace tetskin::report
