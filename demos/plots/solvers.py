@@ -7,10 +7,12 @@ import io
 
 from look import BLUE, GREEN, GREY, ORANGE, PINK, SKY, plt
 
-NAMES = {"tetskin": "tetskin", "xpbd": "XPBD, best constants", "bullet_neo_hookean": "Bullet neo-Hookean, explicit",
+NAMES = {"tetskin": "tetskin", "xpbd": "XPBD, fitted", "xpbd_unfitted": "XPBD, not fitted",
+         "bullet_neo_hookean": "Bullet neo-Hookean, explicit",
          "bullet_linear": "Bullet linear, explicit", "bullet_neo_hookean_implicit": "Bullet neo-Hookean, implicit",
          "bullet_linear_implicit": "Bullet linear, implicit"}
-LOOKS = {"tetskin": (BLUE, "o", "-"), "xpbd": (ORANGE, "s", "--"), "bullet_neo_hookean": (GREY, "x", "-"),
+LOOKS = {"tetskin": (BLUE, "o", "-"), "xpbd": (ORANGE, "s", "--"), "xpbd_unfitted": ("#000000", "D", "--"),
+         "bullet_neo_hookean": (GREY, "x", "-"),
          "bullet_linear": (GREEN, "+", "-"), "bullet_neo_hookean_implicit": (PINK, "v", ":"),
          "bullet_linear_implicit": (SKY, "^", ":")}
 COLUMNS = ("solver", "tets", "substeps", "ms per frame", "with the skin (ms)", "error (% of the motion)",
@@ -27,7 +29,7 @@ def percent(share):
 
 
 def volumes_of(row):
-    if row["integrator"] != "xpbd":
+    if not row["integrator"].startswith("xpbd"):
         return ""
     return {0: "free", -1: "rigid"}.get(row["xpbd_volume_stiffness"], f"{row['xpbd_volume_stiffness']:.2g}")
 
@@ -41,7 +43,7 @@ def cells(row):
         errors = [percent(motion), percent(row["error_total_rms"]), percent(by_solver)]
     return [row["integrator"], f"{row['tets']:.0f}", f"{row['substeps']:.0f}", f"{row['simulation_ms']:.3g}",
             f"{row['total_ms']:.3g}", *errors, f"{row['damping_ms']:.2g}",
-            f"{row['xpbd_stiffness']:.3g}" if row["integrator"] == "xpbd" else "", volumes_of(row)]
+            f"{row['xpbd_stiffness']:.3g}" if row["integrator"].startswith("xpbd") else "", volumes_of(row)]
 
 
 def rows_of(scene):
@@ -62,8 +64,8 @@ def solvers_text(scene):
     for row in rows_of(scene):
         text += "| " + " | ".join([NAMES[row["integrator"]], *cells(row)[1:]]) + " |\n"
     text += ("\nThe same cage, masses, pins, gravity and Young's modulus in all rows. Of the motion: over the RMS distance of the "
-             "reference's surface from rest. By the solver: from the same cage in the reference's substeps, by tetskin. XPBD has "
-             "the constants with the least error in these substeps: *stiffness* over that of an isotropic lattice of springs "
+             "reference's surface from rest. By the solver: from the same cage in the reference's substeps, by tetskin. XPBD, "
+             "fitted, has the constants with the least error in these substeps, else those that follow from the material: *stiffness* over that of an isotropic lattice of springs "
              "with the material's Young's modulus, *volumes* over the material's first Lame parameter.\n")
     for row in scene["rows"]:
         if row["interpolation"] == "reference":

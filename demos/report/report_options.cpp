@@ -82,10 +82,11 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
       "filled (weighted by how much of the mesh each tet contains), calibrated (elements duplicated, weighted "
       "and calibrated), all",
       "same,calibrated");
-  line.addWords("--solvers", solvers_,
-                "Compare solvers in calibrated cages, in sag, instead of kinds of cages; a list of: tetskin, xpbd, "
-                "bullet_neo_hookean, bullet_linear, bullet_neo_hookean_implicit, bullet_linear_implicit, all",
-                "none");
+  line.addWords(
+      "--solvers", solvers_,
+      "Compare solvers in calibrated cages, in sag, instead of kinds of cages; a list of: tetskin, xpbd, "
+      "xpbd_unfitted, bullet_neo_hookean, bullet_linear, bullet_neo_hookean_implicit, bullet_linear_implicit, all",
+      "none");
   line.addCounts("--xpbd-substeps", o.xpbdSubsteps, "a list, for --solvers");
   line.addCounts("--bullet-substeps", o.bulletSubsteps, "a list, for --solvers; of those that explode, rows say so");
   line.addCount("--repetitions", o.repetitions, "Runs of each solver, in turn, of which medians are taken", 1000);

@@ -30,7 +30,7 @@ struct ReportOptions {
   /// Not empty: these solvers in the recommended kind of cage, instead of kinds of cages. `substeps` are tetskin's.
   std::vector<Solver> solvers;
   std::vector<std::size_t> xpbdSubsteps = {4, 10, 20, 50};
-  std::vector<std::size_t> bulletSubsteps = {1, 2, 4, 8, 16, 32};
+  std::vector<std::size_t> bulletSubsteps = {1, 2, 4, 8};
   std::size_t repetitions = 3;   ///< of each run of a solver that is timed
   bool bullet = false;           ///< bodies with Bullet's forces instead of the library's
   bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones

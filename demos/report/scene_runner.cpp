@@ -413,23 +413,23 @@ std::vector<SceneRunner::Setting> SceneRunner::settingsOf(const Job& job, const 
   std::vector<Setting> settings;
   for (const Solver solver : options_.solvers) {
     const auto& counts = solver == Solver::Tetskin ? options_.substeps
-                         : solver == Solver::Xpbd  ? options_.xpbdSubsteps
+                         : isXpbd(solver)          ? options_.xpbdSubsteps
                                                    : options_.bulletSubsteps;
     for (const std::size_t substeps : counts) {
       const auto options = withSolver(optionsOf(job, cage, 0), solver, static_cast<int>(substeps));
-      settings.push_back({solver, options, {}});
+      settings.push_back({solver, options, constantsOf(options)});
     }
   }
   return settings;
 }
 
 Simulation SceneRunner::simulated(const Setting& setting, const Cage& cage, const XpbdModel& model) const {
-  if (setting.solver == Solver::Xpbd) return simulateXpbd(model.with(setting.constants), setting.options, [] {});
+  if (isXpbd(setting.solver)) return simulateXpbd(model.with(setting.constants), setting.options, [] {});
   return simulate(entry_, cage, setting.options, model_.mesh, {}, [] {});
 }
 
 void SceneRunner::choose(Setting& setting, const Cage& cage, const XpbdModel& model, const SampledErrors& errors) {
-  if (setting.solver == Solver::Tetskin) return;
+  if (setting.solver == Solver::Tetskin || setting.solver == Solver::XpbdUnfitted) return;
   const auto errorOf = [&](const Setting& tried) {
     const Simulation simulation = simulated(tried, cage, model);
     return simulation.finite ? errors.rms(simulation.trajectory) : HUGE_VAL;
@@ -500,7 +500,7 @@ std::vector<Row> SceneRunner::solverRows(const Job& job, const std::function<voi
     motion.row.finite = simulations[k].finite;
     motion.row.frames = static_cast<double>(motion.nodes.size() - 1);
     motion.row.dampingMs = 1e3 * setting.options.body.stiffnessDamping;
-    if (setting.solver == Solver::Xpbd) {
+    if (isXpbd(setting.solver)) {
       motion.row.xpbdStiffness = setting.constants.stiffness;
       motion.row.xpbdVolume = std::isinf(setting.constants.volume) ? -1.0 : setting.constants.volume;
     }

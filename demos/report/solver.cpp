@@ -10,18 +10,18 @@
 namespace tetskin::report {
 namespace {
 
-constexpr const char* kAll = "all";
+constexpr const char* kEvery = "all";
 
 bool isImplicit(Solver solver) {
   return solver == Solver::BulletNeoHookeanImplicit || solver == Solver::BulletLinearImplicit;
 }
 
-void requireKnown(const std::string& name) {
+void requireSolver(const std::string& name) {
   const auto hasName = [&](Solver solver) { return name == nameOf(solver); };
-  if (name == kAll || std::any_of(kSolvers.begin(), kSolvers.end(), hasName)) return;
+  if (name == kEvery || std::any_of(kSolvers.begin(), kSolvers.end(), hasName)) return;
   std::string known;
   for (const Solver solver : kSolvers) known += std::string(nameOf(solver)) + ", ";
-  throw scenes::InputError("--solvers: there is no '" + name + "'; known: " + known + kAll);
+  throw scenes::InputError("--solvers: there is no '" + name + "'; known: " + known + kEvery);
 }
 
 }  // namespace
@@ -29,6 +29,7 @@ void requireKnown(const std::string& name) {
 const char* nameOf(Solver solver) {
   constexpr const char* kNames[] = {"tetskin",
                                     "xpbd",
+                                    "xpbd_unfitted",
                                     "bullet_neo_hookean",
                                     "bullet_linear",
                                     "bullet_neo_hookean_implicit",
@@ -36,16 +37,20 @@ const char* nameOf(Solver solver) {
   return kNames[static_cast<std::size_t>(solver)];
 }
 
+bool isXpbd(Solver solver) {
+  return solver == Solver::Xpbd || solver == Solver::XpbdUnfitted;
+}
+
 bool isBullets(Solver solver) {
-  return solver != Solver::Tetskin && solver != Solver::Xpbd;
+  return solver != Solver::Tetskin && !isXpbd(solver);
 }
 
 std::vector<Solver> solversOf(const std::vector<std::string>& names) {
-  std::for_each(names.begin(), names.end(), requireKnown);
+  std::for_each(names.begin(), names.end(), requireSolver);
   const auto named = [&](const char* name) { return std::count(names.begin(), names.end(), name) > 0; };
   std::vector<Solver> solvers;
   std::copy_if(kSolvers.begin(), kSolvers.end(), std::back_inserter(solvers),
-               [&](Solver solver) { return named(kAll) || named(nameOf(solver)); });
+               [&](Solver solver) { return named(kEvery) || named(nameOf(solver)); });
   return solvers;
 }
 

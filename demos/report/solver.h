@@ -13,21 +13,24 @@ namespace tetskin::report {
 /// What simulates the same cage, of the same material, in the comparison of solvers.
 enum class Solver {
   Tetskin,
-  Xpbd,              ///< hand-written: see measure/xpbd.h
+  Xpbd,              ///< hand-written (see measure/xpbd.h), with the constants that fit this scene best
+  XpbdUnfitted,      ///< the same with constants that follow from the material
   BulletNeoHookean,  ///< Bullet's forces, explicit
   BulletLinear,
   BulletNeoHookeanImplicit,  ///< the same, one Newton step per substep
   BulletLinearImplicit,
 };
-constexpr std::array<Solver, 6> kSolvers = {Solver::Tetskin,
+constexpr std::array<Solver, 7> kSolvers = {Solver::Tetskin,
                                             Solver::Xpbd,
+                                            Solver::XpbdUnfitted,
                                             Solver::BulletNeoHookean,
                                             Solver::BulletLinear,
                                             Solver::BulletNeoHookeanImplicit,
                                             Solver::BulletLinearImplicit};
 
-/// "tetskin", "xpbd", "bullet_neo_hookean", "bullet_linear", and these two with "_implicit".
+/// "tetskin", "xpbd", "xpbd_unfitted", "bullet_neo_hookean", "bullet_linear", and these two with "_implicit".
 const char* nameOf(Solver solver);
+bool isXpbd(Solver solver);
 bool isBullets(Solver solver);
 
 /// The solvers with these names, in the order above and without repetitions; "all" means all of them. Throws

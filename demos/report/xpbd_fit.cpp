@@ -22,6 +22,15 @@ constexpr double kFinestStep = 0.125;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kVolumes[] = {0.0, 1.0, kInfinite};
 
+struct Lame {
+  double lambda, mu;
+};
+
+Lame lameOf(const scenes::SceneOptions& options) {
+  const double young = *options.body.youngsModulus, poisson = options.body.poissonRatio;
+  return {young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 + 2.0 * poisson)};
+}
+
 double volumeOf(const TetMesh& mesh, const Tet& tet) {
   const Eigen::Vector3d& origin = mesh.nodes[tet[0]];
   return std::abs((mesh.nodes[tet[1]] - origin).cross(mesh.nodes[tet[2]] - origin).dot(mesh.nodes[tet[3]] - origin)) /
@@ -29,6 +38,13 @@ double volumeOf(const TetMesh& mesh, const Tet& tet) {
 }
 
 }  // namespace
+
+XpbdConstants constantsOf(const scenes::SceneOptions& options) {
+  const Lame material = lameOf(options);
+  // Young's modulus of a lattice is 2.5 times each of its Lame parameters.
+  const double stiffness = 2.5 * material.mu / *options.body.youngsModulus;
+  return {stiffness, std::max(0.0, 1.0 - material.mu / material.lambda), options.body.stiffnessDamping};
+}
 
 XpbdModel::XpbdModel(const scenes::SceneEntry& entry, const Cage& cage, const scenes::SceneOptions& options) {
   const std::unique_ptr<scenes::Scene> scene = entry.make(cage, options);
@@ -38,8 +54,7 @@ XpbdModel::XpbdModel(const scenes::SceneEntry& entry, const Cage& cage, const sc
     body_.nodes.push_back(toEigen(body.m_nodes[n].m_x));
     body_.inverseMasses.push_back(static_cast<double>(body.m_nodes[n].m_im));
   }
-  const double young = *options.body.youngsModulus, poisson = options.body.poissonRatio;
-  const double lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+  const double young = *options.body.youngsModulus, lambda = lameOf(options).lambda;
   const std::vector<double> scale = withCageDefaults(cage, options.body).stiffnessScale;
   std::map<std::pair<int, int>, double> scaledVolumes;  // by edge
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {

@@ -26,6 +26,10 @@ struct XpbdConstants {
   double damping = 0.0;  ///< seconds
 };
 
+/// The constants that follow from a material. Springs give a lattice the second Lame parameter of a Poisson ratio of
+/// 1/4, and as large a first one; volumes add what the material has more.
+XpbdConstants constantsOf(const scenes::SceneOptions& options);
+
 /// A scene's body, for XPBD. Masses, pins and gravity are those of the scene's body in Bullet. An edge's stiffness is
 /// that of the tets around it: their volume times their factor of stiffness, over its squared length.
 class XpbdModel {
