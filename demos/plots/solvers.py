@@ -8,13 +8,12 @@ import io
 from look import BLUE, GREEN, GREY, ORANGE, PINK, SKY, plt
 
 NAMES = {"tetskin": "tetskin", "xpbd": "XPBD, fitted", "xpbd_unfitted": "XPBD, not fitted",
-         "bullet_neo_hookean": "Bullet neo-Hookean, explicit",
-         "bullet_linear": "Bullet linear, explicit", "bullet_neo_hookean_implicit": "Bullet neo-Hookean, implicit",
+         "bullet_neo_hookean": "Bullet neo-Hookean, explicit", "bullet_linear": "Bullet linear, explicit",
+         "bullet_neo_hookean_implicit": "Bullet neo-Hookean, implicit",
          "bullet_linear_implicit": "Bullet linear, implicit"}
 LOOKS = {"tetskin": (BLUE, "o", "-"), "xpbd": (ORANGE, "s", "--"), "xpbd_unfitted": ("#000000", "D", "--"),
-         "bullet_neo_hookean": (GREY, "x", "-"),
-         "bullet_linear": (GREEN, "+", "-"), "bullet_neo_hookean_implicit": (PINK, "v", ":"),
-         "bullet_linear_implicit": (SKY, "^", ":")}
+         "bullet_neo_hookean": (GREY, "x", "-"), "bullet_linear": (GREEN, "+", "-"),
+         "bullet_neo_hookean_implicit": (PINK, "v", ":"), "bullet_linear_implicit": (SKY, "^", ":")}
 COLUMNS = ("solver", "tets", "substeps", "ms per frame", "with the skin (ms)", "error (% of the motion)",
            "error (% of the box's diagonal)", "by the solver (% of the motion)", "damping (ms)", "stiffness", "volumes")
 
@@ -96,12 +95,14 @@ def draw_table(rows, title):
             axes.annotate(row["substeps"], point, fontsize=8, color=colour, xytext=(3, 4), textcoords="offset points")
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter("{x:g} %")
-    axes.yaxis.set_minor_formatter("")
+    for axis, limits, unit in ((axes.xaxis, axes.get_xlim(), ""), (axes.yaxis, axes.get_ylim(), " %")):
+        ticks = [digit * 10.0 ** power for power in range(-3, 5) for digit in (1, 2, 5)]
+        ticks = [tick for tick in ticks if limits[0] <= tick <= limits[1]]
+        axis.set_ticks(ticks, [f"{tick:,g}{unit}" for tick in ticks])
+        axis.set_ticks([], minor=True)
     axes.set_xlabel("milliseconds per frame of 1/60 s, simulation alone (numbers: substeps)")
     axes.set_ylabel("error, RMS, share of the motion")
     axes.set_title(title, fontsize=11, loc="left")
-    axes.grid(True, which="both", color="#dddddd", linewidth=0.6)
-    axes.legend(frameon=False, fontsize=9)
+    axes.grid(True, color="#dddddd", linewidth=0.6)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9)
     return figure

@@ -16,6 +16,17 @@ bool isImplicit(Solver solver) {
   return solver == Solver::BulletNeoHookeanImplicit || solver == Solver::BulletLinearImplicit;
 }
 
+/// Bullet's neo-Hookean force is that of B. Smith et al., "Stable Neo-Hookean Flesh Simulation", 2018, whose parameters
+/// are not Lame's: with these in their place, bodies are too soft by a quarter in shear. Sets the material with which
+/// small strains are those of the one that was asked for, as that paper gives it.
+void matchSmallStrains(SoftBodyOptions& body) {
+  const double young = *body.youngsModulus, poisson = body.poissonRatio;
+  const double mu = young / (2.0 + 2.0 * poisson), lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
+  const double forceMu = 4.0 / 3.0 * mu, forceLambda = lambda + 5.0 / 6.0 * mu;
+  body.poissonRatio = forceLambda / (2.0 * (forceLambda + forceMu));
+  body.youngsModulus = 2.0 * forceMu * (1.0 + body.poissonRatio);
+}
+
 void requireSolver(const std::string& name) {
   const auto hasName = [&](Solver solver) { return name == nameOf(solver); };
   if (name == kEvery || std::any_of(kSolvers.begin(), kSolvers.end(), hasName)) return;
@@ -60,6 +71,7 @@ scenes::SceneOptions withSolver(scenes::SceneOptions options, Solver solver, int
   const bool linear = solver == Solver::BulletLinear || solver == Solver::BulletLinearImplicit;
   options.force = linear ? scenes::Force::LinearElasticity : scenes::Force::NeoHookean;
   options.body.implicit = isImplicit(solver);
+  if (!linear) matchSmallStrains(options.body);
   return options;
 }
 
