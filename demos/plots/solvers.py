@@ -83,10 +83,16 @@ def draw_solvers(scene, title):
     return draw_table(list(csv.DictReader(io.StringIO(solvers_csv(scene)))), title)
 
 
+def is_drawn(row):
+    """Not what has exploded, nor what is farther off than a body that does not move at all."""
+    error = row["error (% of the motion)"]
+    return error != "explodes" and float(error) < 100
+
+
 def draw_table(rows, title):
     figure, axes = plt.subplots(figsize=(8, 4.4), layout="constrained")
     for name, (colour, marker, style) in LOOKS.items():
-        own = [row for row in rows if row["solver"] == name and row["error (% of the motion)"] != "explodes"]
+        own = [row for row in rows if row["solver"] == name and is_drawn(row)]
         if not own:
             continue
         points = [(float(row["ms per frame"]), float(row["error (% of the motion)"])) for row in own]
