@@ -10,7 +10,8 @@ For every scene: a table, orders, the reference's own error, and the cheapest se
 SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_substeps.png, errors in space and in time over the
 substeps; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
 deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
-installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is.
+installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is. Of a comparison of solvers (--solvers): one
+table, which is SCENE_solvers.csv, too, and SCENE_solvers.png.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
 """
 import argparse
@@ -27,6 +28,7 @@ from matplotlib.lines import Line2D
 
 sys.dont_write_bytecode = True  # leaves nothing in the repository
 from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
+from solvers import draw_solvers, is_of_solvers, solvers_csv, solvers_text  # noqa: E402
 
 COLOURS = {"linear": BLUE, "quadratic": ORANGE, "bullet": GREY}
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
@@ -187,6 +189,9 @@ def tables(results, target):
         integrator = "" if scene["integrator"] == "none" else f", {scene['integrator']}"
         against = any(row["speedup_against_bullet"] > 0 for row in scene["rows"])
         text += f"\n## {scene['scene']}{integrator}\n\n"
+        if is_of_solvers(scene):
+            text += solvers_text(scene)
+            continue
         text += HEAD.format(more=AGAINST if against else "", lines="---|---|" if against else "")
         text += "".join(table_line(row, scene, against) for row in scene["rows"])
         if against:
@@ -478,6 +483,9 @@ def draw(scene, model, arguments, folder):
     integrated = scene["integrator"] != "none"
     base = f"{scene['scene']}_{scene['integrator']}" if integrated else scene["scene"]
     name = f"{model}, {scene['integrator']}" if integrated else model
+    if is_of_solvers(scene):
+        yield save(draw_solvers(scene, f"{title_of(scene)} ({model})"), folder, f"{scene['scene']}_solvers")
+        return
     yield save(error_against_time(scene, name), folder, base)
     if series_in_time(scene):
         yield save(error_over_substeps(scene, name), folder, f"{base}_substeps")
@@ -517,6 +525,10 @@ def main():
     said = (lambda *words: None) if arguments.quiet else (lambda *words: print(*words, flush=True))
     said(text)
     said(folder / "error_vs_time.md")
+    for scene in filter(is_of_solvers, results["scenes"]):
+        path = folder / f"{scene['scene']}_solvers.csv"
+        path.write_text(solvers_csv(scene), encoding="utf-8")
+        said(path)
     for scene in results["scenes"]:
         for path in draw(scene, Path(results["model"]).stem, arguments, folder):
             said(path)

@@ -40,6 +40,7 @@ double orderOf(double coarseError, double fineError, double coarse, double fine)
 std::vector<std::vector<Row>> seriesInTime(const std::vector<Row>& rows) {
   std::map<std::tuple<double, std::string, std::string>, std::map<double, Row>> found;
   for (const Row& row : rows) {
+    if (row.integrator != rows.front().integrator) continue;  // of another solver
     if (row.isChoice() && !row.isReduced()) found[{row.tets, row.material, row.interpolation}][row.substeps] = row;
   }
   std::vector<std::vector<Row>> series;

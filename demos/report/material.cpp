@@ -40,6 +40,10 @@ const char* nameOf(Elasticity elasticity) {
   return kNames[static_cast<std::size_t>(elasticity)];
 }
 
+double stableDamping(double substep) {
+  return kDampingSubsteps * substep;
+}
+
 scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& reference, double relativeStiffness,
                                 Elasticity elasticity) {
   scenes::SceneOptions options;
@@ -53,7 +57,7 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& ref
   body.youngsModulus = wanted;
   if (!scene.lands) {
     options.force = scenes::Force::LinearElasticity;
-    body.stiffnessDamping = kDampingSubsteps * options.substep();
+    body.stiffnessDamping = stableDamping(options.substep());
     if (elasticity == Elasticity::Tetskin) options.force = scenes::Force::Elastic;
     return options;
   }

@@ -22,4 +22,7 @@ const char* nameOf(Elasticity elasticity);
 scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& reference, double relativeStiffness,
                                 Elasticity elasticity);
 
+/// Seconds of damping at which Bullet's explicit steps of this length are stable at any stiffness.
+double stableDamping(double substep);
+
 }  // namespace tetskin::report

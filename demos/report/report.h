@@ -11,6 +11,8 @@
 // reference_cage     the tets that have this motion
 // driven_nodes       where it would take the nodes of other cages
 // surface_errors     errors of surfaces and nodes against it
+// solver             what else simulates the same cage
+//   xpbd_fit           the constants that suit XPBD best
 // scene_runner       all cages of a scene, or the results of an earlier run (result_store)
 //   advice             orders, Pareto front, the reference's own errors
 //   report_files       results for programs

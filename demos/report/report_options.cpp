@@ -82,6 +82,14 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
       "filled (weighted by how much of the mesh each tet contains), calibrated (elements duplicated, weighted "
       "and calibrated), all",
       "same,calibrated");
+  line.addWords(
+      "--solvers", solvers_,
+      "Compare solvers in calibrated cages, in sag, instead of kinds of cages; a list of: tetskin, xpbd, "
+      "xpbd_unfitted, bullet_neo_hookean, bullet_linear, bullet_neo_hookean_implicit, bullet_linear_implicit, all",
+      "none");
+  line.addCounts("--xpbd-substeps", o.xpbdSubsteps, "a list, for --solvers");
+  line.addCounts("--bullet-substeps", o.bulletSubsteps, "a list, for --solvers; of those that explode, rows say so");
+  line.addCount("--repetitions", o.repetitions, "Runs of each solver, in turn, of which medians are taken", 1000);
   line.addFlag("--no-calibration", noCalibration_, "Leave out cages of calibrated stiffness");
   line.addCounts("--modes", o.modes, "a list, for sag and drop");
   line.addFlag("--no-reduction", noReduction_, "Leave out reduced bodies");
@@ -106,6 +114,32 @@ void ReportCommandLine::chooseCages() {
   if (noCalibration_) kinds.erase(std::remove_if(kinds.begin(), kinds.end(), isCalibrated), kinds.end());
   if (kinds.empty())
     throw scenes::InputError("--cages: no kind of cage is left with --no-calibration; name another kind");
+}
+
+void ReportCommandLine::chooseSolvers() {
+  ReportOptions& o = options_;
+  if (!line_.given("--solvers")) {
+    for (const char* option : {"--xpbd-substeps", "--bullet-substeps", "--repetitions"}) {
+      if (line_.given(option)) throw scenes::InputError(std::string(option) + " needs --solvers");
+    }
+    return;
+  }
+  o.solvers = solversOf(solvers_);
+  if (o.solvers.empty()) throw scenes::InputError("--solvers: name at least one solver");
+  for (const char* option : {"--elasticity", "--cages", "--no-calibration", "--modes", "--no-reduction", "--view"}) {
+    if (line_.given(option)) throw scenes::InputError(std::string(option) + " cannot be used with --solvers");
+  }
+  if (!line_.given("--scenes")) o.scenes = {"sag"};
+  if (o.scenes != std::vector<std::string>{"sag"})
+    throw scenes::InputError("--solvers: solvers are compared in sag only, as XPBD here has no contact");
+  if (!line_.given("--tets")) o.tets = {3000};
+  o.cages = {CageKind::Calibrated};
+  o.modes.clear();
+  if (o.surfaces.size() > 1) o.surfaces = {SurfaceKind::Linear};
+  for (std::vector<std::size_t>* counts : {&o.xpbdSubsteps, &o.bulletSubsteps}) {
+    if (counts->empty()) throw scenes::InputError("--xpbd-substeps, --bullet-substeps: name at least one number");
+    sortUniquely(*counts);
+  }
 }
 
 void ReportCommandLine::chooseSubsteps() {
@@ -141,6 +175,9 @@ const ReportOptions& ReportCommandLine::finish() {
     preset("--reference-substeps", o.referenceSubsteps, std::size_t{16});
     preset("--frames", o.frames, 24);
     preset("--modes", o.modes, std::vector<std::size_t>{5, 20});
+    preset("--xpbd-substeps", o.xpbdSubsteps, std::vector<std::size_t>{4, 10});
+    preset("--bullet-substeps", o.bulletSubsteps, std::vector<std::size_t>{4, 8});
+    preset("--repetitions", o.repetitions, std::size_t{1});
   }
   o.scenes = inOrder(o.scenes);
   if (interpolation_ == "linear") o.surfaces = {SurfaceKind::Linear};
@@ -150,6 +187,7 @@ const ReportOptions& ReportCommandLine::finish() {
   if (!o.view.empty() && shownScene(o).empty())
     throw scenes::InputError("--view: none of the scenes in --scenes is simulated; add sag, for example");
   sortUniquely(o.modes);
+  chooseSolvers();
   o.bullet = force_ == "bullet";
   if (o.implicit && !o.bullet) throw scenes::InputError("--implicit needs --elasticity bullet");
   chooseSubsteps();

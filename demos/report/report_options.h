@@ -8,6 +8,7 @@
 
 #include "report/cage_kind.h"
 #include "report/simulation.h"
+#include "report/solver.h"
 #include "scenes/command_line.h"
 
 namespace tetskin::report {
@@ -26,9 +27,14 @@ struct ReportOptions {
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
   std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; empty: no reduced bodies
-  bool bullet = false;                               ///< bodies with Bullet's forces instead of the library's
-  bool implicit = false;                             ///< with Bullet's forces: implicit rows beside the explicit ones
-  int frames = 0;                                    ///< 0: the scene's own
+  /// Not empty: these solvers in the recommended kind of cage, instead of kinds of cages. `substeps` are tetskin's.
+  std::vector<Solver> solvers;
+  std::vector<std::size_t> xpbdSubsteps = {4, 10, 20, 50};
+  std::vector<std::size_t> bulletSubsteps = {1, 2, 4, 8};
+  std::size_t repetitions = 3;   ///< of each run of a solver that is timed
+  bool bullet = false;           ///< bodies with Bullet's forces instead of the library's
+  bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones
+  int frames = 0;                ///< 0: the scene's own
   double stiffness = 0.0;        ///< Young's modulus over density x gravity x size; 0: the scene's own
   std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
   double targetError = 0.0;      ///< in diagonals of the mesh's box; 0: none
@@ -57,9 +63,10 @@ class ReportCommandLine {
   ReportOptions options_;
   scenes::CommandLine& line_;
   void chooseCages();
+  void chooseSolvers();
   void chooseSubsteps();
 
-  std::vector<std::string> cages_;
+  std::vector<std::string> cages_, solvers_;
   std::string interpolation_ = "all", force_ = "tetskin";
   bool quick_ = false, full_ = false, noCalibration_ = false, noReduction_ = false;
 };

@@ -14,7 +14,7 @@ namespace tetskin::report {
 struct Row {
   std::string scene;
   std::string integrator;  ///< tetskin: by the library's force; by Bullet's: explicit, implicit; none where nothing is
-                           ///< simulated
+                           ///< simulated; or the name of a Solver
   std::string material;    ///< kind of the cage: see CageKind; same for the reference, whatever it is;
                            ///< reduced: a reduced body's
   std::string interpolation;  ///< linear, quadratic, bullet; reference for the reference itself
@@ -27,15 +27,20 @@ struct Row {
   double errorAgainstBullet = 0;                ///< total, RMS, against a reference with Bullet's forces; 0 without one
   double substeps = 0;                          ///< per frame; 0 where nothing is simulated
   double errorTotalRms = 0, errorTotalMax = 0;  ///< against the reference: in space and in time
+  double errorOfMotion = 0;                     ///< RMS, over the RMS distance of the reference's surface from rest
   double errorSpaceRms = 0;                     ///< of this cage in the reference's substeps, against the reference
   /// Against this cage in the reference's substeps; the total is at most space plus time. 0 with Bullet's forces, where
   /// the reference has the row's own substeps.
+  /// In rows of solvers that are compared: against this cage by tetskin's solver in the reference's substeps, so that
+  /// it is all that the solver adds, by its steps, iterations and model.
   double errorTimeRms = 0;
   double errorEmbeddingRms = 0;   ///< if the nodes were where the reference would take them
   double errorSimulationRms = 0;  ///< of the nodes, against where the reference would take them: in space and in time
   double normalErrorMeanDeg = 0;
   double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< per frame
   double attachMs = 0, calibrateMs = 0;              ///< once
+  double dampingMs = 0;                              ///< in rows of solvers: that of the material
+  double xpbdStiffness = 0, xpbdVolume = 0;          ///< see XpbdConstants; the second -1: rigid
   double modes = 0;                                  ///< used by a reduced body; 0: the body is simulated by its tets
   double modesLeftOut = 0;                           ///< left out as too fast for the substep
   double modesMs = 0;                                ///< once: to find the modes

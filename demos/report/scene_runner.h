@@ -15,7 +15,9 @@
 #include "report/report_options.h"
 #include "report/report_row.h"
 #include "report/result_store.h"
+#include "report/solver.h"
 #include "report/surface_errors.h"
+#include "report/xpbd_fit.h"
 #include "scenes/table.h"
 
 namespace tetskin::report {
@@ -29,6 +31,7 @@ struct Job {
   bool coloured = false;              ///< also colour a mesh by the errors of the first
   bool bullets = false;               ///< a reference with Bullet's forces, beside ours
   int modes = 0;                      ///< not 0: a reduced body with this many of the reference's modes
+  bool solvers = false;               ///< all solvers in all their substeps, instead of `substeps`
 };
 
 /// The mesh of the report.
@@ -107,6 +110,17 @@ class SceneRunner {
               const FrameDone& done);
   /// The motion of a job's cage in the reference's substeps; its usual one where these are the same.
   Trajectory convergedMotion(const Job& job, const Cage& cage, const Trajectory& usual);
+  /// A solver in some substeps, with the constants that suit it best.
+  struct Setting {
+    Solver solver;
+    scenes::SceneOptions options;
+    XpbdConstants constants;
+  };
+  std::vector<Setting> settingsOf(const Job& job, const Cage& cage);
+  Simulation simulated(const Setting& setting, const Cage& cage, const XpbdModel& model) const;
+  /// Chooses damping, and XPBD's constants, for the least error.
+  void choose(Setting& setting, const Cage& cage, const XpbdModel& model, const SampledErrors& errors);
+  std::vector<Row> solverRows(const Job& job, const std::function<void(double)>& progress);
   /// A row without its errors in space and in time, and of the embedding.
   Row compared(const Job& job, const Cage& cage, SurfaceKind kind, const Motion& motion);
   /// Simulates the reference's cage, and keeps its motion in `trajectory`.

@@ -13,6 +13,8 @@
 namespace tetskin::report {
 namespace {
 
+/// Of SampledErrors, about.
+constexpr std::size_t kSamples = 1000;
 constexpr double kDegrees = 57.29577951308232;
 
 double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -85,6 +87,36 @@ SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, cons
   errors.normalMeanDeg = degrees / (frames * static_cast<double>(count));
   for (const double s : squaredByVertex) errors.rmsByVertex.push_back(static_cast<float>(std::sqrt(s / frames)));
   return errors;
+}
+
+SampledErrors::SampledErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage)
+    : cage_(cage), diagonal_(boundingBox(mesh.positions).diagonal().norm()) {
+  const std::size_t stride = std::max<std::size_t>(1, mesh.vertexCount() / kSamples);
+  const MeshSkin<double> skin = skinOf(cage, mesh, {});
+  const auto& bindings = skin.binding()->embedding().bindings();
+  for (std::size_t v = 0; v < mesh.vertexCount(); v += stride) samples_.push_back(bindings[v]);
+  for (int frame = 0; frame < reference.frameCount(); ++frame) {
+    const ReferenceSurface& surface = reference.surfaceAt(frame);
+    Points& points = right_.emplace_back();
+    for (std::size_t v = 0; v < mesh.vertexCount(); v += stride) points.push_back(surface.positions[v]);
+  }
+}
+
+double SampledErrors::rms(const Trajectory& nodes) const {
+  double squared = 0.0;
+  for (std::size_t frame = 1; frame < nodes.size(); ++frame) {
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      const Tet& tet = cage_.mesh.tets[static_cast<std::size_t>(samples_[k].tet)];
+      Eigen::Vector3d position = -right_[frame][k];
+      for (std::size_t i = 0; i < 4; ++i) {
+        position +=
+            static_cast<double>(samples_[k].weights[i]) * nodes[frame][static_cast<std::size_t>(tet[i])].cast<double>();
+      }
+      squared += position.squaredNorm();
+    }
+  }
+  const auto frames = static_cast<double>(std::max<std::size_t>(nodes.size(), 2) - 1);
+  return std::sqrt(squared / (frames * static_cast<double>(samples_.size()))) / diagonal_;
 }
 
 double surfaceDistance(const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind, const Trajectory& nodes,

@@ -24,6 +24,24 @@ struct SurfaceErrors {
 SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind,
                             const Trajectory& nodes);
 
+/// The errors of many motions of one cage, roughly and soon: of some of the mesh's vertices, each of which follows its
+/// tet linearly.
+class SampledErrors {
+ public:
+  /// reference  read here only
+  SampledErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage);
+
+  /// As SurfaceErrors::rms.
+  /// nodes  by frame; no more frames than the reference has
+  double rms(const Trajectory& nodes) const;
+
+ private:
+  const Cage& cage_;
+  std::vector<VertexBinding> samples_;
+  std::vector<Points> right_;  ///< of the samples, by frame
+  double diagonal_;
+};
+
 /// Root mean square distance between the surfaces that two motions of the same cage carry, in diagonals of the mesh's
 /// box, over all vertices and all frames after the first that both have.
 double surfaceDistance(const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind, const Trajectory& nodes,

@@ -67,6 +67,23 @@ TEST_F(ReportPlots, HasTablesAndPlotsMade) {
   EXPECT_TRUE(folder.exists("plots/exact.png"));
   EXPECT_NE(folder.read("plots/error_vs_time.md").find("No setting has an error below 1e-09."), std::string::npos);
 }
+
+TEST_F(ReportPlots, OneTableAndOnePlotCompareTheSolvers) {
+  const CommandResult result =
+      folder.run(TETSKIN_ERROR_VS_TIME,
+                 {"--quick", "--solvers", "tetskin,xpbd_unfitted,bullet_linear", "--tets", "300", "--reference-tets",
+                  "1000", "--triangles", "2000", "--frames", "6", "--out", "out", "--bullet-substeps", "4"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string tables = folder.read("out/error_vs_time.md"), csv = folder.read("out/sag_solvers.csv");
+  EXPECT_NE(result.out.find(tables), std::string::npos) << result.out;
+  for (const char* row : {"\n| tetskin | ", "\n| XPBD, not fitted | ", "\n| Bullet linear, explicit | "})
+    EXPECT_NE(tables.find(row), std::string::npos) << row << tables;
+  EXPECT_EQ(csv.rfind("solver,tets,substeps,ms per frame,", 0), 0u) << csv;
+  for (const char* row : {"\ntetskin,", "\nxpbd_unfitted,", "\nbullet_linear,"})
+    EXPECT_NE(csv.find(row), std::string::npos) << row << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 + 2 + 1) << csv;
+  EXPECT_TRUE(folder.exists("out/sag_solvers.png"));
+}
 #endif
 
 }  // namespace
