@@ -89,7 +89,7 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
       "none");
   line.addCounts("--xpbd-substeps", o.xpbdSubsteps, "a list, for --solvers");
   line.addCounts("--bullet-substeps", o.bulletSubsteps, "a list, for --solvers; of those that explode, rows say so");
-  line.addCount("--repetitions", o.repetitions, "Runs of each solver, in turn, of which medians are taken", 1000);
+  line.addCount("--repetitions", o.repetitions, "How often each variant is timed; the median is printed", 1000);
   line.addFlag("--no-calibration", noCalibration_, "Leave out cages of calibrated stiffness");
   line.addCounts("--modes", o.modes, "a list, for sag and drop");
   line.addFlag("--no-reduction", noReduction_, "Leave out reduced bodies");
