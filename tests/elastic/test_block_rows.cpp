@@ -47,7 +47,7 @@ TEST(BlockRows, EnergyOfAnEvenStrainIsExact) {
   gradient << 0.1, 0.3, -0.2, 0.0, -0.4, 0.1, 0.5, 0.2, 0.3;
   const Matrix3d strain = 0.5 * (gradient + gradient.transpose());
   const double mu = 1.0 / (2.0 * (1.0 + kPoissonOfRows)),
-               lambda = kPoisson / ((1.0 + kPoisson) * (1.0 - 2.0 * kPoisson));
+               lambda = kPoissonOfRows / ((1.0 + kPoissonOfRows) * (1.0 - 2.0 * kPoissonOfRows));
   const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
   VectorXd u(3 * mesh.nodeCount());
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
