@@ -2,15 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/solver.h"
 
-#include <algorithm>
-
 #include "report/material.h"
-#include "scenes/input_error.h"
+#include "report/named_choices.h"
 
 namespace tetskin::report {
 namespace {
-
-constexpr const char* kEvery = "all";
 
 bool isImplicit(Solver solver) {
   return solver == Solver::BulletNeoHookeanImplicit || solver == Solver::BulletLinearImplicit;
@@ -25,14 +21,6 @@ void matchSmallStrains(SoftBodyOptions& body) {
   const double forceMu = 4.0 / 3.0 * mu, forceLambda = lambda + 5.0 / 6.0 * mu;
   body.poissonRatio = forceLambda / (2.0 * (forceLambda + forceMu));
   body.youngsModulus = 2.0 * forceMu * (1.0 + body.poissonRatio);
-}
-
-void requireSolver(const std::string& name) {
-  const auto hasName = [&](Solver solver) { return name == nameOf(solver); };
-  if (name == kEvery || std::any_of(kSolvers.begin(), kSolvers.end(), hasName)) return;
-  std::string known;
-  for (const Solver solver : kSolvers) known += std::string(nameOf(solver)) + ", ";
-  throw scenes::InputError("--solvers: there is no '" + name + "'; known: " + known + kEvery);
 }
 
 }  // namespace
@@ -57,12 +45,7 @@ bool isBullets(Solver solver) {
 }
 
 std::vector<Solver> solversOf(const std::vector<std::string>& names) {
-  std::for_each(names.begin(), names.end(), requireSolver);
-  const auto named = [&](const char* name) { return std::count(names.begin(), names.end(), name) > 0; };
-  std::vector<Solver> solvers;
-  std::copy_if(kSolvers.begin(), kSolvers.end(), std::back_inserter(solvers),
-               [&](Solver solver) { return named(kEvery) || named(nameOf(solver)); });
-  return solvers;
+  return choicesOf("--solvers", "solver", kSolvers, names);
 }
 
 scenes::SceneOptions withSolver(scenes::SceneOptions options, Solver solver, int substeps) {
