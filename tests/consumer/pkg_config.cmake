@@ -1,4 +1,4 @@
-# cmake -DSOURCE= -DPREFIX= -DFOLDER= -DCOMPILER= -DPKG_CONFIG= -P: the README's first program, and the umbrella header,
+# cmake -DSOURCE= -DPREFIX= -DFOLDER= -DCOMPILER= -DPKG_CONFIG= -P: demos/hello.cpp, and the umbrella header,
 # built with what tetskin.pc says, without CMake.
 file(GLOB_RECURSE pc ${PREFIX}/tetskin.pc)
 cmake_path(GET pc PARENT_PATH pc_folder)
