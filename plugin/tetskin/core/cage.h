@@ -38,6 +38,9 @@ struct TETSKIN_CORE_API Cage {
   std::vector<double> masses;  ///< nodeCount, above 0, for a density of 1: their sum is the mesh's volume
   std::vector<int> component;  ///< tetCount, from 0: component of the cage, connected through shared nodes
   std::vector<int> sourceTet;  ///< tetCount, from 0: equal for all duplicates of one tet
+  /// tetCount, from -1: number of the quadratic tet of which the tet is one of eight; -1: it is linear. See
+  /// `quadraticTets`.
+  std::vector<int> quadraticTet;
   /// tetCount x kFineTets, in 255ths: volume fractions after two refinements.
   std::vector<std::uint8_t> fineVolumeFraction;
   /// `positionsHash` of the mesh that the cage was built for, where it is known.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/cage.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/base/mesh/face_neighbours.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
@@ -88,6 +89,7 @@ Status validateAttributes(const Cage& cage) {
     return wrongCount("fineVolumeFraction", cage.fineVolumeFraction.size(), kFineTets * cage.mesh.tetCount(),
                       "small tets");
   }
+  if (Result<std::vector<QuadraticTet>> tets = quadraticTets(cage); !tets.ok()) return tets.status();
   for (std::size_t v = 0; v < cage.vertexTets.size(); ++v) {
     if (cage.vertexTets[v] >= 0 && static_cast<std::size_t>(cage.vertexTets[v]) < cage.mesh.tetCount()) continue;
     return {StatusCode::IndexOutOfRange, "the cage's map assigns tet " + std::to_string(cage.vertexTets[v]) +

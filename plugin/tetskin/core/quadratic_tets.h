@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Quadratic tets: ten nodes, whose displacement is a quadratic function between them. They bend as linear tets, which
+// are too stiff, cannot. A cage holds each as the eight linear tets of its uniform refinement, so that whatever reads
+// tets (embedding, contact, picking, Bullet itself) goes on as it does.
+#pragma once
+
+#include <tetskin/core/cage.h>
+#include <tetskin/core/types.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace tetskin {
+
+/// Number of nodes of a quadratic tet, and of the linear tets that it is made of.
+constexpr std::size_t kQuadraticNodes = 10, kSubTets = 8;
+
+/// A quadratic tet of a cage, with straight edges.
+struct QuadraticTet {
+  /// Corners 0 to 3, positively oriented, then the midpoints of the edges 01, 02, 03, 12, 13, 23.
+  std::array<int, kQuadraticNodes> nodes{};
+  std::array<int, kSubTets> tets{};  ///< of the cage, ascending
+};
+
+/// The quadratic tets that `Cage::quadraticTet` tells of, by their number; none if it is empty. Cost O(T) for T tets.
+/// cage    its indices are in range
+/// Errors  SizeMismatch: another number of values than tets; InvalidOption: a number below -1, or that leaves one out;
+///         eight tets of one number are not the uniform refinement of a tet
+TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage);
+
+/// Makes a cage of quadratic tets: each tet of the mesh becomes one, with nodes at the middles of its edges. For meshes
+/// that are filled by their body; a mesh of an eighth of the tets then serves as well as a linear one, and better.
+/// mesh      valid (see `validate`), without flat tets; rest space, any unit
+/// Returns   a cage of 8 T tets for T tets; the mesh's nodes come first, in their order
+/// Cost      O(T log T)
+/// Errors    those of `validate(const TetMesh&)`; Degenerate: flat tets
+TETSKIN_CORE_API Result<Cage> refineQuadratic(const TetMesh& mesh);
+
+}  // namespace tetskin

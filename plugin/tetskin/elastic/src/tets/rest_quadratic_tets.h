@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Where quadratic tets are integrated: at four points, which have the volume, the centroid and the covariance of the
+// material in the tet. That is exact for the products of the linear strains of such a tet over any filling; in a full
+// tet it is the usual rule of four points. No point has a negative weight, and with four of them no deformation is
+// without a force.
+#pragma once
+
+#include <tetskin/core/quadratic_tets.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// Points at which a quadratic tet is integrated.
+constexpr std::size_t kQuadraticPoints = 4;
+
+/// A quadratic tet at rest. Its strain is that of its four barycentric weights L, see `QuadraticTet` for its nodes.
+struct RestQuadraticTet {
+  std::array<int, kQuadraticNodes> nodes{};
+  std::array<double, 9> gradients{};  ///< by rows: of the weights of corners 1, 2 and 3, rest space
+  /// Barycentric weights of corners 1, 2 and 3 at each point.
+  std::array<double, 3 * kQuadraticPoints> points{};
+  /// Integral of the stiffness factor over the material, a quarter for each point; above 0. In an unscaled full tet its
+  /// volume.
+  double volume = 0.0;
+};
+
+/// The quadratic tets of a cage, none of them flat.
+/// cage            where it stores volume fractions, and no stiffnessScale is given, these are where the material is
+/// tets            see `quadraticTets`
+/// stiffnessScale  by tet of the cage, above 0; empty: the cage's stiffness factors, over its material
+/// Cost            O(64 T) for T tets
+TETSKIN_ELASTIC_API std::vector<RestQuadraticTet> restQuadraticTets(const Cage& cage,
+                                                                    const std::vector<QuadraticTet>& tets,
+                                                                    const std::vector<double>& stiffnessScale);
+
+}  // namespace tetskin::elastic_detail
