@@ -19,7 +19,7 @@ namespace {
 constexpr double kMidpointTolerance = 1e-4, kVolumeTolerance = 1e-2;
 
 /// The first node that both tets have, or -1.
-int sharedNode(const Tet& a, const Tet& b) {
+int commonNode(const Tet& a, const Tet& b) {
   const auto found = std::find_first_of(a.begin(), a.end(), b.begin(), b.end());
   return found == a.end() ? -1 : *found;
 }
@@ -56,7 +56,7 @@ std::optional<QuadraticTet> assembled(const TetMesh& mesh, const std::array<int,
   for (std::size_t a = 0; a < 4; ++a) {
     result.nodes[a] = corners[a][0];
     for (std::size_t b = a + 1; b < 4; ++b) {
-      const int middle = sharedNode(mesh.tets[corners[a][1]], mesh.tets[corners[b][1]]);
+      const int middle = commonNode(mesh.tets[corners[a][1]], mesh.tets[corners[b][1]]);
       if (middle < 0 || !isMidpoint(mesh, middle, corners[a][0], corners[b][0])) return {};
       result.nodes[next++] = middle;
     }
