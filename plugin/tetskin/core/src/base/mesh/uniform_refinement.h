@@ -5,7 +5,9 @@
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <vector>
 
 namespace tetskin {
@@ -28,7 +30,49 @@ struct Refinement {
 /// coarse  indices in range
 TETSKIN_CORE_API Refinement refineUniformly(const TetMesh& coarse);
 
-/// The eight small tets of a single tet, in the same order.
-TETSKIN_CORE_API std::array<TetCorners, 8> refinedTet(const TetCorners& corners);
+/// The three diagonals of the octahedron between the midpoints of a tet's edges, each as two edges by their ends; and
+/// the ring of four midpoints around it, each a step along an edge of the octahedron from the one before.
+struct OctahedronDiagonal {
+  int ends[2][2];
+  int ring[4][2];
+};
+/// Of the octahedron that is left in the middle: by the edges at whose midpoints it ends, with the four edges around
+/// it.
+inline constexpr OctahedronDiagonal kOctahedronDiagonals[3] = {
+    {{{0, 1}, {2, 3}}, {{0, 2}, {1, 2}, {1, 3}, {0, 3}}},
+    {{{0, 2}, {1, 3}}, {{0, 3}, {2, 3}, {1, 2}, {0, 1}}},
+    {{{0, 3}, {1, 2}}, {{0, 1}, {1, 3}, {2, 3}, {0, 2}}},
+};
+
+/// The eight tets of one whose edges have these midpoints: by what stands for its corners and for the midpoints.
+/// length  squared, between two midpoints
+template <class Node, class Length>
+std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
+                                             const std::array<std::array<Node, 4>, 4>& centroid, Length&& length) {
+  const auto at = [&](const int(&ends)[2]) { return centroid[ends[0]][ends[1]]; };
+  std::array<std::array<Node, 4>, 8> eight;
+  for (int k = 0; k < 4; ++k) {
+    for (int j = 0; j < 4; ++j) eight[k][j] = j == k ? tet[k] : centroid[k][j];
+  }
+  const auto lengthOf = [&](const OctahedronDiagonal& d) { return length(at(d.ends[0]), at(d.ends[1])); };
+  const OctahedronDiagonal& shortest =
+      *std::min_element(std::begin(kOctahedronDiagonals), std::end(kOctahedronDiagonals),
+                        [&](const auto& a, const auto& b) { return lengthOf(a) < lengthOf(b); });
+  for (int k = 0; k < 4; ++k) {
+    eight[4 + k] = {at(shortest.ends[0]), at(shortest.ring[(k + 1) % 4]), at(shortest.ring[k]), at(shortest.ends[1])};
+  }
+  return eight;
+}
+
+/// The eight small tets of a single tet, in the same order. Not compiled into the library, as Eigen has another
+/// namespace in some of them.
+inline std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
+  std::array<std::array<Eigen::Vector3d, 4>, 4> centroid;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) centroid[a][b] = centroid[b][a] = 0.5 * (p[a] + p[b]);
+  }
+  return eightTets(p, centroid,
+                   [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).squaredNorm(); });
+}
 
 }  // namespace tetskin
