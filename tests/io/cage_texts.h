@@ -36,8 +36,7 @@ inline std::string textOf(const Cage& cage) {
 }
 
 inline Result<Cage> loadCageText(const std::string& text, TetFileReport* report = nullptr) {
-  const TempFolder folder;
-  return loadCage(folder.write("c.vtk", text), report);
+  return loadCageText("c.vtk", text, report);
 }
 
 inline std::string with(std::string text, const std::string& old, const std::string& replacement) {

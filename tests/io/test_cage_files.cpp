@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
 #include "support/two_plates.h"
 
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/io/files.h>
 
 #include <functional>
@@ -22,6 +24,7 @@ void expectSame(const Cage& a, const Cage& b) {
   EXPECT_EQ(a.masses, b.masses);
   EXPECT_EQ(a.component, b.component);
   EXPECT_EQ(a.sourceTet, b.sourceTet);
+  EXPECT_EQ(a.quadraticTet, b.quadraticTet);
   EXPECT_EQ(a.fineVolumeFraction, b.fineVolumeFraction);
   EXPECT_EQ(a.meshHash, b.meshHash);
 }
@@ -87,6 +90,36 @@ TEST(CageFiles, ExtremeNumbersReadBackExactly) {
   for (const std::uint64_t hash : {std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 32}) {
     cage.meshHash = hash;
     expectCageReadsBack(cage);
+  }
+}
+
+/// Eight tets of a quadratic tet, and one more.
+Cage mixedCage() {
+  Cage cage = refineQuadratic(singleTet()).value();
+  cage.mesh.nodes.emplace_back(0, -1, 0);
+  cage.mesh.tets.push_back({0, cage.mesh.tets[0][1], cage.mesh.tets[0][3], 10});
+  cage.quadraticTet.push_back(-1);
+  return cage;
+}
+
+TEST(CageFiles, QuadraticTetsReadBackExactlyAndAreTetsToOthers) {
+  expectCageReadsBack(mixedCage());
+  Cage cage = refineQuadratic(jittered(bodyCentredCage(2, 2, 2), 0.2, 3)).value();
+  expectCageReadsBack(cage);
+  cage.fineVolumeFraction.assign(kFineTets * cage.mesh.tetCount(), 200);
+  cage.volumeFraction.assign(cage.mesh.tetCount(), 0.75);
+  expectCageReadsBack(cage);
+  const std::string text = textOf(mixedCage());
+  EXPECT_NE(text.find("CELL_DATA 9\nSCALARS quadratic_tet int 1\nLOOKUP_TABLE default\n0\n0\n0\n0\n0\n0\n0\n0\n-1\n"),
+            std::string::npos)
+      << text;
+  const TempFolder folder;
+  for (const char* name : {"c.msh", "c.ele"}) {
+    ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
+    Cage read = loadCage(folder.path(name)).value();
+    EXPECT_EQ(read.mesh.tets, cage.mesh.tets);
+    EXPECT_TRUE(read.quadraticTet.empty());
+    EXPECT_EQ(findQuadraticTets(read), cage.mesh.tetCount() / kSubTets) << "they can be found again";
   }
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 
@@ -85,6 +88,20 @@ TEST(DamagedCageFiles, RefusesValuesThatMakeNoSense) {
   expectError(loadCageText(with(text, "int\n1\n0\n1\n", "int\n1\n2\n1\n")), kIndexOutOfRange,
               {"c.vtk: ", "map assigns tet 2 to vertex 1"});
   expectError(loadCageText(with(text, "\n7\n7\n", "\n7\n-7\n")), StatusCode::InvalidOption, {"sourceTet[1]"});
+}
+
+TEST(DamagedCageFiles, RefusesNumbersOfQuadraticTetsThatMakeNoSense) {
+  const std::string text = textOf(refineQuadratic(latticeCage(1, 1, 1)).value());
+  expectError(loadCageText(with(text, "default\n0\n0\n", "default\n0\n1\n")), StatusCode::InvalidOption,
+              {"c.vtk: the cage's quadraticTet is 0 for 7 tets, the first of which is tet 0", "correct the array"});
+  expectError(loadCageText(with(text, "default\n0\n0\n", "default\n0\n-2\n")), StatusCode::InvalidOption,
+              {"c.vtk: the cage's quadraticTet[1] must be"});
+  expectError(loadCageText(with(text, "default\n0\n0\n", "default\n0\n99999999999\n")), kMalformed,
+              {"'quadratic_tet'", "largest value"});
+  expectError(loadCageText(with(text, "quadratic_tet int 1", "quadratic_tet double 1")), kMalformed,
+              {"'quadratic_tet' of type 'double' in place of integers"});
+  expectError(loadCageText(with(text, "\n0.5 0 0\n", "\n0.6 0 0\n")), StatusCode::InvalidOption,
+              {"c.vtk: ", "tet ", "nodes at the middles of its edges"});
 }
 
 TEST(DamagedCageFiles, WhatLoadCageRefusesLoadTetMeshReads) {

@@ -32,7 +32,7 @@ TEST(LoadGmsh, ReadsVersion2) {
   TetFileReport report;
   expectTwoTets(loadGmsh(kHead2 + kNodes2 + kElements2, &report));
   EXPECT_EQ(report.skippedCells, 2u);
-  EXPECT_EQ(report.cornersOnly, 0u);
+  EXPECT_EQ(report.quadraticTets, 0u);
 }
 
 TEST(LoadGmsh, ReadsVersion4WithParametricNodes) {
@@ -64,23 +64,36 @@ TEST(LoadGmsh, SectionsMayComeInAnyOrder) {
   expectTwoTets(loadGmsh(kHead2 + kElements2 + kNodes2));
 }
 
-TEST(LoadGmsh, ReadsTetsOfSecondOrderByTheirCorners) {
+TEST(LoadGmsh, TetsOfSecondOrderAreEightTets) {
   const std::string nodes =
       "$Nodes\n11\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n15 .5 0 0\n16 .5 .5 0\n17 0 .5 0\n18 0 0 .5\n19 .5 0 .5\n20 0 "
-      ".5 "
-      ".5\n7 9 9 9\n$EndNodes\n";
+      ".5 .5\n7 9 9 9\n$EndNodes\n$Elements\n2\n1 11 2 0 1 1 2 3 4 15 16 17 18 20 19\n2 15 2 0 1 7\n$EndElements\n";
   TetFileReport report;
-  const Result<TetMesh> mesh = loadGmsh(
-      kHead2 + nodes + "$Elements\n2\n1 11 2 0 1 1 2 3 4 15 16 17 18 19 20\n2 15 2 0 1 7\n$EndElements\n", &report);
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}}));
-  ASSERT_EQ(mesh.value().nodeCount(), 5u) << "the corners, and a node that has nothing to do with the tet";
-  EXPECT_EQ(mesh.value().nodes[4], Eigen::Vector3d(9, 9, 9));
-  EXPECT_EQ(report.cornersOnly, 1u);
-  EXPECT_EQ(report.droppedNodes, 6u);
+  const Result<Cage> cage = loadCageText("c.msh", kHead2 + nodes, &report);
+  expectQuadraticTet(cage, {0, 1, 2, 3}, {4, 6, 7, 5, 8, 9});
+  EXPECT_EQ(cage.value().mesh.nodeCount(), 11u) << "with the node that has nothing to do with the tet";
+  EXPECT_EQ(report.movedNodes, 0u);
   EXPECT_EQ(report.describe(),
-            "1 cells that are no tets were skipped, 1 tets of higher order were read by their corners, without 6 other "
-            "nodes");
+            "1 cells that are no tets were skipped, 1 tets of second or higher order became quadratic tets, each of "
+            "eight tets");
+  std::string text = kHead2 + nodes;
+  text.replace(text.find(" 20 19\n2 15"), 6, " 20 12");
+  expectError(loadGmsh(text), kIndexOutOfRange, {"c.msh:20:", "tet 1 refers to node 12"});
+  text.replace(text.find(" 20 12\n2 15"), 6, " 20   ");
+  expectError(loadGmsh(text), kMalformed, {"c.msh:"});
+}
+
+TEST(LoadGmsh, TetsAboveSecondOrderAreQuadraticBetweenTheirCorners) {
+  std::string text = kHead2 + "$Nodes\n20\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
+  for (int n = 5; n <= 20; ++n) text += std::to_string(n) + " 0.3 0.1 0.2\n";
+  text += "$EndNodes\n$Elements\n1\n1 29 0 1 2 3 4";
+  for (int n = 5; n <= 20; ++n) text += ' ' + std::to_string(n);
+  TetFileReport report;
+  const Result<Cage> cage = loadCageText("c.msh", text + "\n$EndElements\n", &report);
+  expectQuadraticTet(cage, {0, 1, 2, 3}, {4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(cage.value().mesh.nodeCount(), 10u);
+  EXPECT_EQ(report.droppedNodes, 16u);
+  EXPECT_NE(report.describe().find("16 nodes above second order were left out"), std::string::npos);
 }
 
 TEST(LoadGmsh, ReadsVersion40) {
@@ -130,8 +143,10 @@ TEST(LoadGmsh, ReadsBinaryOfSecondOrder) {
   TetFileReport report;
   const Result<TetMesh> mesh = loadGmsh(text, &report);
   ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  EXPECT_EQ(mesh.value().nodeCount(), 4u);
-  EXPECT_EQ(report.droppedNodes, 6u);
+  EXPECT_EQ(mesh.value().nodeCount(), 10u);
+  EXPECT_EQ(mesh.value().tetCount(), 8u);
+  EXPECT_EQ(mesh.value().nodes[6], Eigen::Vector3d(7, 49, 0)) << "a mesh of tets keeps nodes where they are";
+  EXPECT_EQ(report.movedNodes, 0u);
 }
 
 TEST(LoadGmsh, BinaryFilesThatAreCutShortOrDamagedAreErrors) {

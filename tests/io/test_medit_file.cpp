@@ -29,16 +29,21 @@ TEST(LoadMedit, ReadsOverOtherSections) {
   EXPECT_EQ(report.skippedCells, 2u);
 }
 
-TEST(LoadMedit, ReadsTetsOfSecondOrderByTheirCorners) {
-  TetFileReport report;
-  const std::string middle =
+TEST(LoadMedit, TetsOfSecondOrderAreEightTets) {
+  const std::string vertices =
       "Vertices\n10\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 0\n.5 0 0 0\n.5 .5 0 0\n0 .5 0 0\n0 0 .5 0\n"
       ".5 0 .5 0\n0 .5 .5 0\n";
-  const Result<TetMesh> mesh = loadMedit(kMeditHead + middle + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 0\n", &report);
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  EXPECT_EQ(mesh.value().nodeCount(), 4u);
-  EXPECT_EQ(report.cornersOnly, 1u);
-  EXPECT_EQ(report.droppedNodes, 6u);
+  // Programs differ in their order.
+  for (const char* order : {"5 6 7 8 9 10", "5 7 8 6 9 10", "10 9 8 7 6 5"}) {
+    const std::string tets = std::string("TetrahedraP2\n1\n1 2 3 4 ") + order + " 0\n";
+    for (const std::string& text : {vertices + tets, tets + vertices}) {
+      expectQuadraticTet(loadCageText("c.mesh", kMeditHead + text), {0, 1, 2, 3}, {4, 6, 7, 5, 8, 9});
+    }
+  }
+  for (const char* bad : {"0", "11", "-3"}) {
+    expectError(loadMedit(kMeditHead + vertices + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 " + bad + " 0\n"),
+                kIndexOutOfRange, {"c.mesh:17:", "tet 1"});
+  }
 }
 
 TEST(LoadMedit, NamesTheLineOfAFault) {

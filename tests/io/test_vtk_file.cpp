@@ -75,38 +75,62 @@ TEST(LoadVtk, SkipsAndCountsWhatIsNoTet) {
   expectTwoTets(
       loadVtk(kVtkHead + kPoints + "CELLS 3 14\n3 0 1 2\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5\n10\n10\n", &report));
   EXPECT_EQ(report.skippedCells, 1u);
-  EXPECT_EQ(report.cornersOnly, 0u);
+  EXPECT_EQ(report.quadraticTets, 0u);
   EXPECT_EQ(report.describe(), "1 cells that are no tets were skipped");
 }
 
-TEST(LoadVtk, ReadsTetsOfSecondOrderByTheirCorners) {
-  const std::string points =
-      "POINTS 11 float\n0 0 0 .5 0 0 1 0 0 .5 .5 0 0 1 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5 0 0 1 7 7 7\n";
+/// A tet and the middles of its edges, between them, and a node that no cell names.
+const std::string kQuadraticPoints =
+    "POINTS 11 float\n0 0 0 .5 0 0 1 0 0 .5 .5 0 0 1 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5 0 0 1 7 7 7\n";
+const std::string kQuadraticCell = "CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 1\n";
+
+TEST(LoadVtk, TetsOfSecondOrderAreEightTets) {
   for (const char* type : {"24", "71", "79"}) {
     TetFileReport report;
-    const Result<TetMesh> mesh =
-        loadVtk(kVtkHead + points + "CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 1\n" + type + "\n", &report);
+    const std::string text = kVtkHead + kQuadraticPoints + kQuadraticCell + type + "\n";
+    const Result<Cage> cage = loadCageText("c.vtk", text, &report);
+    expectQuadraticTet(cage, {0, 2, 4, 9}, {1, 5, 6, 3, 7, 8});
+    ASSERT_EQ(cage.value().mesh.nodeCount(), 11u) << "in the order of the file";
+    EXPECT_EQ(cage.value().mesh.nodes[3], Eigen::Vector3d(0.5, 0.5, 0));
+    EXPECT_EQ(report.quadraticTets, 1u);
+    EXPECT_EQ(report.movedNodes, 0u);
+    EXPECT_EQ(report.droppedNodes, 0u);
+    EXPECT_EQ(report.describe(), "1 tets of second or higher order became quadratic tets, each of eight tets");
+    const Result<TetMesh> mesh = loadVtk(text);
     ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-    EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}}));
-    ASSERT_EQ(mesh.value().nodeCount(), 5u) << "a node that no cell names stays";
-    EXPECT_EQ(mesh.value().nodes[2], Eigen::Vector3d(0, 1, 0));
-    EXPECT_EQ(report.cornersOnly, 1u);
-    EXPECT_EQ(report.droppedNodes, 6u);
+    EXPECT_EQ(mesh.value().tets, cage.value().mesh.tets);
   }
 }
 
-TEST(LoadVtk, ANodeThatIsACornerElsewhereStays) {
-  TetFileReport report;
-  const std::string points = "POINTS 10 float\n0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\n";
-  const Result<TetMesh> mesh =
-      loadVtk(kVtkHead + points +
-                  "CELLS 2 16\n10 0 1 2 3 4 5 6 7 8 9\n4 0 4 6 7\nCELL_TYPES 2\n24 10\nPOINT_DATA 10\nSCALARS x "
-                  "float\nLOOKUP_TABLE default\n0 0 0 0 0 0 0 0 0 0\n",
-              &report);
-  ASSERT_TRUE(mesh.ok()) << mesh.status().message;
-  EXPECT_EQ(mesh.value().tets, std::vector<Tet>({{0, 1, 2, 3}, {0, 4, 5, 6}}));
-  EXPECT_EQ(mesh.value().nodes[5], Eigen::Vector3d(0, 0.5, 0));
-  EXPECT_EQ(report.droppedNodes, 3u);
+TEST(LoadVtk, NamesTheCellOfSecondOrderThatIsFaulty) {
+  const auto load = [](const std::string& cells) { return loadVtk(kVtkHead + kQuadraticPoints + cells); };
+  expectError(load("CELLS 1 10\n9 0 2 4 9 1 3 5 6 7\nCELL_TYPES 1\n24\n"), kMalformed,
+              {"c.vtk:8:", "cell 0 has 9 nodes where a tet of second order has 10"});
+  expectError(load("CELLS 1 5\n4 0 2 4 9\nCELL_TYPES 1\n24\n"), kMalformed, {"cell 0 has 4 nodes"});
+  expectError(load("CELLS 1 12\n11 0 2 4 9 1 3 5 6 7 8 10\nCELL_TYPES 1\n24\n"), kMalformed, {"11 nodes"});
+  expectError(load("CELLS 1 8\n7 0 2 4 9 1 3 5\nCELL_TYPES 1\n71\n"), kMalformed, {"7 nodes where a tet has 4"});
+  expectError(load("CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 11\nCELL_TYPES 1\n24\n"), kIndexOutOfRange,
+              {"c.vtk:8:", "cell 0 refers to node 11"});
+  expectError(load("CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 1\nCELL_TYPES 1\n24\n"), kMalformed,
+              {"c.vtk:8:", "tet 0", "names a node twice"});
+}
+
+TEST(LoadVtk, ExpandsTheDataOfTetsOfSecondOrder) {
+  const Result<Cage> cage = loadCageText(
+      "c.vtk", kVtkHead + kQuadraticPoints +
+                   "CELLS 3 21\n4 0 2 4 10\n3 0 2 4\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 3\n10\n5\n24\nCELL_DATA 3\n"
+                   "SCALARS fill float\nLOOKUP_TABLE default\n.25 9 .5\nSCALARS part int\nLOOKUP_TABLE default\n"
+                   "0 0 1\nPOINT_DATA 11\nSCALARS mass float\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8 9 10 11\n");
+  ASSERT_TRUE(cage.ok()) << cage.status().message;
+  std::vector<double> fill(8, 0.25);
+  std::vector<int> component(8, 0), numbers(8, -1);
+  fill.resize(16, 0.5);
+  component.resize(16, 1);
+  numbers.resize(16, 0);
+  EXPECT_EQ(cage.value().volumeFraction, fill) << "the first tet is cut, too, as it has an edge with a node on it";
+  EXPECT_EQ(cage.value().component, component);
+  EXPECT_EQ(cage.value().quadraticTet, numbers);
+  EXPECT_TRUE(cage.value().masses.empty()) << "the first tet has nodes that the file does not know";
 }
 
 TEST(LoadVtk, ReadsOverFieldsAndData) {

@@ -28,7 +28,7 @@ struct QuadraticTet {
 /// The quadratic tets that `Cage::quadraticTet` tells of, by their number; none if it is empty. Cost O(T) for T tets.
 /// cage    its indices are in range
 /// Errors  SizeMismatch: another number of values than tets; InvalidOption: a number below -1, or that leaves one out;
-///         eight tets of one number are not the uniform refinement of a tet
+///         the tets of one number are not eight, or not the uniform refinement of a tet
 TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage);
 
 /// Makes a cage of quadratic tets: each tet of the mesh becomes one, with nodes at the middles of its edges. For meshes
@@ -36,7 +36,15 @@ TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cag
 /// mesh      valid (see `validate`), without flat tets; rest space, any unit
 /// Returns   a cage of 8 T tets for T tets; the mesh's nodes come first, in their order
 /// Cost      O(T log T)
-/// Errors    those of `validate(const TetMesh&)`; Degenerate: flat tets
+/// Errors    those of `validate(const TetMesh&)`; Degenerate: flat tets; TooLarge: 8 T tets are too many
 TETSKIN_CORE_API Result<Cage> refineQuadratic(const TetMesh& mesh);
+
+/// Finds the quadratic tets of a mesh that was refined uniformly, wholly or in part, by any program: groups of eight
+/// tets that `refineQuadratic` could have made of one, in any order and orientation. For meshes that are filled by
+/// their body. Where tets could be grouped in several ways, as in a lattice or in a mesh that was refined twice, the
+/// groups are taken that hang together, by whole faces, with the most others: those of all tets, if there are such.
+/// Tets that belong to no group stay linear. cage     valid (see `validate`); its `quadraticTet` is replaced, and
+/// becomes empty if there are none Returns  the number of quadratic tets Cost     O(T log T)
+TETSKIN_CORE_API std::size_t findQuadraticTets(Cage& cage);
 
 }  // namespace tetskin

@@ -57,11 +57,14 @@ struct TETSKIN_IO_API MeshFileReport {
 /// line of an `.obj` or an ASCII `.ply` file. Throws nothing.
 TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report = nullptr);
 
-/// What a file contained besides the tets that were read. Also written if reading fails, up to the point of failure.
+/// What was not read of a file of tets as it stands there. Also written if reading fails, up to the point of failure.
 struct TETSKIN_IO_API TetFileReport {
-  std::size_t skippedCells = 0;  ///< cells that are no tets: surfaces, lines, hexahedra, ...
-  std::size_t cornersOnly = 0;   ///< tets of higher order, with nodes on their edges, read by their four corners
-  std::size_t droppedNodes = 0;  ///< nodes on the edges of these, and inside, which no tet names any more
+  std::size_t skippedCells = 0;   ///< cells that are no tets: surfaces, lines, hexahedra, ...
+  std::size_t quadraticTets = 0;  ///< tets of second or higher order that became quadratic ones, of eight tets each
+  std::size_t cutLinearTets = 0;  ///< tets of first order that became eight, beside tets that have nodes on their edges
+  std::size_t movedNodes = 0;     ///< nodes on curved edges that were moved to the middle, so that the edge is straight
+  double farthestMove = 0.0;      ///< the largest distance by which one was, in the file's unit
+  std::size_t droppedNodes = 0;   ///< nodes of tets above second order that no tet has any more
 
   /// Readable summary in one line; empty if everything was read.
   std::string describe() const;
@@ -74,10 +77,12 @@ struct TETSKIN_IO_API TetFileReport {
 /// - `.msh`          Gmsh, ASCII or binary, versions 2.x, 4.0 and 4.1
 /// - `.mesh`         Medit, ASCII
 ///
-/// Nodes and tets are in the file's order and unit. Tets of higher order (VTK types 24 and 71, Gmsh type 11, ..., 10
-/// nodes of TetGen) are read by their corners, without the nodes that they have beside these; cells that are no tets
-/// are skipped. Both are counted in `report`. In the result, every index names a node and no coordinate is beyond
-/// Limits::kMaxCoordinate; for other faults see `checkTetMesh`.
+/// Nodes and tets are in the file's order and unit. Cells that are no tets are skipped. Tets of second order (VTK types
+/// 24, 71 and 79, Gmsh type 11, 10 nodes of TetGen, TetrahedraP2 of Medit) become eight tets each, with the nodes on
+/// their edges, wherever these are. So do tets of higher order, of which the corners are read, and nodes made at the
+/// middles of the edges; and tets of first order, if one of them shares an edge with those. All is counted in `report`.
+/// In the result, every index names a node and no coordinate is beyond Limits::kMaxCoordinate; for other faults see
+/// `checkTetMesh`.
 ///
 /// Cost: linear; memory is bounded by the size of the file, whatever counts it states.
 ///
@@ -94,9 +99,11 @@ TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileRepor
 /// FileNotWritable.
 TETSKIN_IO_API Status saveTetMesh(const TetMesh& mesh, const std::string& path);
 
-/// Reads a cage: what `loadTetMesh` reads, and from a `.vtk` file also the data that `saveCage` writes. Data that is
-/// absent stays empty; arrays of other names are skipped, and so are values of cells that are not tets. If the file
-/// stores which mesh the cage belongs to, `Cage::checkMesh` compares it.
+/// Reads a cage: what `loadTetMesh` reads, and from a `.vtk` file also the data that `saveCage` writes. The eight tets
+/// of one of second or higher order become a quadratic tet (see `quadraticTets`), unless it is flat; so that its edges
+/// are straight, nodes on them are moved to their middles. Data that is absent stays empty; arrays of other names are
+/// skipped, and so are values of cells that are not tets. If the file stores which mesh the cage belongs to,
+/// `Cage::checkMesh` compares it.
 ///
 /// Cost: linear; memory is bounded by the size of the file. Errors: those of `loadTetMesh`; for an array by one of
 /// these names with a wrong count, type or value: Malformed, SizeMismatch, InvalidOption, IndexOutOfRange.
@@ -105,8 +112,8 @@ TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* rep
 /// Writes a cage: the file of `saveTetMesh`, followed, in a `.vtk` file, by all data of the cage, so that `loadCage`
 /// gives a bit-identical cage:
 /// - FIELD:      `mesh_hash` (unsigned_int, upper and lower 32 bits), `vertex_tets` (int, one per vertex of the mesh)
-/// - CELL_DATA:  `fill`, `factor` (double), `part`, `lattice_tet` (int), `fine_fill` (unsigned_char, kFineTets per
-///   tet): volumeFraction, stiffnessFactor, component, sourceTet and fineVolumeFraction
+/// - CELL_DATA:  `fill`, `factor` (double), `part`, `lattice_tet`, `quadratic_tet` (int), `fine_fill` (unsigned_char,
+///   kFineTets per tet): volumeFraction, stiffnessFactor, component, sourceTet, quadraticTet and fineVolumeFraction
 /// - POINT_DATA: `mass` (double)
 ///
 /// ParaView shows these arrays; Bullet's reader and simple programs stop before them. A cage without data gives the

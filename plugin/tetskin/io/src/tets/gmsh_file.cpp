@@ -3,7 +3,6 @@
 //
 // This work is based on:
 //   Christophe Geuzaine, Jean-François Remacle, "Gmsh Reference Manual", chapter "Gmsh file formats"
-#include <tetskin/io/src/tets/corner_tets.h>
 #include <tetskin/io/src/tets/gmsh_file.h>
 #include <tetskin/io/src/text/binary_numbers.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
@@ -22,12 +21,12 @@ namespace tetskin::io {
 
 namespace {
 
-/// Gmsh's number for elements of this type.
-constexpr int kGmshTet = 4;
+/// Gmsh's numbers for elements of these types.
+constexpr int kGmshTet = 4, kGmshQuadraticTet = 11;
 
-bool isHighOrderTet(int type) {
-  // of order 2; of order 3 to 5 and their kin without inner nodes; of order 6 to 10
-  return type == 11 || (type >= 29 && type <= 33) || (type >= 71 && type <= 75);
+bool isAboveSecondOrder(int type) {
+  // of order 3 to 5 and their kin without inner nodes; of order 6 to 10
+  return (type >= 29 && type <= 33) || (type >= 71 && type <= 75);
 }
 
 /// How many nodes the elements of a type have, by which binary files are read over; 0 for unusual ones.
@@ -41,14 +40,17 @@ class GmshReader {
  public:
   GmshReader(const std::string& path, std::string_view text, TetFileReport& report)
       : path_(path), in_(text), report_(report) {}
-  Result<Cage> read();
+  Result<FileCage> read();
 
  private:
   /// A tet by the tags of its nodes, which may follow later in the file.
   struct TaggedTet {
     std::int64_t tag = 0;
-    std::array<std::int64_t, 4> nodes{};
+    std::array<std::int64_t, 10> nodes{};  ///< the corners only, except of those of second order
+    int type = 0;                          ///< Gmsh's number
     std::size_t line = 0;
+
+    std::size_t nodeCount() const { return type == kGmshQuadraticTet ? 10 : 4; }
   };
 
   Status readSection(std::string_view name);
@@ -61,7 +63,7 @@ class GmshReader {
   Status readElementsOfKind(int type, std::uint64_t count, int tags);
   Status readElements4();
   Status readElement(int type, int tags);
-  Status readEdgeTags(int type);
+  Status readSpareTags(int type);
   Status readTextCount(std::uint64_t numbersEach, std::uint64_t& count);
   Status readCount(std::uint64_t numbersEach, std::uint64_t& count);
   Status checkCount(std::uint64_t numbersEach, std::uint64_t count) const;
@@ -95,9 +97,8 @@ class GmshReader {
   ByteOrder order_ = ByteOrder::Little;
   std::vector<std::pair<std::int64_t, int>> tags_;  ///< tag and index of every node
   std::vector<TaggedTet> tets_;
-  std::vector<std::int64_t> edgeTags_;  ///< nodes of tets of higher order that are no corners
-  EdgeNodes edgeNodes_;
-  Cage cage_;
+  std::vector<std::int64_t> spareTags_;  ///< nodes of tets above second order that are no corners
+  FileCage file_;
 };
 
 template <class Integer>
@@ -117,7 +118,7 @@ bool GmshReader::number(double& value) {
   return true;
 }
 
-Result<Cage> GmshReader::read() {
+Result<FileCage> GmshReader::read() {
   for (std::string_view word = in_.word(); !word.empty(); word = in_.word()) {
     if (word[0] != '$' || word.size() == 1) {
       return error(StatusCode::Malformed, "has " + excerpt(word) + " where a section is expected; is it a Gmsh file?");
@@ -129,8 +130,7 @@ Result<Cage> GmshReader::read() {
   Status status = sortTags();
   if (status.ok()) status = collectTets();
   if (!status.ok()) return status;
-  edgeNodes_.drop(cage_, report_);
-  return std::move(cage_);
+  return std::move(file_);
 }
 
 Status GmshReader::readSection(std::string_view name) {
@@ -211,7 +211,7 @@ Status GmshReader::readTag() {
 }
 
 Status GmshReader::readPosition() {
-  std::vector<Eigen::Vector3d>& nodes = cage_.mesh.nodes;
+  std::vector<Eigen::Vector3d>& nodes = file_.cage.mesh.nodes;
   assert(nodes.size() < tags_.size());
   Eigen::Vector3d node;
   if (!number(node[0]) || !number(node[1]) || !number(node[2])) return cutShort();
@@ -316,7 +316,7 @@ Status GmshReader::readElementsOfKind(int type, std::uint64_t count, int tags) {
 /// is no tet.
 Status GmshReader::readElement(int type, int tags) {
   assert(!tets_.empty());
-  const bool highOrder = isHighOrderTet(type), tet = type == kGmshTet || highOrder;
+  const bool tet = type == kGmshTet || type == kGmshQuadraticTet || isAboveSecondOrder(type);
   if (!tet && !binary_) in_.restOfLine();
   std::int64_t ignored = 0;
   for (int i = 0; (tet || binary_) && i < tags; ++i) {
@@ -331,22 +331,22 @@ Status GmshReader::readElement(int type, int tags) {
     return {};
   }
   tets_.back().line = line();
-  for (std::int64_t& node : tets_.back().nodes) {
-    if (!tag(node)) return cutShort();
+  tets_.back().type = type;
+  for (std::size_t i = 0; i < tets_.back().nodeCount(); ++i) {
+    if (!tag(tets_.back().nodes[i])) return cutShort();
   }
-  report_.cornersOnly += highOrder;
-  return highOrder ? readEdgeTags(type) : Status();
+  return isAboveSecondOrder(type) ? readSpareTags(type) : Status();
 }
 
 /// Reads the nodes of a tet that follow its corners: in text, all of its line.
-Status GmshReader::readEdgeTags(int type) {
+Status GmshReader::readSpareTags(int type) {
   std::int64_t node = 0;
   for (std::size_t i = 4; binary_ && i < nodesOf(type); ++i) {
     if (!tag(node)) return cutShort();
-    edgeTags_.push_back(node);
+    spareTags_.push_back(node);
   }
   if (binary_) return {};
-  for (TextScanner rest(in_.restOfLine()); rest.integer(node);) edgeTags_.push_back(node);
+  for (TextScanner rest(in_.restOfLine()); rest.integer(node);) spareTags_.push_back(node);
   return {};
 }
 
@@ -366,21 +366,30 @@ int GmshReader::find(std::int64_t tag) const {
 }
 
 Status GmshReader::collectTets() {
-  TetMesh& mesh = cage_.mesh;
+  TetMesh& mesh = file_.cage.mesh;
   assert(tags_.size() == mesh.nodeCount() && std::is_sorted(tags_.begin(), tags_.end()));
   mesh.tets.reserve(tets_.size());
   for (const TaggedTet& tagged : tets_) {
-    Tet tet;
-    for (std::size_t i = 0; i < 4; ++i) {
-      tet[i] = find(tagged.nodes[i]);
-      if (tet[i] >= 0) continue;
+    std::array<int, 10> nodes{};
+    for (std::size_t i = 0; i < tagged.nodeCount(); ++i) {
+      nodes[i] = find(tagged.nodes[i]);
+      if (nodes[i] >= 0) continue;
       return fileError(StatusCode::IndexOutOfRange, path_, tagged.line,
                        "tet " + std::to_string(tagged.tag) + " refers to node " + std::to_string(tagged.nodes[i]) +
                            ", which does not exist; correct the tet");
     }
-    mesh.tets.push_back(tet);
+    if (tagged.type == kGmshQuadraticTet) {
+      file_.addQuadratic(nodes, kGmshOrder, tagged.line);
+      continue;
+    }
+    if (tagged.type != kGmshTet) {
+      file_.highOrder.emplace_back();
+      file_.highOrder.back().tet = mesh.tetCount();
+      file_.highOrder.back().line = tagged.line;
+    }
+    mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
   }
-  for (const std::int64_t tag : edgeTags_) edgeNodes_.add(find(tag));
+  for (const std::int64_t tag : spareTags_) file_.spareNodes.push_back(find(tag));
   return {};
 }
 
@@ -392,7 +401,7 @@ bool saysBinary(std::string_view bytes) {
 
 }  // namespace
 
-Result<Cage> readGmshFile(const std::string& path, TetFileReport& report) {
+Result<FileCage> readGmshFile(const std::string& path, TetFileReport& report) {
   Result<std::string> text = readFile(path);
   if (!text.ok()) return text.status();
   if (!saysBinary(text.value())) text.value() = withLineFeeds(std::move(text.value()));

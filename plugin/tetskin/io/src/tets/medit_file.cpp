@@ -3,13 +3,13 @@
 //
 // This work is based on:
 //   Pascal J. Frey, "MEDIT: An Interactive Mesh Visualization Software", INRIA RT-0253, 2001
-#include <tetskin/io/src/tets/corner_tets.h>
 #include <tetskin/io/src/tets/medit_file.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_scanner.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <limits>
@@ -33,7 +33,7 @@ class MeditReader {
  public:
   MeditReader(const std::string& path, std::string_view text, TetFileReport& report)
       : path_(path), in_(text), report_(report) {}
-  Result<Cage> read();
+  Result<FileCage> read();
 
  private:
   Status readSection(std::string_view name);
@@ -52,11 +52,11 @@ class MeditReader {
   TextScanner in_;
   TetFileReport& report_;
   std::vector<std::size_t> lines_;  ///< by tet
-  EdgeNodes edgeNodes_;
-  Cage cage_;
+  FileCage file_;
+  TetMesh& mesh_ = file_.cage.mesh;
 };
 
-Result<Cage> MeditReader::read() {
+Result<FileCage> MeditReader::read() {
   TextScanner ahead = in_;
   if (ahead.word().substr(0, 20) != "MeshVersionFormatted") {
     return fileError(StatusCode::Malformed, path_, 1,
@@ -66,8 +66,8 @@ Result<Cage> MeditReader::read() {
     if (Status status = readSection(word); !status.ok()) return status;
   }
   if (Status status = checkTets(); !status.ok()) return status;
-  edgeNodes_.drop(cage_, report_);
-  return std::move(cage_);
+  file_.anyOrder = true;
+  return std::move(file_);
 }
 
 Status MeditReader::readSection(std::string_view name) {
@@ -106,28 +106,29 @@ Status MeditReader::readVertices() {
     if (const std::string fault = coordinateFault(node); !fault.empty()) {
       return error(StatusCode::NonFinite, "node " + std::to_string(n + 1) + fault);
     }
-    cage_.mesh.nodes.push_back(node);
+    mesh_.nodes.push_back(node);
   }
   return {};
 }
 
 Status MeditReader::readTets(std::size_t nodesEach) {
-  assert(nodesEach >= 4);
+  assert(nodesEach == 4 || nodesEach == 10);
   std::uint64_t count = 0;
   if (Status status = readCount(nodesEach + 1, count); !status.ok()) return status;
   for (std::uint64_t t = 0; t < count; ++t) {
-    Tet tet;
+    std::array<int, 10> nodes{};
     for (std::size_t i = 0; i < nodesEach; ++i) {
-      int node = 0;
-      if (!in_.integer(node)) return cutShort();
-      if (i >= 4) edgeNodes_.add(std::int64_t{node} - 1);
-      if (i < 4) tet[i] = node > 0 ? node - 1 : -1;
+      if (!in_.integer(nodes[i])) return cutShort();
+      nodes[i] = std::max(nodes[i], 0) - 1;
     }
-    cage_.mesh.tets.push_back(tet);
+    if (nodesEach == 4) {
+      mesh_.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+    } else {
+      file_.addQuadratic(nodes, kNoOrder, in_.line());
+    }
     lines_.push_back(in_.line());
     in_.word();  // its label
   }
-  if (nodesEach > 4) report_.cornersOnly += count;
   return {};
 }
 
@@ -148,20 +149,24 @@ Status MeditReader::skip(bool cells) {
 
 /// Vertices may follow their tets.
 Status MeditReader::checkTets() const {
+  const auto exists = [&](int node) { return node >= 0 && static_cast<std::size_t>(node) < mesh_.nodeCount(); };
+  const auto missing = [&](std::size_t tet) {
+    return fileError(StatusCode::IndexOutOfRange, path_, lines_[tet],
+                     "tet " + std::to_string(tet + 1) + " refers to a node that does not exist, of " +
+                         std::to_string(mesh_.nodeCount()) + ", counted from 1; correct the tet");
+  };
   for (std::size_t t = 0; t < lines_.size(); ++t) {
-    for (const int node : cage_.mesh.tets[t]) {
-      if (node >= 0 && static_cast<std::size_t>(node) < cage_.mesh.nodeCount()) continue;
-      return fileError(StatusCode::IndexOutOfRange, path_, lines_[t],
-                       "tet " + std::to_string(t + 1) + " refers to a node that does not exist, of " +
-                           std::to_string(cage_.mesh.nodeCount()) + ", counted from 1; correct the tet");
-    }
+    if (!std::all_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), exists)) return missing(t);
+  }
+  for (const HighOrderTet& tet : file_.highOrder) {
+    if (!std::all_of(tet.middles.begin(), tet.middles.end(), exists)) return missing(tet.tet);
   }
   return {};
 }
 
 }  // namespace
 
-Result<Cage> readMeditFile(const std::string& path, TetFileReport& report) {
+Result<FileCage> readMeditFile(const std::string& path, TetFileReport& report) {
   Result<std::string> text = readText(path);
   if (!text.ok()) return text.status();
   const std::string plain = withoutComments(std::move(text).value());

@@ -3,19 +3,22 @@
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/gmsh_file.h>
+#include <tetskin/io/src/tets/high_order_tets.h>
 #include <tetskin/io/src/tets/medit_file.h>
 #include <tetskin/io/src/tets/tetgen_file.h>
 #include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/text/file_text.h>
 
+#include <cstdio>
+
 namespace tetskin {
 
 namespace {
 
-Result<Cage> readByExtension(const std::string& path, io::VtkData data, TetFileReport& report) {
+Result<io::FileCage> readByExtension(const std::string& path, io::VtkData data, TetFileReport& report) {
   const std::string extension = io::lowerExtension(path);
   if (extension == ".vtk") return io::readVtkFile(path, data, report);
-  if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path, report);
+  if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path);
   if (extension == ".msh") return io::readGmshFile(path, report);
   if (extension == ".mesh") return io::readMeditFile(path, report);
   const std::string what = extension == ".vtu" || extension == ".pvtu"
@@ -25,34 +28,46 @@ Result<Cage> readByExtension(const std::string& path, io::VtkData data, TetFileR
   return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
 }
 
-Result<Cage> load(const std::string& path, io::VtkData data, TetFileReport* report) {
-  TetFileReport skipped;
-  Result<Cage> cage = readByExtension(path, data, skipped);
-  if (report) *report = skipped;
-  if (!cage.ok() || !cage.value().mesh.tets.empty()) return cage;
-  return io::fileError(StatusCode::Empty, path, 0,
-                       "has no tets" + (skipped.skippedCells > 0 ? ": " + skipped.describe() : std::string()) +
-                           "; export a volume mesh of tets");
+Result<Cage> load(const std::string& path, io::VtkData data, io::CurvedEdges curved, TetFileReport* report) {
+  TetFileReport ignored;
+  TetFileReport& found = report ? *report : ignored;
+  found = {};
+  Result<io::FileCage> file = readByExtension(path, data, found);
+  if (!file.ok()) return file.status();
+  if (file.value().cage.mesh.tets.empty()) {
+    return io::fileError(StatusCode::Empty, path, 0,
+                         "has no tets" + (found.skippedCells > 0 ? ": " + found.describe() : std::string()) +
+                             "; export a volume mesh of tets");
+  }
+  if (Status status = io::cutHighOrderTets(path, curved, file.value(), found); !status.ok()) return status;
+  return std::move(file.value().cage);
 }
 
 }  // namespace
 
 std::string TetFileReport::describe() const {
   std::string words;
-  if (skippedCells > 0) words = std::to_string(skippedCells) + " cells that are no tets were skipped";
-  if (cornersOnly == 0) return words;
-  return words + (words.empty() ? "" : ", ") + std::to_string(cornersOnly) +
-         " tets of higher order were read by their corners, without " + std::to_string(droppedNodes) + " other nodes";
+  const auto add = [&](std::size_t count, const std::string& what) {
+    if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + what;
+  };
+  add(skippedCells, " cells that are no tets were skipped");
+  add(quadraticTets, " tets of second or higher order became quadratic tets, each of eight tets");
+  add(cutLinearTets, " tets of first order were cut into eight, to have the nodes of their neighbours");
+  char distance[32];
+  std::snprintf(distance, sizeof distance, "%.3g", farthestMove);
+  add(movedNodes, " nodes on curved edges were moved to their middles, by up to " + std::string(distance));
+  add(droppedNodes, " nodes above second order were left out");
+  return words;
 }
 
 Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report) {
-  Result<Cage> cage = load(path, io::VtkData::Skipped, report);
+  Result<Cage> cage = load(path, io::VtkData::Skipped, io::CurvedEdges::Kept, report);
   if (!cage.ok()) return cage.status();
   return std::move(cage.value().mesh);
 }
 
 Result<Cage> loadCage(const std::string& path, TetFileReport* report) {
-  Result<Cage> cage = load(path, io::VtkData::OfCage, report);
+  Result<Cage> cage = load(path, io::VtkData::OfCage, io::CurvedEdges::Straightened, report);
   if (!cage.ok()) return cage;
   const Status status = validateAttributes(cage.value());
   if (status.ok()) return cage;

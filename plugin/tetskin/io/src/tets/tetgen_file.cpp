@@ -3,12 +3,12 @@
 //
 // This work is based on:
 //   Hang Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", file formats .node and .ele
-#include <tetskin/io/src/tets/corner_tets.h>
 #include <tetskin/io/src/tets/tetgen_file.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_records.h>
 
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <filesystem>
@@ -70,31 +70,31 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
   return {};
 }
 
+/// The first `count` nodes are read.
 Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, std::size_t nodeCount, std::int64_t base,
-               Tet& tet) {
+               std::size_t count, std::array<int, 10>& nodes) {
   assert(base == 0 || base == 1);
   record.word();  // its index, which nothing refers to
-  for (int& corner : tet) {
+  for (std::size_t i = 0; i < count; ++i) {
     std::int64_t node = 0;
     if (!record.integer(node)) {
-      return malformed(
-          path, record,
-          "has no index and four nodes for tet " + std::to_string(t) + "; is it complete? Correct the line");
+      return malformed(path, record,
+                       "has no index and " + std::string(count == 4 ? "four" : "ten") + " nodes for tet " +
+                           std::to_string(t) + "; is it complete? Correct the line");
     }
     if (node < base || node - base >= static_cast<std::int64_t>(nodeCount)) {
       return fileError(StatusCode::IndexOutOfRange, path, record.line(),
                        "tet " + std::to_string(t) + " refers to node " + std::to_string(node) + ", but there are " +
                            std::to_string(nodeCount) + ", counted from " + std::to_string(base) + "; correct the tet");
     }
-    corner = static_cast<int>(node - base);
+    nodes[i] = static_cast<int>(node - base);
   }
   return {};
 }
 
-/// Reads `.ele`: a header "count nodesPerTet attributes", then lines "index n1 n2 n3 n4 ...".
-/// edgeNodes  takes the other nodes of tets of 10
-Status readTets(const std::string& path, std::string_view text, std::int64_t base, TetMesh& mesh,
-                EdgeNodes& edgeNodes) {
+/// Reads `.ele`: a header "count nodesPerTet attributes", then lines "index n1 n2 n3 n4 ...". With 10 nodes, those on
+/// the edges are in an order that changed from TetGen 1.4 to 1.5.
+Status readTets(const std::string& path, std::string_view text, std::int64_t base, FileCage& file) {
   TextRecords records(text);
   TextScanner header = records.next();
   std::uint64_t count = 0, corners = 0;
@@ -104,19 +104,20 @@ Status readTets(const std::string& path, std::string_view text, std::int64_t bas
   if (corners != 4 && corners != 10) {
     return malformed(path, header, "has tets of " + std::to_string(corners) + " nodes; only 4 and 10 are supported");
   }
-  if (count > std::numeric_limits<std::uint32_t>::max() || !records.hasRoomFor(5 * count)) {
+  if (count > std::numeric_limits<std::uint32_t>::max() || !records.hasRoomFor((corners + 1) * count)) {
     return tooShort(path, header, count, "tets");
   }
+  TetMesh& mesh = file.cage.mesh;
   mesh.tets.reserve(static_cast<std::size_t>(count));
   for (std::uint64_t t = 0; t < count; ++t) {
     TextScanner record = records.next();
-    Tet tet;
-    Status status = readTet(path, record, t, mesh.nodeCount(), base, tet);
+    std::array<int, 10> nodes{};
+    Status status = readTet(path, record, t, mesh.nodeCount(), base, static_cast<std::size_t>(corners), nodes);
     if (!status.ok()) return status;
-    mesh.tets.push_back(tet);
-    for (std::uint64_t i = 4; i < corners; ++i) {
-      std::int64_t node = 0;
-      if (record.integer(node)) edgeNodes.add(node - base);
+    if (corners == 4) {
+      mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+    } else {
+      file.addQuadratic(nodes, kNoOrder, record.line());
     }
   }
   return {};
@@ -132,7 +133,7 @@ std::string sibling(const std::string& path, const char* extension, const char* 
 
 }  // namespace
 
-Result<Cage> readTetgenFiles(const std::string& path, TetFileReport& report) {
+Result<FileCage> readTetgenFiles(const std::string& path) {
   const bool isNode = lowerExtension(path) == ".node";
   const std::string nodePath = isNode ? path : sibling(path, ".node", ".NODE");
   const std::string elePath = isNode ? sibling(path, ".ele", ".ELE") : path;
@@ -141,15 +142,13 @@ Result<Cage> readTetgenFiles(const std::string& path, TetFileReport& report) {
   const Result<std::string> eleText = readText(elePath);
   if (!eleText.ok()) return eleText.status();
 
-  Cage cage;
-  EdgeNodes edgeNodes;
+  FileCage file;
+  file.anyOrder = true;
   std::int64_t base = 0;
-  Status status = readNodes(nodePath, nodeText.value(), cage.mesh.nodes, base);
-  if (status.ok()) status = readTets(elePath, eleText.value(), base, cage.mesh, edgeNodes);
+  Status status = readNodes(nodePath, nodeText.value(), file.cage.mesh.nodes, base);
+  if (status.ok()) status = readTets(elePath, eleText.value(), base, file);
   if (!status.ok()) return status;
-  if (!edgeNodes.empty()) report.cornersOnly = cage.mesh.tetCount();
-  edgeNodes.drop(cage, report);
-  return cage;
+  return file;
 }
 
 }  // namespace tetskin::io

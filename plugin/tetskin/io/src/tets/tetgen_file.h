@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/io/files.h>
+#include <tetskin/io/src/tets/high_order_tets.h>
 
 #include <string>
 
@@ -10,6 +10,6 @@ namespace tetskin::io {
 
 /// Reads a pair of TetGen files, given the path of either, as `loadTetMesh` describes. If they contain no tets, the
 /// mesh has none.
-Result<Cage> readTetgenFiles(const std::string& path, TetFileReport& report);
+Result<FileCage> readTetgenFiles(const std::string& path);
 
 }  // namespace tetskin::io

@@ -162,6 +162,7 @@ Status VtkCageData::readArray(const VtkArray& array) {
   if (is(Owner::Cells, "factor")) return readInto(array, 1, cage_.stiffnessFactor);
   if (is(Owner::Cells, "part")) return readInto(array, 1, cage_.component);
   if (is(Owner::Cells, "lattice_tet")) return readInto(array, 1, cage_.sourceTet);
+  if (is(Owner::Cells, "quadratic_tet")) return readInto(array, 1, cage_.quadraticTet);
   if (is(Owner::Cells, "fine_fill")) return readInto(array, kFineTets, cage_.fineVolumeFraction);
   if (is(Owner::Nodes, "mass")) return readInto(array, 1, cage_.masses);
   return file_.skip(array);
@@ -213,6 +214,7 @@ void VtkCageData::keepTets(const std::vector<bool>& isTet) {
   keepValues(cage_.stiffnessFactor, isTet);
   keepValues(cage_.component, isTet);
   keepValues(cage_.sourceTet, isTet);
+  keepValues(cage_.quadraticTet, isTet);
   keepValues(cage_.fineVolumeFraction, isTet);
 }
 
@@ -227,12 +229,13 @@ void appendCageData(std::string& text, const Cage& cage) {
   appendFieldArray(text, "vertex_tets", "int", cage.vertexTets, 1);
 
   const bool ofCells = !(cage.volumeFraction.empty() && cage.stiffnessFactor.empty() && cage.component.empty() &&
-                         cage.sourceTet.empty() && cage.fineVolumeFraction.empty());
+                         cage.sourceTet.empty() && cage.quadraticTet.empty() && cage.fineVolumeFraction.empty());
   if (ofCells) appendHeader(text, "CELL_DATA", cage.mesh.tetCount());
   appendScalars(text, "fill", "double", cage.volumeFraction);
   appendScalars(text, "factor", "double", cage.stiffnessFactor);
   appendScalars(text, "part", "int", cage.component);
   appendScalars(text, "lattice_tet", "int", cage.sourceTet);
+  appendScalars(text, "quadratic_tet", "int", cage.quadraticTet);
   if (!cage.fineVolumeFraction.empty()) appendHeader(text, "FIELD FieldData", 1);
   appendFieldArray(text, "fine_fill", "unsigned_char", cage.fineVolumeFraction, kFineTets);
 

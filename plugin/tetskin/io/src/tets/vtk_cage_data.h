@@ -9,6 +9,7 @@
 //                                   factor       tetCount          double
 //                                   part         tetCount          int
 //                                   lattice_tet  tetCount          int
+//                                   quadratic_tet  tetCount        int
 //                          FIELD    fine_fill    kFineTets x tetCount  unsigned_char
 //   POINT_DATA             SCALARS  mass         nodeCount         double
 #pragma once

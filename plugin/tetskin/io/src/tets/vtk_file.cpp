@@ -3,12 +3,12 @@
 //
 // This work is based on:
 //   "VTK File Formats", Kitware, chapter "Simple Legacy Formats" (versions 2.0 to 5.1)
-#include <tetskin/io/src/tets/corner_tets.h>
 #include <tetskin/io/src/tets/vtk_cage_data.h>
 #include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/tets/vtk_text.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <limits>
@@ -28,7 +28,7 @@ class VtkReader {
  public:
   VtkReader(const std::string& path, std::string_view text, VtkData data, TetFileReport& report)
       : file_(path, text), withData_(data == VtkData::OfCage), report_(report) {}
-  Result<Cage> read();
+  Result<FileCage> read();
 
  private:
   Status readHeader();
@@ -51,6 +51,7 @@ class VtkReader {
   }
   bool isTet(std::size_t cell) const { return !hasTypes_ || cellTypes_[cell] == kVtkTet || isHighOrderTet(cell); }
   Status addTet(std::size_t cell);
+  Status checkSize(std::size_t cell) const;
   Status error(StatusCode code, const std::string& what) const { return file_.error(code, what); }
   Status errorAt(std::size_t line, StatusCode code, const std::string& what) const {
     return fileError(code, file_.path(), line, what);
@@ -67,17 +68,17 @@ class VtkReader {
   std::vector<std::size_t> cellFirst_;   ///< by cell: index of its first node in entries_
   std::vector<std::size_t> cellSize_;    ///< by cell: number of its nodes
   std::vector<std::int64_t> cellTypes_;
-  EdgeNodes edgeNodes_;
-  Cage cage_;
+  FileCage result_;
+  Cage& cage_ = result_.cage;
   VtkCageData data_{file_, cage_};
 };
 
-Result<Cage> VtkReader::read() {
+Result<FileCage> VtkReader::read() {
   Status status = readHeader();
   if (status.ok()) status = readSections();
   if (status.ok()) status = collectTets();
   if (!status.ok()) return status;
-  return std::move(cage_);
+  return std::move(result_);
 }
 
 /// Reads up to the data of points and cells, and reads these as well if the cage's data are wanted.
@@ -274,7 +275,6 @@ Status VtkReader::collectTets() {
     }
     ++report_.skippedCells;
   }
-  edgeNodes_.drop(cage_, report_);
   if (report_.skippedCells == 0) return {};
   std::vector<bool> tets;
   for (std::size_t cell = 0; cell < cellFirst_.size(); ++cell) tets.push_back(isTet(cell));
@@ -285,35 +285,46 @@ Status VtkReader::collectTets() {
 Status VtkReader::addTet(std::size_t cell) {
   assert(cell < cellFirst_.size() && cellFirst_[cell] + cellSize_[cell] <= entries_.size());
   const std::size_t first = cellFirst_[cell], size = cellSize_[cell];
-  const bool cornersOnly = isHighOrderTet(cell) && size > 4;  // which come first
-  report_.cornersOnly += cornersOnly;
-  if (cornersOnly) {
-    const auto nodes = entries_.begin() + static_cast<std::ptrdiff_t>(first);
-    edgeNodes_.add(nodes + 4, nodes + static_cast<std::ptrdiff_t>(size));
-  }
-  if (size != 4 && !cornersOnly) {
-    return errorAt(
-        lineOf(first), StatusCode::Malformed,
-        "cell " + std::to_string(cell) + " has " + std::to_string(size) + " nodes where a tet has 4" +
-            (hasTypes_ ? "; correct its type" : ", and without CELL_TYPES all cells must be tets; add them"));
-  }
-  Tet tet;
-  for (std::size_t i = 0; i < 4; ++i) {
+  if (Status status = checkSize(cell); !status.ok()) return status;
+  std::array<int, 10> nodes{};
+  for (std::size_t i = 0; i < (size == 10 ? 10 : 4); ++i) {
     const std::int64_t node = entries_[first + i];
     if (node < 0 || static_cast<std::uint64_t>(node) >= cage_.mesh.nodeCount()) {
       return errorAt(lineOf(first + i), StatusCode::IndexOutOfRange,
                      "cell " + std::to_string(cell) + " refers to node " + std::to_string(node) + ", but there are " +
                          std::to_string(cage_.mesh.nodeCount()) + ", counted from 0; correct the cell");
     }
-    tet[i] = static_cast<int>(node);
+    nodes[i] = static_cast<int>(node);
   }
-  cage_.mesh.tets.push_back(tet);
+  if (size == 10) {
+    result_.addQuadratic(nodes, kVtkOrder, lineOf(first));
+    return {};
+  }
+  if (size > 10) {
+    const auto all = entries_.begin() + static_cast<std::ptrdiff_t>(first);
+    result_.spareNodes.insert(result_.spareNodes.end(), all + 4, all + static_cast<std::ptrdiff_t>(size));
+    result_.highOrder.emplace_back();
+    result_.highOrder.back().tet = cage_.mesh.tetCount();
+    result_.highOrder.back().line = lineOf(first);
+  }
+  cage_.mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
   return {};
+}
+
+/// Tets of first order have 4 nodes, of second 10, and those of Lagrange and Bezier may have more.
+Status VtkReader::checkSize(std::size_t cell) const {
+  const std::size_t size = cellSize_[cell];
+  const bool secondOrder = hasTypes_ && cellTypes_[cell] == kVtkQuadraticTet;
+  if (size == (secondOrder ? 10 : 4) || (!secondOrder && isHighOrderTet(cell) && size >= 10)) return {};
+  return errorAt(lineOf(cellFirst_[cell]), StatusCode::Malformed,
+                 "cell " + std::to_string(cell) + " has " + std::to_string(size) + " nodes where a tet " +
+                     (secondOrder ? "of second order has 10" : "has 4") +
+                     (hasTypes_ ? "; correct its type" : ", and without CELL_TYPES all cells must be tets; add them"));
 }
 
 }  // namespace
 
-Result<Cage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report) {
+Result<FileCage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report) {
   Result<std::string> text = readFile(path);
   if (!text.ok()) return text.status();
   // In binary data, a carriage return is a byte like any other, but the lines before the data end with a line feed.

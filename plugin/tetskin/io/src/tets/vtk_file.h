@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/io/files.h>
+#include <tetskin/io/src/tets/high_order_tets.h>
 
 #include <string>
 
@@ -12,6 +12,6 @@ namespace tetskin::io {
 enum class VtkData { Skipped, OfCage };
 
 /// Reads a legacy VTK file as `loadTetMesh` and `loadCage` describe. If the file contains no tets, the cage has none.
-Result<Cage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report);
+Result<FileCage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report);
 
 }  // namespace tetskin::io

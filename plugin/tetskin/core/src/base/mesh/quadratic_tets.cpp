@@ -2,78 +2,27 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
-#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <optional>
 #include <string>
 
 namespace tetskin {
 namespace {
 
-/// How far a node may be from the middle of its edge, and a volume from an eighth, as shares of the edge and the tet.
-/// What is left out of account then is of that size, too.
-constexpr double kMidpointTolerance = 1e-4, kVolumeTolerance = 1e-2;
-
-/// The first node that both tets have, or -1.
-int commonNode(const Tet& a, const Tet& b) {
-  const auto found = std::find_first_of(a.begin(), a.end(), b.begin(), b.end());
-  return found == a.end() ? -1 : *found;
-}
-
-bool isMidpoint(const TetMesh& mesh, int node, int a, int b) {
-  const Eigen::Vector3d edge = mesh.nodes[b] - mesh.nodes[a];
-  return (mesh.nodes[node] - mesh.nodes[a] - 0.5 * edge).norm() <= kMidpointTolerance * edge.norm();
-}
-
-/// The corner of each of the four tets at the corners, whose other nodes are midpoints: the node that none of the other
-/// seven has.
-std::vector<std::array<int, 2>> cornersIn(const TetMesh& mesh, const std::array<int, kSubTets>& tets) {
-  std::vector<std::array<int, 2>> corners;  // node, tet
-  for (const int t : tets) {
-    for (const int node : mesh.tets[t]) {
-      const auto uses = std::count_if(tets.begin(), tets.end(), [&](int other) {
-        return std::count(mesh.tets[other].begin(), mesh.tets[other].end(), node) > 0;
-      });
-      if (uses == 1) corners.push_back({node, t});
-    }
-  }
-  return corners;
-}
-
-/// The quadratic tet that these eight are the uniform refinement of.
-std::optional<QuadraticTet> assembled(const TetMesh& mesh, const std::array<int, kSubTets>& tets) {
-  std::vector<std::array<int, 2>> corners = cornersIn(mesh, tets);
-  if (corners.size() != 4) return {};
-  const auto whole = [&] { return Tet{corners[0][0], corners[1][0], corners[2][0], corners[3][0]}; };
-  if (signedVolume(cornersOf(mesh, whole())) < 0.0) std::swap(corners[2], corners[3]);
-  QuadraticTet result;
-  result.tets = tets;
-  std::size_t next = 4;
-  for (std::size_t a = 0; a < 4; ++a) {
-    result.nodes[a] = corners[a][0];
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      const int middle = commonNode(mesh.tets[corners[a][1]], mesh.tets[corners[b][1]]);
-      if (middle < 0 || !isMidpoint(mesh, middle, corners[a][0], corners[b][0])) return {};
-      result.nodes[next++] = middle;
-    }
-  }
-  const double volume = signedVolume(cornersOf(mesh, whole()));
-  for (const int t : tets) {
-    const double part = kSubTets * std::abs(signedVolume(cornersOf(mesh, mesh.tets[t])));
-    if (!(std::abs(part - volume) <= kVolumeTolerance * volume)) return {};
-    for (const int node : mesh.tets[t]) {
-      if (std::count(result.nodes.begin(), result.nodes.end(), node) == 0) return {};
-    }
-  }
-  return result;
-}
-
 Status invalid(const std::string& message) {
   return {StatusCode::InvalidOption, message};
+}
+
+/// first  the first of the tets, if there are some
+Status notEight(std::size_t number, std::size_t count, int first) {
+  const std::string found =
+      "the cage's quadraticTet is " + std::to_string(number) + " for " + std::to_string(count) + " tets";
+  if (count == 0) return invalid(found + "; number quadratic tets from 0 on, without a gap");
+  return invalid(found + ", the first of which is tet " + std::to_string(first) +
+                 ", and these are not the eight of a "
+                 "uniformly refined tet, with nodes at the middles of its edges");
 }
 
 }  // namespace
@@ -104,11 +53,8 @@ Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage) {
   }
   for (std::size_t k = 0; k < found.size(); ++k) {
     const std::optional<QuadraticTet> tet =
-        counts[k] == kSubTets ? assembled(cage.mesh, found[k].tets) : std::optional<QuadraticTet>();
-    if (!tet) {
-      return invalid("the tets whose quadraticTet is " + std::to_string(k) +
-                     " are not the eight of a uniformly refined tet, with nodes at the middles of its edges");
-    }
+        counts[k] == kSubTets ? assembleQuadraticTet(cage.mesh, found[k].tets) : std::optional<QuadraticTet>();
+    if (!tet) return notEight(k, counts[k], found[k].tets[0]);
     found[k] = *tet;
   }
   return found;
@@ -121,6 +67,7 @@ Result<Cage> refineQuadratic(const TetMesh& mesh) {
   if (report.zeroVolume.count + report.repeatedNode.count > 0) {
     return Status{StatusCode::Degenerate, "a flat tet has no quadratic one; remove flat tets"};
   }
+  if (Status status = checkTetCounts(mesh.nodeCount(), kSubTets * mesh.tetCount()); !status.ok()) return status;
   Cage cage(refineUniformly(positive).mesh);
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) cage.quadraticTet.push_back(static_cast<int>(t / kSubTets));
   return cage;

@@ -7,6 +7,7 @@
 #include <map>
 
 namespace tetskin {
+
 Refinement refineUniformly(const TetMesh& coarse) {
   Refinement result;
   result.edges = uniqueEdges(coarse);
@@ -18,14 +19,14 @@ Refinement refineUniformly(const TetMesh& coarse) {
   }
   result.mesh.tets.reserve(8 * coarse.tetCount());
   for (const Tet& tet : coarse.tets) {
-    std::array<std::array<int, 4>, 4> centroid{};
+    std::array<int, 6> midpoints{};
+    std::size_t next = 0;
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
-        centroid[a][b] = centroid[b][a] = centroidOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
+        midpoints[next++] = centroidOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
       }
     }
-    const auto eight = eightTets(
-        tet, centroid, [&](int a, int b) { return (result.mesh.nodes[a] - result.mesh.nodes[b]).squaredNorm(); });
+    const std::array<Tet, 8> eight = refinedTet(tet, midpoints, result.mesh.nodes);
     result.mesh.tets.insert(result.mesh.tets.end(), eight.begin(), eight.end());
   }
   assert(result.mesh.tetCount() == 8 * coarse.tetCount());

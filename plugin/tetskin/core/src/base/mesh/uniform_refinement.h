@@ -64,7 +64,19 @@ std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
   return eight;
 }
 
-/// The eight small tets of a single tet, in the same order. Not compiled into the library, as Eigen has another
+/// The eight small tets of a single tet, in the same order.
+/// midpoints  nodes at the middles of the edges 01, 02, 03, 12, 13, 23
+/// nodes      positions, by which the shortest diagonal is chosen
+inline std::array<Tet, 8> refinedTet(const Tet& corners, const std::array<int, 6>& midpoints,
+                                     const std::vector<Eigen::Vector3d>& nodes) {
+  std::array<std::array<int, 4>, 4> centroid{};
+  std::size_t next = 0;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) centroid[a][b] = centroid[b][a] = midpoints[next++];
+  }
+  return eightTets(corners, centroid, [&](int a, int b) { return (nodes[a] - nodes[b]).squaredNorm(); });
+}
+/// Overload for a tet without a mesh. Not compiled into the library, as Eigen has another
 /// namespace in some of them.
 inline std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
   std::array<std::array<Eigen::Vector3d, 4>, 4> centroid;

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/odd_meshes.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/src/base/mesh/quadratic_assembly.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace tetskin {
+namespace {
+
+Cage refined(const TetMesh& mesh) {
+  const Result<Cage> cage = refineQuadratic(mesh);
+  EXPECT_TRUE(cage.ok()) << cage.status().message;
+  return cage.value();
+}
+
+/// The tets in another order, each with its nodes in another order; the nodes with other numbers.
+Cage shuffled(const Cage& cage, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<int> nodeAt(cage.mesh.nodeCount()), tetAt(cage.mesh.tetCount()), numberOf(cage.mesh.nodeCount());
+  std::iota(nodeAt.begin(), nodeAt.end(), 0);
+  std::iota(tetAt.begin(), tetAt.end(), 0);
+  std::shuffle(nodeAt.begin(), nodeAt.end(), random);
+  std::shuffle(tetAt.begin(), tetAt.end(), random);
+  Cage mixed;
+  for (std::size_t n = 0; n < nodeAt.size(); ++n) {
+    mixed.mesh.nodes.push_back(cage.mesh.nodes[nodeAt[n]]);
+    numberOf[nodeAt[n]] = static_cast<int>(n);
+  }
+  for (const int t : tetAt) {
+    Tet tet = cage.mesh.tets[t];
+    std::shuffle(tet.begin(), tet.end(), random);
+    for (int& node : tet) node = numberOf[node];
+    mixed.mesh.tets.push_back(tet);
+    if (!cage.quadraticTet.empty()) mixed.quadraticTet.push_back(cage.quadraticTet[t]);
+  }
+  return mixed;
+}
+
+std::set<std::set<std::array<double, 3>>> cornerSets(const Cage& cage) {
+  std::set<std::set<std::array<double, 3>>> sets;
+  const auto tets = quadraticTets(cage);
+  EXPECT_TRUE(tets.ok()) << tets.status().message;
+  for (const QuadraticTet& tet : tets.value()) {
+    std::set<std::array<double, 3>> corners;
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::Vector3d& p = cage.mesh.nodes[tet.nodes[k]];
+      corners.insert({p.x(), p.y(), p.z()});
+    }
+    sets.insert(corners);
+  }
+  return sets;
+}
+
+void expectSound(const Cage& cage) {
+  const auto tets = quadraticTets(cage);
+  ASSERT_TRUE(tets.ok()) << tets.status().message;
+  for (std::size_t k = 0; k < tets.value().size(); ++k) {
+    const QuadraticTet& tet = tets.value()[k];
+    const auto at = [&](std::size_t n) { return cage.mesh.nodes[tet.nodes[n]]; };
+    EXPECT_GT(signedVolume({at(0), at(1), at(2), at(3)}), 0.0);
+    for (std::size_t e = 0; e < 6; ++e) {
+      EXPECT_TRUE(isMidpoint(cage.mesh, tet.nodes[4 + e], tet.nodes[kTetEdges[e][0]], tet.nodes[kTetEdges[e][1]]));
+    }
+    EXPECT_TRUE(std::is_sorted(tet.tets.begin(), tet.tets.end()));
+    for (const int t : tet.tets) EXPECT_EQ(cage.quadraticTet[t], static_cast<int>(k));
+  }
+}
+
+TEST(QuadraticTets, OfASingleTetHasItsCornersAndTheMiddlesOfItsEdges) {
+  const TetMesh mesh = test::singleTet();
+  const Cage cage = refined(mesh);
+  EXPECT_EQ(cage.mesh.nodeCount(), 10u);
+  EXPECT_EQ(cage.quadraticTet, std::vector<int>(8, 0));
+  const std::vector<QuadraticTet> tets = quadraticTets(cage).value();
+  ASSERT_EQ(tets.size(), 1u);
+  EXPECT_EQ(tets[0].tets, (std::array<int, 8>{0, 1, 2, 3, 4, 5, 6, 7}));
+  std::set<int> corners(tets[0].nodes.begin(), tets[0].nodes.begin() + 4);
+  EXPECT_EQ(corners, (std::set<int>{0, 1, 2, 3}));
+  expectSound(cage);
+  EXPECT_TRUE(validate(cage).ok());
+}
+
+TEST(QuadraticTets, NeighboursShareTheMidpointsOfTheirFace) {
+  const Cage cage = refined({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}});
+  EXPECT_EQ(cage.mesh.nodeCount(), 5u + 9u);
+  const std::vector<QuadraticTet> tets = quadraticTets(cage).value();
+  ASSERT_EQ(tets.size(), 2u);
+  const std::set<int> one(tets[0].nodes.begin(), tets[0].nodes.end());
+  const auto shared =
+      std::count_if(tets[1].nodes.begin(), tets[1].nodes.end(), [&](int n) { return one.count(n) > 0; });
+  EXPECT_EQ(shared, 6);
+}
+
+TEST(QuadraticTets, DoNotDependOnTheOrderOfTetsAndNodes) {
+  for (const test::LatticeKind& kind : test::latticeKinds()) {
+    const TetMesh coarse = kind.make(2);
+    const Cage cage = refined(coarse), mixed = shuffled(cage, 5);
+    EXPECT_EQ(quadraticTets(cage).value().size(), coarse.tetCount());
+    EXPECT_EQ(cornerSets(mixed), cornerSets(cage)) << kind.name;
+    expectSound(cage);
+    expectSound(mixed);
+  }
+}
+
+TEST(QuadraticTets, OfNegativeTetsArePositive) {
+  TetMesh mesh = test::singleTet();
+  std::swap(mesh.tets[0][2], mesh.tets[0][3]);
+  Cage cage = refined(mesh);
+  expectSound(cage);
+  for (const Tet& tet : cage.mesh.tets) EXPECT_GT(signedVolume(cornersOf(cage.mesh, tet)), 0.0);
+  for (Tet& tet : cage.mesh.tets) std::swap(tet[0], tet[1]);
+  expectSound(cage);
+}
+
+TEST(QuadraticTets, AreRecognisedAroundEveryDiagonal) {
+  // Each of the three is the shortest in one of these boxes.
+  std::set<std::set<int>> diagonals;
+  for (int axis = 0; axis < 3; ++axis) {
+    TetMesh mesh{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2, 3}}};
+    for (Eigen::Vector3d& p : mesh.nodes) p[axis] *= 0.5;
+    const Cage cage = refined(mesh);
+    expectSound(cage);
+    std::vector<int> uses(cage.mesh.nodeCount(), 0);
+    for (const Tet& tet : cage.mesh.tets) {
+      for (const int node : tet) ++uses[node];
+    }
+    std::set<int> ends;
+    for (std::size_t n = 0; n < uses.size(); ++n) {
+      if (uses[n] == 6) ends.insert(static_cast<int>(n));
+    }
+    EXPECT_EQ(ends.size(), 2u);
+    diagonals.insert(ends);
+  }
+  EXPECT_EQ(diagonals.size(), 3u);
+}
+
+TEST(QuadraticTets, OthersStayLinear) {
+  Cage cage = refined(test::latticeCage(1, 1, 1));
+  const Cage whole = cage;
+  for (int& number : cage.quadraticTet) number = number < 2 ? number : -1;
+  EXPECT_EQ(quadraticTets(cage).value().size(), 2u);
+  EXPECT_TRUE(validate(cage).ok());
+  cage.quadraticTet.assign(cage.mesh.tetCount(), -1);
+  EXPECT_TRUE(quadraticTets(cage).value().empty());
+  cage.quadraticTet.clear();
+  EXPECT_TRUE(quadraticTets(cage).value().empty());
+}
+
+void expectRefused(const Cage& cage, const char* words, StatusCode code = StatusCode::InvalidOption) {
+  const auto tets = quadraticTets(cage);
+  ASSERT_FALSE(tets.ok()) << words;
+  EXPECT_EQ(tets.status().code, code);
+  EXPECT_NE(tets.status().message.find(words), std::string::npos) << tets.status().message;
+  EXPECT_EQ(validate(cage).message, tets.status().message);
+}
+
+TEST(QuadraticTets, WrongNumbersAreRefused) {
+  const Cage sound = refined(test::latticeCage(1, 1, 1));
+  Cage cage = sound;
+  cage.quadraticTet.pop_back();
+  expectRefused(cage, "47 quadraticTet for 48 tets", StatusCode::SizeMismatch);
+  for (const int bad : {-2, 6, 1 << 30, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+    cage = sound;
+    cage.quadraticTet[17] = bad;
+    expectRefused(cage, "quadraticTet[17]");
+  }
+  cage = sound;
+  cage.quadraticTet[8] = -1;
+  expectRefused(cage, "is 1 for 7 tets, the first of which is tet 9");
+  cage.quadraticTet[8] = 2;
+  expectRefused(cage, "is 1 for 7 tets");
+  cage = sound;
+  for (int& number : cage.quadraticTet) number = number == 3 ? -1 : number;
+  expectRefused(cage, "is 3 for 0 tets; number quadratic tets from 0 on");
+  cage = sound;
+  std::swap(cage.quadraticTet[8], cage.quadraticTet[16]);
+  expectRefused(cage, "is 1 for 8 tets, the first of which is tet 9");
+}
+
+TEST(QuadraticTets, NodesAwayFromTheMiddlesAreRefused) {
+  const Cage sound = refined(test::singleTet());
+  for (int node = 4; node < 10; ++node) {
+    Cage cage = sound;
+    cage.mesh.nodes[node] += 1e-3 * Eigen::Vector3d(1, -1, 1);
+    expectRefused(cage, "the middles of its edges");
+    cage = sound;
+    cage.mesh.nodes[node] += 1e-6 * Eigen::Vector3d(1, -1, 1);
+    EXPECT_TRUE(quadraticTets(cage).ok()) << "rounding of a file";
+    cage.mesh.nodes[node].x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(quadraticTets(cage).ok());
+  }
+}
+
+TEST(QuadraticTets, EightTetsThatAreNotThoseOfOneAreRefused) {
+  const Cage sound = refined(test::singleTet());
+  for (int a = 0; a < 8; ++a) {
+    for (int b = 0; b < 8; ++b) {
+      if (a == b) continue;
+      Cage cage = sound;
+      cage.mesh.tets[a] = cage.mesh.tets[b];
+      EXPECT_FALSE(quadraticTets(cage).ok()) << a << " twice " << b;
+    }
+    for (int k = 0; k < 4; ++k) {
+      for (int node = 0; node < 10; ++node) {
+        Cage cage = sound;
+        if (cage.mesh.tets[a][k] == node) continue;
+        cage.mesh.tets[a][k] = node;
+        EXPECT_FALSE(quadraticTets(cage).ok()) << "tet " << a << ", node " << k << " is " << node;
+      }
+    }
+  }
+  Cage flat = sound;
+  for (Eigen::Vector3d& p : flat.mesh.nodes) p.z() = 0.0;
+  EXPECT_FALSE(quadraticTets(flat).ok());
+  // Two opposite ones of the four around the diagonal, twice each: every node has its share of tets.
+  Cage pairs = sound;
+  pairs.mesh.tets[5] = pairs.mesh.tets[4];
+  pairs.mesh.tets[7] = pairs.mesh.tets[6];
+  EXPECT_FALSE(quadraticTets(pairs).ok());
+}
+
+TEST(RefineQuadratic, KeepsTheNodesInFrontAndTheVolume) {
+  const TetMesh mesh = test::jittered(test::bodyCentredCage(2, 2, 2), 0.2, 4);
+  const Cage cage = refined(mesh);
+  ASSERT_EQ(cage.mesh.tetCount(), 8 * mesh.tetCount());
+  EXPECT_TRUE(std::equal(mesh.nodes.begin(), mesh.nodes.end(), cage.mesh.nodes.begin()));
+  EXPECT_NEAR(totalVolume(cage.mesh), totalVolume(mesh), 1e-12);
+  EXPECT_EQ(cage.mesh.nodeCount(), mesh.nodeCount() + uniqueEdges(mesh).size());
+}
+
+TEST(RefineQuadratic, RefusesWhatHasNoVolume) {
+  EXPECT_EQ(refineQuadratic({}).status().code, StatusCode::Empty);
+  TetMesh mesh = test::latticeCage(1, 1, 1);
+  mesh.tets.push_back({0, 1, 2, 3});  // in a plane
+  EXPECT_EQ(refineQuadratic(mesh).status().code, StatusCode::Degenerate);
+  mesh.tets.back() = {0, 0, 1, 2};
+  EXPECT_EQ(refineQuadratic(mesh).status().code, StatusCode::Degenerate);
+  mesh.tets.back() = {0, 1, 2, 8};
+  EXPECT_EQ(refineQuadratic(mesh).status().code, StatusCode::IndexOutOfRange);
+}
+
+TEST(FindQuadraticTets, FindsThoseOfRefinedMeshesInAnyOrder) {
+  for (const test::LatticeKind& kind : test::latticeKinds()) {
+    const TetMesh coarse = kind.make(3);
+    const Cage cage = refined(coarse);
+    Cage plain = shuffled(cage, 9);
+    plain.quadraticTet.clear();
+    EXPECT_EQ(findQuadraticTets(plain), coarse.tetCount()) << kind.name;
+    EXPECT_EQ(*std::min_element(plain.quadraticTet.begin(), plain.quadraticTet.end()), 0) << kind.name;
+    expectSound(plain);
+    if (kind.name.find("Jittered") != std::string::npos) {
+      EXPECT_EQ(cornerSets(plain), cornerSets(cage)) << kind.name;
+    }
+  }
+}
+
+TEST(FindQuadraticTets, FindsNoneInMeshesThatWereNotRefined) {
+  for (TetMesh mesh : {test::singleTet(), test::jittered(test::latticeCage(4, 4, 4), 0.2, 3),
+                       test::jittered(test::bodyCentredCage(4, 4, 4), 0.2, 3), test::randomTets(200, 0.3, 2)}) {
+    Cage cage(mesh);
+    cage.quadraticTet.assign(mesh.tetCount(), 7);
+    EXPECT_EQ(findQuadraticTets(cage), 0u);
+    EXPECT_TRUE(cage.quadraticTet.empty());
+  }
+}
+
+TEST(FindQuadraticTets, OfAMeshRefinedTwiceAreThoseOfTheSecondTime) {
+  const TetMesh coarse = test::jittered(test::bodyCentredCage(2, 2, 2), 0.1, 8);
+  const TetMesh once = refineUniformly(coarse).mesh;
+  Cage cage = shuffled(refined(once), 11);
+  EXPECT_EQ(findQuadraticTets(cage), once.tetCount());
+  expectSound(cage);
+  cage = Cage(refineUniformly(refineUniformly(once).mesh).mesh);
+  EXPECT_EQ(findQuadraticTets(cage), 8 * once.tetCount());
+}
+
+TEST(FindQuadraticTets, ALatticeIsGroupedInOneOfSeveralWays) {
+  // Refined body-centred lattices are such lattices again, in which groups begin at any node.
+  Cage cage = shuffled(Cage(refineUniformly(test::bodyCentredCage(3, 3, 3)).mesh), 12);
+  const std::size_t all = cage.mesh.tetCount();
+  EXPECT_EQ(findQuadraticTets(cage), all / 8);
+  expectSound(cage);
+  // One that is not a refined one has no way that covers it.
+  cage = Cage(test::bodyCentredCage(5, 5, 5));
+  const std::size_t count = findQuadraticTets(cage);
+  EXPECT_GT(8 * count, cage.mesh.tetCount() / 4);
+  EXPECT_LT(8 * count, cage.mesh.tetCount());
+  expectSound(cage);
+}
+
+TEST(FindQuadraticTets, LeavesTheRestOfAMeshRefinedInPart) {
+  const TetMesh coarse = test::jittered(test::latticeCage(2, 2, 2), 0.2, 6);
+  Cage fine = refined(coarse);
+  Cage part(fine.mesh);
+  part.mesh.tets.resize(8 * 20);  // of the first 20 tets
+  for (std::size_t t = 20; t < coarse.tetCount(); ++t) part.mesh.tets.push_back(coarse.tets[t]);
+  part = shuffled(part, 13);
+  EXPECT_EQ(findQuadraticTets(part), 20u);
+  EXPECT_EQ(std::count(part.quadraticTet.begin(), part.quadraticTet.end(), -1),
+            static_cast<std::ptrdiff_t>(coarse.tetCount() - 20));
+  expectSound(part);
+  // One of the eight is missing.
+  fine.mesh.tets.erase(fine.mesh.tets.begin() + 3);
+  Cage hole(fine.mesh);
+  EXPECT_EQ(findQuadraticTets(hole), coarse.tetCount() - 1);
+  EXPECT_EQ(std::count(hole.quadraticTet.begin(), hole.quadraticTet.end(), -1), 7);
+}
+
+TEST(FindQuadraticTets, SurvivesMeshesOfEveryKind) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 300; ++trial) {
+    Cage cage = refined(test::latticeCage(1, 1, 1));
+    for (int k = 0; k < 12; ++k) {
+      cage.mesh.tets[random() % cage.mesh.tetCount()][random() % 4] =
+          static_cast<int>(random() % cage.mesh.nodeCount());
+    }
+    if (trial % 3 == 0)
+      cage.mesh.tets.insert(cage.mesh.tets.end(), cage.mesh.tets.begin(), cage.mesh.tets.begin() + 20);
+    if (trial % 5 == 0) cage.mesh.nodes[random() % cage.mesh.nodeCount()] *= 1e300;
+    EXPECT_LE(findQuadraticTets(cage), 6u);
+    expectSound(cage);
+  }
+}
+
+}  // namespace
+}  // namespace tetskin
