@@ -125,6 +125,48 @@ TEST(ElasticBars, ACantileverOfFewQuadraticTetsBendsAsTheTextbookSays) {
   }
 }
 
+/// An even pressure on the top of a block, in two ways: spread by small triangles, as contact does it, it sinks the
+/// corners of quadratic tets deeper than their other nodes, by a third of what it compresses a layer of such tets.
+TEST(ElasticBars, PressureOnSmallTrianglesSinksCornersOfQuadraticTetsByAThirdOfALayerMore) {
+  constexpr int kAcross = 4, kHigh = 2;
+  constexpr double kPressure = 10.0;
+  const TetMesh mesh = latticeCage(kAcross, kAcross, kHigh);
+  const Cage cage = refineQuadratic(mesh).value();
+  const auto isOnTop = [&](const auto& face) {
+    return std::all_of(face.begin(), face.end(), [&](int n) { return cage.mesh.nodes[n].z() == kHigh; });
+  };
+  std::vector<double> bySmallTriangles(cage.mesh.nodeCount(), 0.0), byShapes = bySmallTriangles;
+  for (const auto& face : boundaryFaces(cage.mesh)) {
+    for (const int n : face) bySmallTriangles[n] += isOnTop(face) ? 1.0 / 24.0 : 0.0;
+  }
+  // The integrals of the shape functions: 0 at corners, and at the middle of each edge a third of the face, which by
+  // small triangles is a quarter.
+  for (std::size_t n = mesh.nodeCount(); n < byShapes.size(); ++n) byShapes[n] = 4.0 / 3.0 * bySmallTriangles[n];
+  const auto deeper = [&](const Cage& of, const std::vector<double>& loads) {
+    ElasticOptions options = soft();
+    options.tolerance = 1e-6;
+    options.maxIterations = 2000;
+    for (const double load : loads) options.nodeMasses.push_back(std::max(load, 1e-7));
+    ElasticBody<double> body = made<double>(of, options);
+    for (std::size_t n = 0; n < loads.size(); ++n) body.setPinned(n, cage.mesh.nodes[n].z() == 0.0);
+    settle(body, {0, 0, -kPressure}, 60);
+    double depth[2] = {};
+    int count[2] = {};
+    for (std::size_t n = 0; n < loads.size(); ++n) {
+      const Vector3d& p = cage.mesh.nodes[n];
+      if (p.z() != kHigh || (p.head<2>() - Eigen::Vector2d::Constant(0.5 * kAcross)).cwiseAbs().maxCoeff() > 1.0)
+        continue;
+      const std::size_t isCorner = n < mesh.nodeCount();
+      depth[isCorner] += kHigh - body.positions()[n][2];
+      ++count[isCorner];
+    }
+    return (depth[1] / count[1] - depth[0] / count[0]) * options.youngsModulus / kPressure;
+  };
+  EXPECT_NEAR(deeper(cage, bySmallTriangles), 0.34, 0.03);
+  EXPECT_NEAR(deeper(cage, byShapes), 0.0, 0.04);
+  EXPECT_NEAR(deeper(Cage(cage.mesh), bySmallTriangles), 0.0, 0.04);
+}
+
 /// What a solve leaves is small beside gravity in each step, and must not add
 /// up to a wrong sag, or to a creeping one.
 TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
