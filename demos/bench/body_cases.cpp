@@ -6,6 +6,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/elastic/elastic_body.h>
 #ifdef TETSKIN_BENCH_THREADS
 #include <tetskin/threads/thread_pool.h>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "measure/body_model.h"
 #include "scenes/caged_mesh.h"
 #include "scenes/serpent.h"
 #include "scenes/table.h"
@@ -80,6 +82,38 @@ void step(State& state, int bodies, bool faceTree) {
   for (auto _ : state) scene->step(1);
 }
 
+/// A step of a beam, 4 by 1 by 1, that is held at one end and swings.
+/// across  cubes of six tets across the beam; with quadratic ones it has the nodes of twice as many with linear ones
+void stepOfBeam(State& state, int across, bool quadratic) {
+  constexpr double kSeconds = 1.0 / 240.0;
+  Cage cage = measure::makeLattice({4 * across, across, across}, 1.0 / across)->cage;
+  if (quadratic) cage = refineQuadratic(cage.mesh).value();
+  ElasticOptions options;
+  options.youngsModulus = 2e5;
+  options.density = 100.0;
+  auto body = ElasticBody<float>::create(cage, options).value();
+  const double end = boundingBox(cage.mesh.nodes).min().x();
+  for (std::size_t n = 0; n < body.nodeCount(); ++n) body.setPinned(n, cage.mesh.nodes[n].x() == end);
+  int iterations = 0;
+  for (auto _ : state) iterations += body.step(kSeconds, {0.0, -9.81, 0.0});
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+  state.counters["nodes"] = static_cast<double>(body.nodeCount());
+}
+
+void registerBeams() {
+  // Quadratic tets with 81 nodes are as good as linear ones with 2,673.
+  for (const int across : {1, 2, 4}) {
+    benchmark::RegisterBenchmark(("Step/beam/quadratic/across:" + std::to_string(across)).c_str(), stepOfBeam, across,
+                                 true)
+        ->Unit(benchmark::kMicrosecond);
+  }
+  for (const int across : {2, 4, 8}) {
+    benchmark::RegisterBenchmark(("Step/beam/linear/across:" + std::to_string(across)).c_str(), stepOfBeam, across,
+                                 false)
+        ->Unit(benchmark::kMicrosecond);
+  }
+}
+
 #ifdef TETSKIN_BENCH_THREADS
 /// A step of a body that falls and wobbles, held at its lowest node: its elastic part alone, in wall time.
 void stepWithThreads(State& state, std::size_t tets, std::size_t threads) {
@@ -116,6 +150,7 @@ void registerBodyCases() {
 #ifdef TETSKIN_BENCH_THREADS
   registerThreads();
 #endif
+  registerBeams();
   benchmark::RegisterBenchmark("FaceTree/60000", buildFaceTree, 60000)->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("Ray/two_parts", castRay)->Unit(benchmark::kMicrosecond);
   for (const int bodies : {1, 2}) {

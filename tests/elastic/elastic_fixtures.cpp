@@ -62,7 +62,8 @@ std::vector<double> variedScale(const Cage& cage) {
   Random random(31);
   std::vector<double> scale(cage.mesh.tetCount());
   for (double& s : scale) s = 2.0 + random();
-  for (const QuadraticTet& tet : quadraticTets(cage).value()) {
+  const std::vector<QuadraticTet> quadratic = quadraticTets(cage).value();
+  for (const QuadraticTet& tet : quadratic) {
     for (const int t : tet.tets) scale[t] = scale[tet.tets[0]];
   }
   return scale;

@@ -243,11 +243,12 @@ TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S
 /// V R (2 mu E + lambda tr(E)): a vector becomes the rotated stress times it.
 template <class S, int W>
 struct RotatedStress {
-  WideMatrix<S, W> r;
-  Lanes<S, W> xx, yy, zz, xy, xz, yz;
+  WideMatrix<S, W> r, stress;
 
   TETSKIN_INLINE WideVector<S, W> operator()(const Lanes<S, W>& x, const Lanes<S, W>& y, const Lanes<S, W>& z) const {
-    return rotated<S, W>(r, xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z);
+    const auto* t = stress.at;
+    return rotated<S, W>(r, t[0] * x + t[1] * y + t[2] * z, t[3] * x + t[4] * y + t[5] * z,
+                         t[6] * x + t[7] * y + t[8] * z);
   }
 };
 
@@ -260,34 +261,69 @@ struct WideFindings {
   TetFindings<S> all() const { return {largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)), energy}; }
 };
 
+/// Stores the rotations of W points.
+/// assembled  rotations with which the matrix was assembled
+template <class S, int W>
+TETSKIN_INLINE void keepRotations(const Quaternions<S, W>& q, S* rotations, const S* assembled,
+                                  WideFindings<S, W>& findings) {
+  put<S, W>(q.w, rotations);
+  put<S, W>(q.x, rotations + kGroup);
+  put<S, W>(q.y, rotations + 2 * kGroup);
+  put<S, W>(q.z, rotations + 3 * kGroup);
+  const Lanes<S, W> turn = squaredDifference<S, W>(q, quaternions<S, W>(assembled));
+  findings.maxTurned = larger(turn, findings.maxTurned);
+  findings.turned += turn;
+}
+
+/// The stress of strains E with these traces, and its energy; `shear` and `bulk` are 2 mu V and lambda V.
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> stressOf(const WideMatrix<S, W>& strain, const Lanes<S, W>& trace,
+                                         const Lanes<S, W>& shear, const Lanes<S, W>& bulk, bool withEnergy,
+                                         WideFindings<S, W>& findings) {
+  using V = Lanes<S, W>;
+  const V pressure = bulk * trace;
+  const auto* e = strain.at;
+  if (withEnergy) {
+    V squares{};
+    for (int k = 0; k < 9; ++k) squares += e[k] * e[k];
+    findings.energy += 0.5 * static_cast<double>(laneSum<S, W>(shear * squares + pressure * trace));
+  }
+  return {{shear * e[0] + pressure, shear * e[1], shear * e[2], shear * e[3], shear * e[4] + pressure, shear * e[5],
+           shear * e[6], shear * e[7], shear * e[8] + pressure}};
+}
+
+/// sym(S) - 1.
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> symmetricStrain(const WideMatrix<S, W>& s) {
+  using V = Lanes<S, W>;
+  const V xy = S(0.5) * (s.at[1] + s.at[3]), xz = S(0.5) * (s.at[2] + s.at[6]), yz = S(0.5) * (s.at[5] + s.at[7]);
+  return {{s.at[0] - S(1), xy, xz, xy, s.at[4] - S(1), yz, xz, yz, s.at[8] - S(1)}};
+}
+
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> traceOf(const WideMatrix<S, W>& a) {
+  return a.at[0] + a.at[4] + a.at[8];
+}
+
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> determinantOf(const WideMatrix<S, W>& matrix) {
+  const auto* a = matrix.at;
+  return a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+}
+
 /// Updates the rotations of W points.
 /// f            deformation gradients
-/// assembled    rotations with which the matrix was assembled
 /// shear, bulk  2 mu V and lambda V
 template <class S, int W>
 TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const WideMatrix<S, W>& f, S* rotations, const S* assembled,
                                                  const Lanes<S, W>& shear, const Lanes<S, W>& bulk, bool withEnergy,
                                                  WideFindings<S, W>& findings) {
-  using V = Lanes<S, W>;
   Quaternions<S, W> q = quaternions<S, W>(rotations);
   WideMatrix<S, W> r, s;
   turnToMaximum<S, W>(f, q, r, s);
-  put<S, W>(q.w, rotations);
-  put<S, W>(q.x, rotations + kGroup);
-  put<S, W>(q.y, rotations + 2 * kGroup);
-  put<S, W>(q.z, rotations + 3 * kGroup);
-  const V turn = squaredDifference<S, W>(q, quaternions<S, W>(assembled));
-  findings.maxTurned = larger(turn, findings.maxTurned);
-  findings.turned += turn;
-
-  const V e0 = s.at[0] - S(1), e4 = s.at[4] - S(1), e8 = s.at[8] - S(1);
-  const V e1 = S(0.5) * (s.at[1] + s.at[3]), e2 = S(0.5) * (s.at[2] + s.at[6]), e5 = S(0.5) * (s.at[5] + s.at[7]);
-  const V trace = e0 + e4 + e8, pressure = bulk * trace;
-  if (withEnergy) {
-    const V squares = e0 * e0 + e4 * e4 + e8 * e8 + S(2) * (e1 * e1 + e2 * e2 + e5 * e5);
-    findings.energy += 0.5 * static_cast<double>(laneSum<S, W>(shear * squares + pressure * trace));
-  }
-  return {r, shear * e0 + pressure, shear * e4 + pressure, shear * e8 + pressure, shear * e1, shear * e2, shear * e5};
+  keepRotations<S, W>(q, rotations, assembled, findings);
+  const WideMatrix<S, W> strain = symmetricStrain<S, W>(s);
+  return {r, stressOf<S, W>(strain, traceOf<S, W>(strain), shear, bulk, withEnergy, findings)};
 }
 
 /// Adds the forces on the nodes of W tets to the points of these nodes, tet by tet.
@@ -317,10 +353,7 @@ constexpr S kFlat = S(0.1);
 template <class S, int W, class Pack, class Gradient>
 TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S, Pack>& work, Gradient&& gradient) {
   if (!(work.flatAlpha > work.alpha)) return all<S, W>(work.alpha);
-  const WideMatrix<S, W> f = gradient();
-  const auto* a = f.at;
-  const Lanes<S, W> ratio =
-      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+  const Lanes<S, W> ratio = determinantOf<S, W>(gradient());
   return ratio < kFlat<S> ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
 }
 

@@ -5,6 +5,11 @@
 // With barycentric weights L_i, their gradients g_i, corners x_i and middles of edges x_ij, the shape functions are
 // L_i (2 L_i - 1) and 4 L_i L_j, so that
 //   H_i = (4 L_i - 1) x_i + 4 sum_{j != i} L_j x_ij,   F = sum_i H_i g_i^T = sum_{k > 0} (H_k - H_0) g_k^T
+//
+// A tet whose points are inside out, or turned far from each other, may rest so, without a stress at any of them. It
+// has a single rotation R then, that of the mean of F, with which it comes back as a linear tet does, and with
+//   energy = sum over points of V (mu |F - R|^2 + lambda / 2 t^2),   t = mean of tr(R^T F) - 3
+// whose gradient is the force, as R is where the energy does not change with it; in an even strain it is the usual one.
 #pragma once
 
 #include <tetskin/elastic/src/kernels/corotation.h>
@@ -90,6 +95,68 @@ TETSKIN_INLINE void byShapeGradients(const QuadraticPack<S>& pack, int lane, con
   }
 }
 
+/// Cosine of half the angle between the rotations of two points above which they are too far apart: 70 degrees. In a
+/// tet that is rolled up they are 30 apart, where it rests in a wrong state, 90 and more.
+template <class S>
+constexpr S kApart = S(0.819);
+
+/// The rotation at W points, and S = R^T F.
+template <class S, int W>
+struct TurnedPoints {
+  Quaternions<S, W> q;
+  WideMatrix<S, W> r, s;
+};
+
+/// 1 where a tet must have a single rotation.
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> lostTets(const TurnedPoints<S, W> at[4]) {
+  using V = Lanes<S, W>;
+  V nearest = all<S, W>(1), volume = determinantOf<S, W>(at[0].s);
+  for (int i = 1; i < 4; ++i) {
+    volume = smaller(determinantOf<S, W>(at[i].s), volume);
+    for (int j = 0; j < i; ++j) {
+      const Quaternions<S, W>&p = at[i].q, &q = at[j].q;
+      nearest = smaller(absolute<S, W>(p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z), nearest);
+    }
+  }
+  return ((nearest < kApart<S>) | (volume < S(0))) ? all<S, W>(1) : V{};
+}
+
+template <class S, int W, class T>
+TETSKIN_INLINE void replace(const Lanes<S, W>& where, const T& from, T& to) {
+  using V = Lanes<S, W>;
+  static_assert(sizeof(T) % sizeof(V) == 0);
+  V there[sizeof(T) / sizeof(V)], now[sizeof(T) / sizeof(V)];
+  ::memcpy(there, &from, sizeof from);
+  ::memcpy(now, &to, sizeof to);
+  for (std::size_t k = 0; k < sizeof(T) / sizeof(V); ++k) now[k] = where > S(0) ? there[k] : now[k];
+  ::memcpy(&to, now, sizeof to);
+}
+
+/// Gives the points of lost tets a single rotation.
+/// trace  becomes the mean of tr(S) - 3
+template <class S, int W>
+TETSKIN_NOINLINE void turnAsAWhole(const Lanes<S, W>& lost, TurnedPoints<S, W> at[4], Lanes<S, W>& trace) {
+  using V = Lanes<S, W>;
+  WideMatrix<S, W> f[4], mean{};
+  for (int point = 0; point < 4; ++point) {
+    const auto *r = at[point].r.at, *s = at[point].s.at;
+    for (int k = 0; k < 9; ++k) {
+      const int i = 3 * (k / 3), j = k % 3;
+      const V product = r[i] * s[j] + r[i + 1] * s[3 + j] + r[i + 2] * s[6 + j];
+      f[point].at[k] = product;
+      mean.at[k] += S(0.25) * product;
+    }
+  }
+  TurnedPoints<S, W> whole = at[0];
+  turnToMaximum<S, W>(mean, whole.q, whole.r, whole.s);
+  trace = traceOf<S, W>(whole.s) - S(3);
+  for (int point = 0; point < 4; ++point) {
+    whole.s = transposedProduct<S, W>(whole.r, f[point]);
+    replace<S, W>(lost, whole, at[point]);
+  }
+}
+
 template <class S, int W>
 TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool withEnergy) {
   using V = Lanes<S, W>;
@@ -101,15 +168,33 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
     for (int lane = 0; lane < kGroup; lane += W) {
       WideVector<S, W> x[10], force[10];
       nodesFromFirst<S, W>(pack, work.points, lane, x);
-      for (WideVector<S, W>& f : force) f = {V{}, V{}, V{}};
+      const std::size_t first = 4 * kGroup * Pack::kPoints * p + static_cast<std::size_t>(lane);
+      V weights[Pack::kPoints][4];
+      TurnedPoints<S, W> at[Pack::kPoints];
       for (std::size_t point = 0; point < Pack::kPoints; ++point) {
-        V weights[4];
-        weightsAt<S, W>(pack, point, lane, weights);
-        const std::size_t at = 4 * kGroup * (Pack::kPoints * p + point) + static_cast<std::size_t>(lane);
-        const RotatedStress<S, W> stress = rotatedStress<S, W>(
-            deformationGradient<S, W>(pack, lane, x, weights), work.rotations + at, work.assembled + at,
-            wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
-        byShapeGradients<S, W>(pack, lane, weights, stress, [&](int a, const WideVector<S, W>& v) {
+        weightsAt<S, W>(pack, point, lane, weights[point]);
+        at[point].q = quaternions<S, W>(work.rotations + first + 4 * kGroup * point);
+        turnToMaximum<S, W>(deformationGradient<S, W>(pack, lane, x, weights[point]), at[point].q, at[point].r,
+                            at[point].s);
+      }
+      const V lost = lostTets<S, W>(at);
+      V wholeTrace{};
+      const bool anyLost = anyAbove<S, W>(lost, S(0.5));
+      if (anyLost) turnAsAWhole<S, W>(lost, at, wholeTrace);
+      for (WideVector<S, W>& v : force) v = {V{}, V{}, V{}};
+      const V shear = wide<S, W>(pack.shear + lane), bulk = wide<S, W>(pack.bulk + lane);
+      for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+        keepRotations<S, W>(at[point].q, work.rotations + first + 4 * kGroup * point,
+                            work.assembled + first + 4 * kGroup * point, findings);
+        WideMatrix<S, W> strain = symmetricStrain<S, W>(at[point].s);
+        V trace = traceOf<S, W>(strain);
+        if (anyLost) {
+          for (int k = 0; k < 9; ++k) at[point].s.at[k] = at[point].s.at[k] - S(k % 4 == 0 ? 1 : 0);
+          replace<S, W>(lost, at[point].s, strain);
+          replace<S, W>(lost, wholeTrace, trace);
+        }
+        const RotatedStress<S, W> stress{at[point].r, stressOf<S, W>(strain, trace, shear, bulk, withEnergy, findings)};
+        byShapeGradients<S, W>(pack, lane, weights[point], stress, [&](int a, const WideVector<S, W>& v) {
           force[a] = {force[a].x - v.x, force[a].y - v.y, force[a].z - v.z};
         });
       }

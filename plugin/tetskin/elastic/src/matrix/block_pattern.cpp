@@ -209,6 +209,9 @@ class PatternMaker {
         for (std::size_t k = 0; k < row.neighbours.size(); ++k) {
           if ((levels_[row.neighbours[k]] < levels_[nodes[i]]) == lower) indices[i].push_back(k);
         }
+        // Sums over as many terms are side by side, since the shorter ones are padded.
+        std::stable_sort(indices[i].begin(), indices[i].end(),
+                         [&](std::size_t a, std::size_t b) { return row.terms[a].size() > row.terms[b].size(); });
         longest = std::max(longest, indices[i].size());
       }
       for (std::size_t k = 0; k < longest; ++k) addEntry(nodes, count, firstSlot, indices, k);
