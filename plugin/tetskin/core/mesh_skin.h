@@ -18,7 +18,8 @@ namespace tetskin {
 /// How the surface follows the nodes.
 enum class Interpolation {
   Linear,     ///< barycentric in each tet: continuous, but bent surfaces show the cage's faces
-  Quadratic,  ///< visually smooth, one order more accurate, at 2.4 to 3 times the cost of an update
+  Quadratic,  ///< visually smooth, one order more accurate, at 2.4 to 3 times the cost of an update; the map itself
+              ///< within quadratic tets (see `Cage::quadraticTet`)
 };
 
 /// How a skin's normals are computed.
