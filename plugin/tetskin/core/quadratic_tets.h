@@ -15,8 +15,10 @@
 
 namespace tetskin {
 
-/// Number of nodes of a quadratic tet, and of the linear tets that it is made of.
-constexpr std::size_t kQuadraticNodes = 10, kSubTets = 8;
+/// Number of nodes of a quadratic tet.
+constexpr std::size_t kQuadraticNodes = 10;
+/// Number of the linear tets that a quadratic one is made of.
+constexpr std::size_t kSubTets = 8;
 
 /// A quadratic tet of a cage, with straight edges.
 struct QuadraticTet {
