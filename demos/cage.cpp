@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Builds a cage of tets around any mesh, as a file for Bullet, tetskin or a meshing program.
+// Builds a cage of tets around any mesh, or makes one of tets that fill it, as a file for Bullet, tetskin or a meshing
+// program.
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/io/files.h>
 
 #include <nlohmann/json.hpp>
@@ -19,6 +21,9 @@ using namespace tetskin::scenes;
 
 struct CageCommand {
   ModelOptions model;
+  std::string filled;      ///< tets that fill the mesh; empty: the cage is built
+  bool quadratic = false;  ///< each of these becomes a quadratic tet
+  bool hasMesh = false;    ///< the cage of --filled is checked against a mesh
   std::string output;
   std::string json;
   bool loose = false;
@@ -50,6 +55,22 @@ nlohmann::ordered_json summarise(const Surface& surface, const CageReport& repor
   return json;
 }
 
+/// How a mesh fits its cage: as an application would see it, not as the builder reports it.
+EmbedReport fitOf(const Cage& cage, const Surface& surface) {
+  EmbedReport fit;
+  const auto embedded = embed(cage, surface.mesh, {}, &fit);
+  if (!embedded.ok()) throw InputError(surface.name + ": " + embedded.status().message);
+  return fit;
+}
+
+int statusOf(const EmbedReport& fit) {
+  if (fit.outside == 0) return kDone;
+  std::fprintf(stderr,
+               "tetskin_cage: %zu vertices lie outside the cage, the farthest is vertex %zu at a distance of %g\n",
+               fit.outside, fit.maxDistanceVertex, fit.maxDistance);
+  return kRunFailed;
+}
+
 int run(CageCommand command) {
   Surface surface = loadSurface(command.model);
   CageReport report;
@@ -62,20 +83,51 @@ int run(CageCommand command) {
   require(saveCage(cage, command.output));
 
   gatherLooseVertices(surface, cage, true);  // the report has told of them
-  // Counted as an application would see it, not as the builder reports it.
-  EmbedReport fit;
-  const auto embedded = embed(cage, surface.mesh, {}, &fit);
-  if (!embedded.ok()) throw InputError(surface.name + ": " + embedded.status().message);
+  const EmbedReport fit = fitOf(cage, surface);
   if (!command.json.empty()) writeJson(summarise(surface, report, fit, calibration), command.json);
   if (!command.quiet) {
     std::printf("%s%s%s\n", report.describe().c_str(), command.model.calibrate ? calibration.describe().c_str() : "",
                 command.output.c_str());
   }
-  if (fit.outside == 0) return kDone;
-  std::fprintf(stderr,
-               "tetskin_cage: %zu vertices lie outside the cage, the farthest is vertex %zu at a distance of %g\n",
-               fit.outside, fit.maxDistanceVertex, fit.maxDistance);
-  return kRunFailed;
+  return statusOf(fit);
+}
+
+/// Makes a cage of tets that fill a mesh: quadratic ones where the file has such, or where its tets are those of a
+/// uniform refinement; otherwise of each tet, if wanted.
+int runFilled(const CageCommand& command) {
+  Cage cage = scenes::loadCage(command.filled);
+  const auto quadraticTetsOf = [](const Cage& made) {
+    const auto tets = quadraticTets(made);
+    require(tets.status());
+    return tets.value().size();
+  };
+  std::size_t count = quadraticTetsOf(cage);
+  if (count == 0) count = findQuadraticTets(cage);
+  if (count == 0 && command.quadratic) {
+    Result<Cage> refined = refineQuadratic(cage.mesh);
+    if (!refined.ok()) throw InputError(command.filled + ": " + refined.status().message);
+    cage = std::move(refined).value();
+    count = quadraticTetsOf(cage);
+  }
+  require(saveCage(cage, command.output));
+
+  EmbedReport fit;
+  if (command.hasMesh) {
+    Surface surface = loadSurface(command.model);
+    gatherLooseVertices(surface, cage, command.quiet);
+    fit = fitOf(cage, surface);
+  }
+  nlohmann::ordered_json json;
+  json["tets"] = cage.mesh.tetCount();
+  json["quadratic_tets"] = count;
+  json["nodes"] = cage.mesh.nodeCount();
+  json["vertices_outside"] = fit.outside;
+  if (!command.json.empty()) writeJson(json, command.json);
+  if (!command.quiet) {
+    std::printf("%zu tets, %zu nodes: %zu quadratic tets, %zu linear ones\n%s\n", cage.mesh.tetCount(),
+                cage.mesh.nodeCount(), count, cage.mesh.tetCount() - kSubTets * count, command.output.c_str());
+  }
+  return statusOf(fit);
 }
 
 }  // namespace
@@ -85,9 +137,16 @@ int main(int argc, char** argv) {
   CommandLine line("Builds a cage of tetrahedra around any triangle mesh, watertight or not.",
                    {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "a cage of about 3,000 tets around your mesh"},
                      {"tetskin_cage --mesh yours.obj --tets 300 --calibrate -o yours_cage.vtk --json cage.json",
-                      "about 300 tets, calibrated to the stiffness of the mesh, and a JSON file of their quality"}},
+                      "about 300 tets, calibrated to the stiffness of the mesh, and a JSON file of their quality"},
+                     {"tetskin_cage --filled yours.msh --quadratic -o yours_cage.vtk",
+                      "a cage of quadratic tets, one for each tet of a mesh that fills the body"}},
                     "a vertex lies outside the cage"});
   line.addMeshOptions(command.model);
+  line.addInput("--filled", command.filled,
+                "Tets that fill the mesh, to be the cage: those of second order, and those that were refined "
+                "uniformly, become quadratic tets");
+  line.addFlag("--quadratic", command.quadratic,
+               "With --filled: a quadratic tet, of eight tets, for each tet, unless the file has some");
   line.addOutput("-o,--output", command.output,
                  ".vtk for the cage with all its data; .msh, or .ele with .node, for the tets alone",
                  CommandLine::Need::Required, {".vtk", ".node", ".ele", ".msh"});
@@ -96,6 +155,14 @@ int main(int argc, char** argv) {
   line.addQuietOption(command.quiet);
   return line.run(argc, argv, [&] {
     command.model.quiet = command.quiet;
-    return run(command);
+    if (command.filled.empty()) {
+      if (command.quadratic) throw InputError("--quadratic is for the tets of --filled");
+      return run(command);
+    }
+    for (const char* option : {"--tets", "--no-fit", "--no-duplicate-elements", "--calibrate"}) {
+      if (line.given(option)) throw InputError(std::string("--filled takes no ") + option + ", as nothing is built");
+    }
+    command.hasMesh = line.given("--mesh") || line.given("--model");
+    return runFilled(command);
   });
 }

@@ -3,6 +3,7 @@
 //
 // Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator; and a
 // sequence of deformed cages -> an animation.
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/io/animation.h>
 #include <tetskin/io/files.h>
 
@@ -38,10 +39,26 @@ struct DeformCommand {
   bool quiet = false;
 };
 
+/// By node: whether it is at the middle of an edge of a quadratic tet.
+std::vector<bool> midpointsOf(const Cage& cage) {
+  std::vector<bool> is(cage.mesh.nodeCount(), false);
+  const auto tets = quadraticTets(cage);
+  require(tets.status());
+  for (const QuadraticTet& tet : tets.value()) {
+    for (std::size_t k = 4; k < kQuadraticNodes; ++k) is[tet.nodes[k]] = true;
+  }
+  return is;
+}
+
 /// The nodes of every tet in ascending order, with the tets in ascending order as well: independent of their order and
-/// orientation.
-std::vector<Tet> sortedTets(const TetMesh& mesh) {
+/// orientation. Those between midpoints are left out: around which diagonal of its quadratic tet they are, depends on
+/// the shape.
+std::vector<Tet> sortedTets(const TetMesh& mesh, const std::vector<bool>& isMidpoint) {
   std::vector<Tet> tets = mesh.tets;
+  const auto isInner = [&](const Tet& tet) {
+    return std::all_of(tet.begin(), tet.end(), [&](int node) { return isMidpoint[node]; });
+  };
+  tets.erase(std::remove_if(tets.begin(), tets.end(), isInner), tets.end());
   for (Tet& tet : tets) std::sort(tet.begin(), tet.end());
   std::sort(tets.begin(), tets.end());
   return tets;
@@ -49,12 +66,12 @@ std::vector<Tet> sortedTets(const TetMesh& mesh) {
 
 /// Equal counts do not make it the same cage: in a cage with duplicate tets, a different order of nodes would carry
 /// vertices with the wrong duplicate, and nothing would show it.
-void requireSameTets(const DeformCommand& command, const std::string& name, const TetMesh& deformed,
-                     const TetMesh& rest) {
-  const std::vector<Tet> now = sortedTets(deformed), then = sortedTets(rest);
+void requireSameTets(const DeformCommand& command, const std::string& name, const TetMesh& deformed, const Cage& rest) {
+  const std::vector<bool> isMidpoint = midpointsOf(rest);
+  const std::vector<Tet> now = sortedTets(deformed, isMidpoint), then = sortedTets(rest.mesh, isMidpoint);
   const auto [other, wanted] = std::mismatch(now.begin(), now.end(), then.begin(), then.end());
-  if (other == now.end()) return;
-  const bool extra = *other < *wanted;
+  if (other == now.end() && wanted == then.end()) return;
+  const bool extra = wanted == then.end() || (other != now.end() && *other < *wanted);
   const Tet& tet = extra ? *other : *wanted;
   throw InputError(name + ": has " + (extra ? "a" : "no") + " tet of nodes " + std::to_string(tet[0]) + ", " +
                    std::to_string(tet[1]) + ", " + std::to_string(tet[2]) + " and " + std::to_string(tet[3]) +
@@ -64,7 +81,7 @@ void requireSameTets(const DeformCommand& command, const std::string& name, cons
 
 /// The nodes of the deformed cage. Its tets only show whether it is the same cage: their order and orientation may
 /// differ, as simulators change them.
-TetMesh loadDeformed(const DeformCommand& command, const std::string& name, const TetMesh& rest) {
+TetMesh loadDeformed(const DeformCommand& command, const std::string& name, const Cage& rest) {
   Result<TetMesh> deformed = loadTetMesh(name);
   require(deformed.status());
   const auto demand = [&](std::size_t count, std::size_t wanted, const char* what) {
@@ -73,8 +90,8 @@ TetMesh loadDeformed(const DeformCommand& command, const std::string& name, cons
                      command.model.cage + " has " + std::to_string(wanted) +
                      "; export both from one simulation, with its nodes in the same order");
   };
-  demand(deformed.value().nodeCount(), rest.nodeCount(), "nodes");
-  demand(deformed.value().tetCount(), rest.tetCount(), "tets");
+  demand(deformed.value().nodeCount(), rest.mesh.nodeCount(), "nodes");
+  demand(deformed.value().tetCount(), rest.mesh.tetCount(), "tets");
   requireSameTets(command, name, deformed.value(), rest);
   return std::move(deformed).value();
 }
@@ -180,7 +197,7 @@ int run(const DeformCommand& command) {
   require(layout.status());
   model.cage = loadCage(command.model.cage, model);
   gatherLooseVertices(model, model.cage, command.quiet);
-  TetMesh deformed = loadDeformed(command, command.deformed.front(), model.cage.mesh);
+  TetMesh deformed = loadDeformed(command, command.deformed.front(), model.cage);
 
   EmbedReport fit;
   auto made = SkinBinding<double>::create(model.cage, model.mesh, command.skin, &fit);
@@ -191,7 +208,7 @@ int run(const DeformCommand& command) {
   const ObjLayout written = layoutWith(command.skin.normals, layout.value());
   double updateUs = 0.0;
   for (const std::string& name : command.deformed) {
-    if (&name != &command.deformed.front()) deformed = loadDeformed(command, name, model.cage.mesh);
+    if (&name != &command.deformed.front()) deformed = loadDeformed(command, name, model.cage);
     const WallTimer timer;
     const Status bound = skin.bind(binding, viewOf(std::as_const(deformed.nodes)));
     updateUs += timer.microseconds() / static_cast<double>(command.deformed.size());

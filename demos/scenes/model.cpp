@@ -76,7 +76,8 @@ Cage loadCage(const std::string& path) {
   TetFileReport report;
   Result<Cage> loaded = tetskin::loadCage(path, &report);
   require(loaded.status());
-  if (report.cornersOnly > 0) warn(path, report.describe());  // most files hold surfaces, too, which need no word
+  // Most files hold surfaces, too, which need no word.
+  if (report.movedNodes + report.cutLinearTets + report.droppedNodes > 0) warn(path, report.describe());
   Cage cage = std::move(loaded).value();
   if (const Status status = validate(cage.mesh); !status.ok()) {
     throw InputError(path + ": " + status.message);

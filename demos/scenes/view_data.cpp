@@ -69,17 +69,29 @@ Json embeddingOf(const EmbeddingData& data) {
           {"closest", weightsOf(data.closestWeights, data.vertexCount() - data.insideCount)}};
 }
 
+/// The page has one kind of edge. For one of a quadratic tet, the first gradient becomes one that gives its vector
+/// along the edge, and the second the last of all, which is 0.
 Json stencilsOf(const QuadraticStencils<float>& stencils) {
-  std::vector<float> factors = stencils.entryFactors();
-  factors.resize(3 * stencils.entryNodes().size());
-  std::vector<float> halves;
+  Indices starts = stencils.starts(), nodes = stencils.entryNodes(), gradients = stencils.edgeGradients();
+  std::vector<float> factors = stencils.entryFactors(), halves;
+  factors.resize(3 * nodes.size());
   for (std::size_t edge = 0; edge < stencils.edgeCount(); ++edge) {
     const float* half = &stencils.halfRest()[4 * edge];
     halves.insert(halves.end(), half, half + 3);
+    if (edge < stencils.plainEdgeCount()) continue;
+    const std::size_t bent = edge - stencils.plainEdgeCount();
+    for (std::size_t k = stencils.bendStarts()[bent]; k < stencils.bendStarts()[bent + 1]; ++k) {
+      nodes.push_back(stencils.bendNodes()[k]);
+      for (int i = 0; i < 3; ++i) factors.push_back(stencils.bendFactors()[k] * half[i] / half[3]);
+    }
+    gradients.push_back(static_cast<std::uint32_t>(starts.size() - 1));
+    gradients.push_back(static_cast<std::uint32_t>(stencils.gradientCount() + stencils.bendStarts().size() - 1));
+    starts.push_back(static_cast<std::uint32_t>(nodes.size()));
   }
-  return {{"starts", packed(stencils.starts())}, {"entryNodes", packed(stencils.entryNodes())},
-          {"entryFactors", packed(factors)},     {"edgeGradients", packed(stencils.edgeGradients())},
-          {"halfRest", packed(halves)},          {"runEdges", packed(stencils.runEdges())}};
+  if (stencils.bendStarts().size() > 1) starts.push_back(starts.back());
+  return {{"starts", packed(starts)},        {"entryNodes", packed(nodes)},
+          {"entryFactors", packed(factors)}, {"edgeGradients", packed(gradients)},
+          {"halfRest", packed(halves)},      {"runEdges", packed(stencils.runEdges())}};
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ inline TriangleMesh box(bool authored) {
 template <class Scalar>
 class Carried {
  public:
-  Carried(const TetMesh& cage, const TriangleMesh& mesh, Normals normals,
+  Carried(const Cage& cage, const TriangleMesh& mesh, Normals normals,
           Interpolation interpolation = Interpolation::Quadratic, double hardEdgeDegrees = kHardEdgeDegrees) {
     SkinOptions options;
     options.normals = normals;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <cmath>
@@ -88,8 +89,8 @@ std::vector<Case> cases() {
 class Crumpled : public testing::TestWithParam<Case> {
  protected:
   /// Lattices of each kind and a thin one, in the case's size.
-  static std::vector<TetMesh> cages() {
-    std::vector<TetMesh> all;
+  static std::vector<Cage> cages() {
+    std::vector<Cage> all;
     for (const test::LatticeKind& kind : test::latticeKinds()) {
       // The unit has little to do with the lattice: for units other than 1, two lattices are enough.
       if (GetParam().size == 1.0 || kind.name == "Mirrored" || kind.name == "BodyCentredJittered") {
@@ -97,8 +98,9 @@ class Crumpled : public testing::TestWithParam<Case> {
       }
     }
     if (GetParam().size == 1.0) all.push_back(test::latticeCage(4, 1, 4, 0.25));
-    for (TetMesh& cage : all) {
-      for (Eigen::Vector3d& p : cage.nodes) p *= GetParam().size;
+    all.push_back(refineQuadratic(test::latticeCage(2, 2, 2, 0.5)).value());
+    for (Cage& cage : all) {
+      for (Eigen::Vector3d& p : cage.mesh.nodes) p *= GetParam().size;
     }
     return all;
   }
@@ -116,9 +118,10 @@ class Crumpled : public testing::TestWithParam<Case> {
   }
 
   template <class Scalar>
-  static void expectTheSurfaceStaysWithTheNodes(const TetMesh& cage) {
+  static void expectTheSurfaceStaysWithTheNodes(const Cage& rest) {
+    const TetMesh& cage = rest.mesh;
     const double edge = 0.2 * GetParam().size;  // shorter than most edges
-    CarriedPoints<Scalar> points(cage, vertices());
+    CarriedPoints<Scalar> points(rest, vertices());
     ASSERT_GT(points.fit.inside, 30u);
     ASSERT_GT(points.fit.outside, 50u);
     const Points nodes = GetParam().crumpling.apply(cage.nodes, GetParam().size);
@@ -143,8 +146,9 @@ class Crumpled : public testing::TestWithParam<Case> {
   }
 
   template <class Scalar>
-  static void expectEdgeVectorsAreShort(const TetMesh& cage) {
-    CarriedPoints<Scalar> points(cage, vertices());
+  static void expectEdgeVectorsAreShort(const Cage& rest) {
+    const TetMesh& cage = rest.mesh;
+    CarriedPoints<Scalar> points(rest, vertices());
     points.move(GetParam().crumpling.apply(cage.nodes, GetParam().size));
     for (std::size_t e = 0; e < points.stencils.edgeCount(); ++e) {
       using Vector = Eigen::Matrix<Scalar, 3, 1>;
@@ -155,7 +159,7 @@ class Crumpled : public testing::TestWithParam<Case> {
   }
 
   template <class Scalar>
-  static void expectNormalsStayUnitVectors(const TetMesh& cage, Interpolation interpolation, Normals normals) {
+  static void expectNormalsStayUnitVectors(const Cage& cage, Interpolation interpolation, Normals normals) {
     const double size = GetParam().size;
     TriangleMesh mesh = test::sphere(12, 0.52 * size, Eigen::Vector3d::Constant(0.5 * size));
     for (std::size_t v = 0; v < mesh.vertexCount(); ++v) mesh.tangents.emplace_back(0.6f, 0.8f, 0.0f, 1.0f);
@@ -165,7 +169,8 @@ class Crumpled : public testing::TestWithParam<Case> {
     MeshSkin<Scalar> skin;
     ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
     std::vector<Eigen::Matrix<Scalar, 3, 1>> nodes;
-    for (const Eigen::Vector3d& p : GetParam().crumpling.apply(cage.nodes, size)) nodes.push_back(p.cast<Scalar>());
+    for (const Eigen::Vector3d& p : GetParam().crumpling.apply(cage.mesh.nodes, size))
+      nodes.push_back(p.cast<Scalar>());
     ASSERT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
     ASSERT_EQ(skin.normals().size(), mesh.vertexCount());
     for (const PointView<const float>& directions : {skin.normals(), skin.tangents()}) {
@@ -181,25 +186,26 @@ INSTANTIATE_TEST_SUITE_P(Cage, Crumpled, testing::ValuesIn(cases()),
                          [](const auto& test) { return test.param.name(); });
 
 TEST_P(Crumpled, SurfaceStaysWithTheNodes) {
-  for (const TetMesh& cage : cages()) {
+  for (const Cage& cage : cages()) {
     expectTheSurfaceStaysWithTheNodes<float>(cage);
     expectTheSurfaceStaysWithTheNodes<double>(cage);
   }
 }
 
 TEST_P(Crumpled, NoEdgeVectorIsLongerThanHalfItsEdgeAtRest) {
-  for (const TetMesh& cage : cages()) {
+  for (const Cage& cage : cages()) {
     expectEdgeVectorsAreShort<float>(cage);
     expectEdgeVectorsAreShort<double>(cage);
   }
 }
 
 TEST_P(Crumpled, NormalsStayUnitVectors) {
-  const TetMesh cage = cages().front();
-  for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
-    for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
-      expectNormalsStayUnitVectors<float>(cage, interpolation, normals);
-      expectNormalsStayUnitVectors<double>(cage, interpolation, normals);
+  for (const Cage& cage : {cages().front(), cages().back()}) {
+    for (const Normals normals : {Normals::Transformed, Normals::Recomputed}) {
+      for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {
+        expectNormalsStayUnitVectors<float>(cage, interpolation, normals);
+        expectNormalsStayUnitVectors<double>(cage, interpolation, normals);
+      }
     }
   }
 }

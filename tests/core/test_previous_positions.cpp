@@ -11,24 +11,24 @@
 namespace tetskin {
 namespace {
 
-using Points = std::vector<Eigen::Vector3f>;
+using FloatPoints = std::vector<Eigen::Vector3f>;
 
 class PreviousPositions : public testing::Test {
  protected:
   /// The cage's nodes, moved by `step` and slightly sheared.
-  Points nodesAt(int step) const {
-    Points nodes;
+  FloatPoints nodesAt(int step) const {
+    FloatPoints nodes;
     for (const Eigen::Vector3d& p : cage.nodes) {
       nodes.push_back((p + 0.1 * step * Eigen::Vector3d(1.0, p.z(), p.x() * p.y())).cast<float>());
     }
     return nodes;
   }
   void update(int step) {
-    const Points nodes = nodesAt(step);
+    const FloatPoints nodes = nodesAt(step);
     ASSERT_EQ(skin.update(viewOf(nodes)), StatusCode::Ok);
   }
-  static Points copyOf(PointView<const float> view) {
-    Points points;
+  static FloatPoints copyOf(PointView<const float> view) {
+    FloatPoints points;
     for (std::size_t v = 0; v < view.size(); ++v) points.emplace_back(view[v][0], view[v][1], view[v][2]);
     return points;
   }
@@ -47,7 +47,7 @@ TEST_F(PreviousPositions, AreThoseOfTheUpdateBeforeToTheBit) {
       options.previousPositions = true;
       ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
       EXPECT_EQ(copyOf(skin.previousPositions()), copyOf(skin.positions()));
-      Points before = copyOf(skin.positions());
+      FloatPoints before = copyOf(skin.positions());
       for (int step = 1; step < 5; ++step) {
         update(step);
         EXPECT_EQ(copyOf(skin.previousPositions()), before);
@@ -65,7 +65,7 @@ TEST_F(PreviousPositions, DoNotChangeTheCurrentOnes) {
   ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
   for (int step = 1; step < 4; ++step) {
     update(step);
-    const Points nodes = nodesAt(step);
+    const FloatPoints nodes = nodesAt(step);
     ASSERT_EQ(plain.update(viewOf(nodes)), StatusCode::Ok);
     EXPECT_EQ(copyOf(skin.positions()), copyOf(plain.positions()));
   }
@@ -77,7 +77,7 @@ TEST_F(PreviousPositions, AreTheCurrentOnesWhileHeld) {
   update(1);
   update(2);
   skin.clearMotion();
-  const Points pinned = copyOf(skin.positions());
+  const FloatPoints pinned = copyOf(skin.positions());
   EXPECT_EQ(copyOf(skin.previousPositions()), pinned);
   update(3);
   EXPECT_EQ(copyOf(skin.previousPositions()), pinned);
@@ -87,8 +87,8 @@ TEST_F(PreviousPositions, AreTheCurrentOnesAfterAFailedUpdate) {
   options.previousPositions = true;
   ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
   update(1);
-  const Points good = copyOf(skin.positions());
-  Points nodes = nodesAt(2);
+  const FloatPoints good = copyOf(skin.positions());
+  FloatPoints nodes = nodesAt(2);
   nodes[7].y() = std::numeric_limits<float>::infinity();
   EXPECT_EQ(skin.update(viewOf(std::as_const(nodes))), StatusCode::NonFinite);
   EXPECT_EQ(skin.firstNonFiniteNode(), 7u);
@@ -105,7 +105,7 @@ TEST_F(PreviousPositions, CostNothingWhenNotAskedFor) {
     const std::size_t before = test::allocatedBytes();
     EXPECT_TRUE(made.bind(cage, mesh, options).ok());
     EXPECT_EQ(made.previousPositions().size(), previous ? mesh.vertexCount() : 0);
-    const Points nodes = nodesAt(1);
+    const FloatPoints nodes = nodesAt(1);
     EXPECT_EQ(made.update(viewOf(nodes)), StatusCode::Ok);
     EXPECT_EQ(made.previousPositions().size(), previous ? mesh.vertexCount() : 0);
     return test::allocatedBytes() - before;
@@ -117,14 +117,14 @@ TEST_F(PreviousPositions, CostNothingWhenNotAskedFor) {
 TEST_F(PreviousPositions, UpdatesAllocateNothing) {
   options.previousPositions = true;
   ASSERT_TRUE(skin.bind(cage, mesh, options).ok());
-  const Points nodes = nodesAt(1);
+  const FloatPoints nodes = nodesAt(1);
   const std::size_t before = test::allocationCount();
   ASSERT_EQ(skin.update(viewOf(nodes)), StatusCode::Ok);
   EXPECT_EQ(test::allocationCount(), before);
 }
 
 TEST_F(PreviousPositions, AreNotKeptOfTheCallersBuffer) {
-  Points target(mesh.vertexCount());
+  FloatPoints target(mesh.vertexCount());
   options.previousPositions = true;
   options.target = viewOf(target);
   const Result<EmbedReport> report = skin.bind(cage, mesh, options);

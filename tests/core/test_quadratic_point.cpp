@@ -51,6 +51,21 @@ TYPED_TEST(QuadraticPoints, AreWhereQuadraticSkinningDrawsAllVertices) {
   }
 }
 
+TYPED_TEST(QuadraticPoints, AreWhereTheSurfaceOfQuadraticTetsIs) {
+  const Cage whole = refineQuadratic(jittered(latticeCage(2, 2, 2, 0.5), 0.04, 9)).value();
+  Cage mixed = whole;
+  for (int& number : mixed.quadraticTet) number = number < 30 ? number : -1;
+  for (const Cage& rest : {whole, mixed}) {
+    CarriedPoints<TypeParam> carried(rest, this->vertices);
+    this->all = carried;
+    for (const SmoothMap& map : smoothMaps(kCageCentre)) {
+      const Points nodes = map(rest.mesh.nodes);
+      carried.move(nodes);
+      EXPECT_LT(distances(this->oneByOne(carried, nodes), carried.quadratic()).longest, this->kRounding) << map.name;
+    }
+  }
+}
+
 TYPED_TEST(QuadraticPoints, AreBoundedAsTheirSurfaceIs) {
   const Points nodes = randomPoints(this->cage.nodeCount(), around(this->cage, 3.0), 11);  // a crumpled cage
   this->all.move(nodes);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/io/files.h>
 
 #include <algorithm>
 
 #include "command.h"
 #include "scenes/model.h"
+#include "support/odd_meshes.h"
 
 namespace tetskin {
 namespace {
@@ -116,6 +118,53 @@ TEST_F(CageCommand, TellsOfVerticesThatNoTriangleUses) {
   EXPECT_NE(result.out.find("\n2 vertices shape no cage"), std::string::npos) << result.out;
 }
 
+TEST_F(CageCommand, MakesQuadraticTetsOfAFilledMesh) {
+  const TetMesh filled = test::latticeCage(3, 1, 1);
+  ASSERT_TRUE(saveTetMesh(filled, folder.path("f.msh")).ok());
+  const auto made = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--filled", "f.msh", "-o", "c.vtk", "--json", "c.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = cage(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    return loadCage(folder.path("c.vtk")).value();
+  };
+  const Cage plain = made({});
+  EXPECT_EQ(plain.mesh.tets, filled.tets);
+  EXPECT_TRUE(plain.quadraticTet.empty());
+  EXPECT_EQ(folder.json("c.json")["quadratic_tets"], 0);
+  const Cage each = made({"--quadratic"}), expected = refineQuadratic(filled).value();
+  EXPECT_EQ(each.mesh.nodes, expected.mesh.nodes);
+  EXPECT_EQ(each.quadraticTet, expected.quadraticTet);
+  EXPECT_EQ(folder.json("c.json")["quadratic_tets"], filled.tetCount());
+  // Those that were refined before are found, with or without.
+  ASSERT_TRUE(saveTetMesh(expected.mesh, folder.path("f.msh")).ok());
+  EXPECT_EQ(quadraticTets(made({})).value().size(), filled.tetCount());
+  EXPECT_EQ(made({"--quadratic"}).mesh.tetCount(), expected.mesh.tetCount());
+}
+
+TEST_F(CageCommand, TellsInOneLineOfCurvedEdges) {
+  folder.write("f.vtk",
+               "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 float\n0 0 0\n1 0 0\n0 1 "
+               "0\n0 0 1\n.5 0 0\n.75 .75 0\n0 .5 0\n0 0 .5\n.5 0 .5\n0 .5 .5\nCELLS 1 11\n10 0 1 2 3 4 5 6 7 8 "
+               "9\nCELL_TYPES 1\n24\n");
+  const CommandResult result = cage({"--filled", "f.vtk", "-o", "c.vtk", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(
+      result.err,
+      "f.vtk: 1 tets of second or higher order became quadratic tets, each of eight tets, 1 nodes on curved edges "
+      "were moved to their middles, by up to 0.354\n");
+  EXPECT_EQ(quadraticTets(loadCage(folder.path("c.vtk")).value()).value().size(), 1u);
+}
+
+TEST_F(CageCommand, TellsOfVerticesOutsideAFilledMesh) {
+  ASSERT_TRUE(saveTetMesh(test::singleTet(), folder.path("f.vtk")).ok());
+  folder.write("big.obj", "v 0 0 0\nv 3 0 0\nv 0 1 0\nf 1 2 3\n");
+  const CommandResult result = cage({"--filled", "f.vtk", "--mesh", "big.obj", "-o", "c.vtk", "--quiet"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("1 vertices lie outside the cage"), std::string::npos) << result.err;
+}
+
 TEST_F(CageCommand, RefusesBadInput) {
   folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
   folder.write("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
@@ -126,6 +175,10 @@ TEST_F(CageCommand, RefusesBadInput) {
   expectRefused({"--mesh", "ok.obj", "-o", "c.xyz"}, "c.xyz");
   expectRefused({"--mesh", "ok.obj", "-o", "no/such/c.vtk"}, "no/such/c.vtk");
   expectRefused({"--mesh", "ok.obj"}, "--output");
+  ASSERT_TRUE(saveTetMesh(test::singleTet(), folder.path("f.vtk")).ok());
+  expectRefused({"--filled", "nowhere.msh", "-o", "c.vtk"}, "nowhere.msh");
+  expectRefused({"--filled", "f.vtk", "--tets", "100", "-o", "c.vtk"}, "takes no --tets");
+  expectRefused({"--mesh", "ok.obj", "--quadratic", "-o", "c.vtk"}, "--filled");
 }
 
 }  // namespace

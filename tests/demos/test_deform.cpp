@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "deform_run.h"
 #include "support/odd_meshes.h"
@@ -89,6 +91,40 @@ TEST_F(Deform, DumpsTetAndWeightsOfEveryVertex) {
   EXPECT_EQ(folder.read("e.csv"),
             "vertex,tet,b0,b1,b2,b3,inside\n0,0,0.375,0.125,0.25,0.25,1\n1,1,0.125,0.25,0.125,0.5,1\n"
             "2,0,0.625,-0.125,0.25,0.25,0\n");
+}
+
+/// A tet of second order, whose nodes a map moves.
+void writeQuadraticTet(const CommandFolder& folder, const std::string& name, const Map& map) {
+  const TetMesh mesh = refineUniformly({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, {{0, 1, 2, 3}}}).mesh;
+  std::ostringstream text;
+  text.precision(17);
+  text << "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 double\n";
+  for (const auto& [a, b] : {std::pair(0, 0), {1, 1}, {2, 2}, {3, 3}, {0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}) {
+    text << map(0.5 * (mesh.nodes[a] + mesh.nodes[b])).transpose() << "\n";
+  }
+  folder.write(name, text.str() + "CELLS 1 11\n10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\n");
+}
+
+TEST_F(Deform, TakesTetsOfSecondOrderAsTheyAreDeformed) {
+  folder.write("m.obj", "v 0.125 0.25 0.25\nv 0.25 0.125 0.5\nv 1 0.25 0.25\nf 1 2 3\n");
+  mesh = loadMesh(folder.path("m.obj")).value();
+  // Squeezed along one axis after the other, so that each of the diagonals is the shortest.
+  for (int axis = 0; axis < 3; ++axis) {
+    const Map map = [axis](const Vector3d& p) -> Vector3d {
+      Vector3d x = p + 0.2 * Vector3d(p.y() * p.y(), p.x() * p.z(), p.x() * p.x());
+      x[axis] *= 0.25;
+      return x;
+    };
+    writeQuadraticTet(folder, "rest.vtk", still);
+    writeQuadraticTet(folder, "now.vtk", map);
+    const CommandResult result = deform({"--interpolation", "quadratic"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "") << "nodes of the deformed tet stay on its curved edges";
+    const auto moved = test::objPositions(folder.read("o.obj"));
+    for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
+      EXPECT_LT((Vector3d(moved[v].data()) - map(mesh.positions[v])).norm(), 1e-5);
+    }
+  }
 }
 
 TEST_F(Deform, KeepsTheInputsFacesTextureCoordinatesAndGroups) {

@@ -153,8 +153,8 @@ const std::string kThirteenPoints =
 TEST(HighOrderTets, TetsOfFirstOrderBetweenTheirMiddlesFitAsTheyAre) {
   // A corner of the quadratic tet, and its mirror image on the other side of a face.
   TetFileReport report;
-  const Result<Cage> read =
-      loadCageText("c.vtk", kThirteenPoints + "CELLS 2 16\n10 0 1 2 3 4 5 6 7 8 9\n4 0 4 12 7\nCELL_TYPES 2\n24 10\n", &report);
+  const Result<Cage> read = loadCageText(
+      "c.vtk", kThirteenPoints + "CELLS 2 16\n10 0 1 2 3 4 5 6 7 8 9\n4 0 4 12 7\nCELL_TYPES 2\n24 10\n", &report);
   ASSERT_TRUE(read.ok()) << read.status().message;
   EXPECT_EQ(read.value().mesh.tetCount(), 9u);
   EXPECT_EQ(report.cutLinearTets, 0u);

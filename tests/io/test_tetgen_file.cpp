@@ -79,6 +79,9 @@ TEST(LoadTetgen, RefusesTenNodesThatAreNotOnTheEdges) {
   expectError(load(kQuadraticNodes, "1 1 2 3 4 5 6 7 8 9 9\n"), kMalformed, {"c.1.ele:3:", "names a node twice"});
   expectError(load(kQuadraticNodes, "1 1 2 3 4 5 6 7 8 9 11\n"), kMalformed,
               {"c.1.ele:3:", "far from the middles", "save the mesh with straight edges"});
+  const TempFolder folder;
+  folder.write("d.ele", "1 10 0\n1 1 2 3 4 5 6 7 8 9 9\n");
+  expectError(loadCage(folder.write("d.node", kQuadraticNodes)), kMalformed, {"d.ele:2:"});
   expectError(load(kQuadraticNodes, "1 1 2 3 4 5 6 7 8 9 12\n"), kIndexOutOfRange, {"c.1.ele:3:", "node 12"});
   expectError(load(kQuadraticNodes, "1 1 2 3 4 5 6 7 8 9\n"), kMalformed, {"c.1.ele:3:", "ten nodes"});
 }

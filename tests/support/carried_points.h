@@ -4,6 +4,7 @@
 // Points in a cage, and the positions that skinning gives them.
 #pragma once
 
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
@@ -22,13 +23,16 @@ using Points = std::vector<Eigen::Vector3d>;
 template <class Scalar>
 class CarriedPoints {
  public:
-  CarriedPoints(const TetMesh& restCage, const Points& vertices, const EmbedOptions& options = {}) : cage(restCage) {
+  CarriedPoints(const Cage& restCage, const Points& vertices, const EmbedOptions& options = {})
+      : cage(restCage.mesh), quadraticTets(tetskin::quadraticTets(restCage).value()) {
     fit = embedInto(cage, viewOf(vertices), options, embedding);
     prepare();
   }
   /// tetOf  as for embeddingFromTets
-  CarriedPoints(const TetMesh& restCage, const Points& vertices, const std::vector<std::int32_t>& tetOf)
-      : cage(restCage), embedding(embeddingFromTets(restCage, viewOf(vertices), tetOf)) {
+  CarriedPoints(const Cage& restCage, const Points& vertices, const std::vector<std::int32_t>& tetOf)
+      : cage(restCage.mesh),
+        quadraticTets(tetskin::quadraticTets(restCage).value()),
+        embedding(embeddingFromTets(restCage.mesh, viewOf(vertices), tetOf)) {
     prepare();
   }
 
@@ -51,6 +55,7 @@ class CarriedPoints {
   }
 
   TetMesh cage;
+  std::vector<QuadraticTet> quadraticTets;
   Embedding embedding;
   Fit fit;
   QuadraticStencils<Scalar> stencils;
@@ -63,7 +68,7 @@ class CarriedPoints {
 
  private:
   void prepare() {
-    stencils = QuadraticStencils<Scalar>(cage, embedding);
+    stencils = QuadraticStencils<Scalar>(cage, embedding, {}, quadraticTets);
     edges = EdgeVectors<Scalar>(stencils);
     nodes = PackedNodes<Scalar>(cage.nodeCount());
     bindings = embedding.bindings();

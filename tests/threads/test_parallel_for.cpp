@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <cstring>
@@ -37,8 +38,13 @@ class Threads : public testing::Test {
  protected:
   Threads() {
     mesh.tangents.assign(mesh.vertexCount(), {0.6f, 0.0f, 0.8f, 1.0f});
+    moveNodes();
+  }
+
+  void moveNodes() {
+    nodes.clear();
     const test::SmoothMap waves = test::smoothMaps(Eigen::Vector3d::Constant(0.5))[3];
-    for (const Eigen::Vector3d& p : cage.nodes) nodes.push_back(waves.at(p).cast<float>());
+    for (const Eigen::Vector3d& p : cage.mesh.nodes) nodes.push_back(waves.at(p).cast<float>());
   }
 
   void expectSameBitsForAnyNumber(Normals normals, VertexOrder order) {
@@ -63,8 +69,9 @@ class Threads : public testing::Test {
       const int before = threads.runs;
       ASSERT_EQ(together.update(viewOf(std::as_const(nodes))), StatusCode::Ok);
       // The runs are gradients, edges, positions, normals and tangents, or faces and normals; in the mesh's order, the
-      // first three outputs are also reordered.
-      EXPECT_EQ(threads.runs - before, order == VertexOrder::Mesh ? 8 : 5);
+      // first three outputs are also reordered. Quadratic tets need no gradients.
+      const int gradients = cage.quadraticTet.empty() ? 1 : 0;
+      EXPECT_EQ(threads.runs - before, (order == VertexOrder::Mesh ? 7 : 4) + gradients);
       EXPECT_GE(threads.maxTasks, 4u);
       EXPECT_TRUE(sameBits(together.positions(), alone.positions())) << count;
       EXPECT_TRUE(sameBits(together.normals(), alone.normals())) << count;
@@ -74,12 +81,18 @@ class Threads : public testing::Test {
     }
   }
 
-  TetMesh cage = test::latticeCage(16, 16, 16, 1.0 / 16.0);
+  Cage cage{test::latticeCage(16, 16, 16, 1.0 / 16.0)};
   TriangleMesh mesh = test::sphere(260, 0.52, Eigen::Vector3d::Constant(0.5));
   std::vector<Eigen::Vector3f> nodes;
 };
 
 TEST_F(Threads, SameBitsForAnyNumberWithTransformedNormals) {
+  expectSameBitsForAnyNumber(Normals::Transformed, VertexOrder::Mesh);
+}
+
+TEST_F(Threads, SameBitsForAnyNumberInQuadraticTets) {
+  cage = refineQuadratic(test::latticeCage(8, 8, 8, 1.0 / 8.0)).value();
+  moveNodes();
   expectSameBitsForAnyNumber(Normals::Transformed, VertexOrder::Mesh);
 }
 

@@ -80,7 +80,8 @@ struct PaletteOptions {
 ///
 /// What differs from the skin, apart from rounding: an edge's vector is not limited to half its rest length, as it is
 /// where a cage is crumpled; and in a quadratic surface, a vertex outside the cage is not continued to first order from
-/// the closest point of its tet, but to second order, and not limited either.
+/// the closest point of its tet, but to second order, and not limited either. Within quadratic tets of the cage, where
+/// the skin takes the tet's own map, bones have the gradients that are fitted at nodes, as elsewhere.
 ///
 /// Owns nothing of a body: one palette serves all bodies with the same binding, one after the other. Can be moved, not
 /// copied.

@@ -18,7 +18,8 @@ namespace tetskin {
 /// How the surface follows the nodes.
 enum class Interpolation {
   Linear,     ///< barycentric in each tet: continuous, but bent surfaces show the cage's faces
-  Quadratic,  ///< visually smooth, one order more accurate, at 2.4 to 3 times the cost of an update
+  Quadratic,  ///< visually smooth, one order more accurate, at 2.4 to 3 times the cost of an update; the map itself
+              ///< within quadratic tets (see `Cage::quadraticTet`)
 };
 
 /// How a skin's normals are computed.
@@ -110,8 +111,8 @@ class TETSKIN_CORE_API SkinBinding {
                                 EmbedReport* report = nullptr);
   /// Uses an existing embedding, such as a loaded one; `options.outside` and `options.maxDistance` have no effect,
   /// since they were applied when the embedding was made.
-  /// Errors  SizeMismatch if mesh or cage differ in count from what was embedded; those of `validate(const TetMesh&)`;
-  ///         for mesh and options, those of the other overload
+  /// Errors  SizeMismatch if mesh or cage differ in count from what was embedded; those of `validate(const TetMesh&)`,
+  ///         and of `quadraticTets` for a quadratic surface; for mesh and options, those of the other overload
   static Result<Pointer> create(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
                                 const Embedding& embedding);
   ~SkinBinding();

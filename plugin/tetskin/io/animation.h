@@ -32,9 +32,9 @@ struct SurfaceMaterial {
 /// - Linear: bones move by translation, which is linear skinning exactly. The mesh has no normals, as bones that do not
 ///   turn would leave them as they are at rest: viewers shade such a mesh by its triangles, flat.
 /// - Quadratic: bone i is the affine map [F_i / 2 | x_i - F_i X_i / 2], with its position x_i, X_i at rest, and the
-///   deformation gradient F_i there: quadratic skinning, except where that limits its correction (`MeshSkin`). A bone
-///   is two nodes, as F = U S V^T is a rotation and a scale above a rotation, which holds any F; the mesh has normals,
-///   which viewers turn with the bones, about as the surface turns.
+///   deformation gradient F_i there: quadratic skinning, except where that limits its correction (`MeshSkin`), and in
+///   quadratic tets, whose own map it takes. A bone is two nodes, as F = U S V^T is a rotation and a scale above a
+///   rotation, which holds any F; the mesh has normals, which viewers turn with the bones, about as the surface turns.
 ///
 /// A vertex outside of its tet would need weights below 0, which glTF does not allow: it takes those of the tet's
 /// closest point (`EmbeddedPoint::clampedWeights`). A linear surface then keeps the vector from that point to the

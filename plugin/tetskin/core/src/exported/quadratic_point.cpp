@@ -46,17 +46,32 @@ Eigen::Matrix3d gradientAt(const QuadraticStencils<Scalar>& stencils, std::size_
 }
 
 template <class Scalar>
+Vector3d edgeVector(const QuadraticStencils<Scalar>& stencils, std::size_t edge, const Vector3d& origin,
+                    const NodePositions<Scalar>& positionOf) {
+  if (edge < stencils.plainEdgeCount()) {
+    const Eigen::Matrix3d first = gradientAt(stencils, stencils.edgeGradients()[2 * edge], origin, positionOf);
+    const Eigen::Matrix3d second = gradientAt(stencils, stencils.edgeGradients()[2 * edge + 1], origin, positionOf);
+    const Scalar* half = &stencils.halfRest()[4 * edge];
+    return (first - second) * Vector3d(half[0], half[1], half[2]);
+  }
+  const std::size_t bent = edge - stencils.plainEdgeCount();
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t k = stencils.bendStarts()[bent]; k < stencils.bendStarts()[bent + 1]; ++k) {
+    const Vector3d offset = positionOf(static_cast<int>(stencils.bendNodes()[k])).template cast<double>() - origin;
+    sum += static_cast<double>(stencils.bendFactors()[k]) * offset;
+  }
+  return sum;
+}
+
+template <class Scalar>
 TetEdges edgesOf(const QuadraticStencils<Scalar>& stencils, std::size_t run, const Vector3d& origin,
                  const NodePositions<Scalar>& positionOf) {
   assert(6 * run + 6 <= stencils.runEdges().size());
   TetEdges edges;
   for (std::size_t k = 0; k < 6; ++k) {
     const std::size_t e = stencils.runEdges()[6 * run + k];
-    const Eigen::Matrix3d first = gradientAt(stencils, stencils.edgeGradients()[2 * e], origin, positionOf);
-    const Eigen::Matrix3d second = gradientAt(stencils, stencils.edgeGradients()[2 * e + 1], origin, positionOf);
-    const Scalar* half = &stencils.halfRest()[4 * e];
-    edges.vectors[k] = (first - second) * Vector3d(half[0], half[1], half[2]);
-    const double squared = edges.vectors[k].squaredNorm(), limit = half[3];
+    edges.vectors[k] = edgeVector(stencils, e, origin, positionOf);
+    const double squared = edges.vectors[k].squaredNorm(), limit = stencils.halfRest()[4 * e + 3];
     if (squared > limit) edges.vectors[k] *= std::sqrt(limit / squared);
     const auto rest = static_cast<double>(stencils.restLengths()[e]);
     edges.shortest = k == 0 ? rest : std::min(edges.shortest, rest);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
@@ -48,9 +49,12 @@ Status checkEmbedded(const TetMesh& cage, const TriangleMesh& mesh, const Embedd
 }
 
 template <class Scalar>
-void addQuadratic(const Cage& cage, SkinData<Scalar>& data) {
+Status addQuadratic(const Cage& cage, SkinData<Scalar>& data) {
   const auto start = std::chrono::steady_clock::now();
-  const QuadraticStencils<Scalar>& made = data.quadratic.emplace(cage.mesh, data.embedding, cage.sourceTet);
+  const Result<std::vector<QuadraticTet>> tets = quadraticTets(cage);
+  if (!tets.ok()) return tets.status();
+  const QuadraticStencils<Scalar>& made =
+      data.quadratic.emplace(cage.mesh, data.embedding, cage.sourceTet, tets.value());
   QuadraticReport& report = data.quadraticReport;
   report.nodes = made.gradientCount();
   report.underdeterminedNodes = made.thinCount();
@@ -60,12 +64,14 @@ void addQuadratic(const Cage& cage, SkinData<Scalar>& data) {
     report.meanNeighbours = static_cast<double>(made.entryNodes().size()) / static_cast<double>(report.nodes) - 1.0;
   }
   report.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return {};
 }
 
 /// Computes what the options ask for in addition to the embedding.
 template <class Scalar>
-std::unique_ptr<const SkinData<Scalar>> makeSkinData(const Cage& cage, const TriangleMesh& mesh,
-                                                     const BindingOptions& options, const Embedding& embedding) {
+Result<std::unique_ptr<const SkinData<Scalar>>> makeSkinData(const Cage& cage, const TriangleMesh& mesh,
+                                                             const BindingOptions& options,
+                                                             const Embedding& embedding) {
   assert(embedding.vertexCount() == mesh.vertexCount() && embedding.tetCount() == cage.mesh.tetCount());
   auto made = std::make_unique<SkinData<Scalar>>();
   made->options = options;
@@ -74,7 +80,9 @@ std::unique_ptr<const SkinData<Scalar>> makeSkinData(const Cage& cage, const Tri
   for (const Eigen::Vector3d& p : cage.mesh.nodes) {
     for (const double x : {p.x(), p.y(), p.z(), 0.0}) made->restNodes.push_back(static_cast<Scalar>(x));
   }
-  if (options.interpolation == Interpolation::Quadratic) addQuadratic(cage, *made);
+  if (options.interpolation == Interpolation::Quadratic) {
+    if (Status status = addQuadratic(cage, *made); !status.ok()) return status;
+  }
   if (options.normals == Normals::Transformed) {
     made->normals = DirectionFactors::ofNormals(cage.mesh, made->embedding, restNormals(mesh));
     if (!mesh.tangents.empty()) {
@@ -85,7 +93,7 @@ std::unique_ptr<const SkinData<Scalar>> makeSkinData(const Cage& cage, const Tri
     made->recomputed.emplace(mesh, sorted ? made->embedding.vertexSlots() : std::vector<std::uint32_t>(),
                              options.hardEdgeDegrees);
   }
-  return made;
+  return std::unique_ptr<const SkinData<Scalar>>(std::move(made));
 }
 
 }  // namespace
@@ -152,7 +160,9 @@ auto SkinBinding<Scalar>::create(const Cage& cage, const TriangleMesh& mesh, con
   embedOptions.maxDistance = options.maxDistance;
   const Result<Embedding> embedding = embed(cage, mesh, embedOptions, report);
   if (!embedding.ok()) return embedding.status();
-  return Pointer(new SkinBinding(makeSkinData<Scalar>(cage, mesh, options, embedding.value())));
+  auto data = makeSkinData<Scalar>(cage, mesh, options, embedding.value());
+  if (!data.ok()) return data.status();
+  return Pointer(new SkinBinding(std::move(data).value()));
 }
 
 template <class Scalar>
@@ -162,7 +172,9 @@ auto SkinBinding<Scalar>::create(const Cage& cage, const TriangleMesh& mesh, con
   if (Status status = checkBinding(mesh, options); !status.ok()) return status;
   if (Status status = validate(cage.mesh); !status.ok()) return status;
   if (Status status = checkEmbedded(cage.mesh, mesh, embedding); !status.ok()) return status;
-  return Pointer(new SkinBinding(makeSkinData<Scalar>(cage, mesh, options, embedding)));
+  auto data = makeSkinData<Scalar>(cage, mesh, options, embedding);
+  if (!data.ok()) return data.status();
+  return Pointer(new SkinBinding(std::move(data).value()));
 }
 
 template <class Scalar>

@@ -47,8 +47,24 @@ S squaredLength(const Lanes<S, 4>& v) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
-/// e = (F_i - F_j) (X_j - X_i) / 2, no longer than half the edge's rest length: on a crumpled cage the gradients are
-/// meaningless, and must not throw the surface out of the cage.
+/// Writes an edge's vector, no longer than half its rest length: on a crumpled cage the vectors are meaningless, and
+/// must not throw the surface out of the cage. The fourth number is the rest length, which stays unchanged.
+/// limit  the square of that half
+template <class S>
+void storeEdge(Lanes<S, 4> e, S limit, S* out) {
+  const S length = squaredLength<S>(e);
+  if (!(length <= limit)) {
+    // For nodes so far apart that the length overflows, the vector is 0.
+    if (length * 0 == 0) {
+      e = e * (squareRoot(limit) / squareRoot(length));
+    } else {
+      e = Lanes<S, 4>{};
+    }
+  }
+  for (int k = 0; k < 3; ++k) out[k] = e[k];
+}
+
+/// e = (F_i - F_j) (X_j - X_i) / 2.
 template <class S>
 void edges(const EdgeWork<S>& given) {
   const EdgeWork<S> work = given;
@@ -58,18 +74,20 @@ void edges(const EdgeWork<S>& given) {
     const S* half = work.halfRest + 4 * i;
     Lanes<S, 4> e = (loadPadded(a) - loadPadded(b)) * half[0];
     for (int c = 1; c < 3; ++c) e += (loadPadded(a + 4 * c) - loadPadded(b + 4 * c)) * half[c];
-    const S length = squaredLength<S>(e), limit = half[3];
-    if (!(length <= limit)) {
-      // For nodes so far apart that the length overflows, the vector is 0.
-      if (length * 0 == 0) {
-        e = e * (squareRoot(limit) / squareRoot(length));
-      } else {
-        e = Lanes<S, 4>{};
-      }
+    storeEdge<S>(e, half[3], work.edges + 4 * i);
+  }
+}
+
+/// The vectors of edges of quadratic tets.
+template <class S>
+void bends(const BendWork<S>& given) {
+  const BendWork<S> work = given;
+  for (std::size_t i = work.firstEdge; i < work.lastEdge; ++i) {
+    Lanes<S, 4> e = {};
+    for (std::size_t k = work.starts[i]; k < work.starts[i + 1]; ++k) {
+      e += loadPadded(work.nodes + 4 * static_cast<std::size_t>(work.entryNodes[k])) * work.factors[k];
     }
-    // The fourth number is the rest length, which stays unchanged.
-    S* out = work.edges + 4 * i;
-    for (int k = 0; k < 3; ++k) out[k] = e[k];
+    storeEdge<S>(e, work.halfRest[4 * i + 3], work.edges + 4 * i);
   }
 }
 

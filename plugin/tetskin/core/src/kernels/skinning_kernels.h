@@ -68,6 +68,18 @@ struct EdgeWork {
   Scalar* edges = nullptr;  ///< 4 per edge; the fourth is not changed
 };
 
+/// The vector of an edge of a quadratic tet is the sum of positions of the tet's nodes times `factors`.
+template <class Scalar>
+struct BendWork {
+  std::size_t firstEdge = 0, lastEdge = 0;  ///< among these edges
+  const std::uint32_t* starts = nullptr;    ///< by edge, and the end: its first entry
+  const std::uint32_t* entryNodes = nullptr;
+  const Scalar* factors = nullptr;   ///< 1 per entry
+  const Scalar* nodes = nullptr;     ///< current positions, as in Work
+  const Scalar* halfRest = nullptr;  ///< as in EdgeWork, from the first of these edges on
+  Scalar* edges = nullptr;
+};
+
 /// What a bone's matrix [ A | t ] holds: half the node's gradient, or the whole gradient beside the displacement.
 enum class BoneContent { HalfGradient, Gradient };
 
@@ -115,6 +127,7 @@ struct Table {
   void (*directions)(const Work<Scalar>&, const DirectionPlanes&, float* out);
   void (*gradients)(const GradientWork<Scalar>&);
   void (*edges)(const EdgeWork<Scalar>&);
+  void (*bends)(const BendWork<Scalar>&);
   void (*bones)(const BoneWork<Scalar>&);
   void (*pathNormals)(const PathWork<Scalar>&);
 };

@@ -14,7 +14,7 @@ namespace tetskin::kernels::TETSKIN_KERNELS {
 
 template <class S, int P>
 constexpr Table<S> table() {
-  return {positions<S, P>, directions<S, P>, gradients<S, P>, edges<S>, bones<S>, pathNormals<S>};
+  return {positions<S, P>, directions<S, P>, gradients<S, P>, edges<S>, bends<S>, bones<S>, pathNormals<S>};
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS

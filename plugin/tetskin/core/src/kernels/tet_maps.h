@@ -6,7 +6,7 @@
 // This work is based on:
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022 (linear)
 //   Doug L. James, "Phong Deformation: A Better C0 Interpolant for Embedded Deformation", ACM TOG 39(4), 2020,
-//   doi 10.1145/3386569.3392371 (quadratic; the node gradients are others, see quadratic_skinning.h)
+//   doi 10.1145/3386569.3392371 (quadratic; the edges' vectors are others, see quadratic_skinning.h)
 //
 // With b the weights of a tet's first three nodes, b3 = 1 - b0 - b1 - b2, and e_ij the vector of its edge (i, j):
 //   x(b) = x3 + sum_k b_k (x_k - x3) + sum_{i<j} b_i b_j e_ij

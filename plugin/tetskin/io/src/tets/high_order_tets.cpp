@@ -40,8 +40,7 @@ void repeat(std::vector<Value>& values, const std::vector<std::size_t>& from) {
 
 class Cutter {
  public:
-  Cutter(const std::string& path, FileCage& file, TetFileReport& report)
-      : path_(path), file_(file), mesh_(file.cage.mesh), report_(report) {}
+  Cutter(FileCage& file, TetFileReport& report) : file_(file), mesh_(file.cage.mesh), report_(report) {}
 
   Status cut(CurvedEdges curved);
 
@@ -58,10 +57,9 @@ class Cutter {
   void cutTets();
   void dropSpareNodes();
   Status malformed(std::size_t line, const std::string& what) const {
-    return fileError(StatusCode::Malformed, path_, line, what);
+    return fileError(StatusCode::Malformed, file_.path, line, what);
   }
 
-  const std::string& path_;
   FileCage& file_;
   TetMesh& mesh_;
   TetFileReport& report_;
@@ -76,7 +74,7 @@ Status Cutter::cut(CurvedEdges curved) {
   cutsLinear_ = meetsLinearTets();
   if (cutsLinear_) addLinearTets();
   status = checkTetCounts(mesh_.nodeCount() + edges_.size(), kSubTets * mesh_.tetCount());
-  if (!status.ok()) return fileError(status.code, path_, 0, status.message);
+  if (!status.ok()) return fileError(status.code, file_.path, 0, status.message);
   const std::vector<Eigen::Vector3d> given = mesh_.nodes;
   placeMiddles();
   cutTets();
@@ -272,8 +270,8 @@ void Cutter::dropSpareNodes() {
 
 }  // namespace
 
-Status cutHighOrderTets(const std::string& path, CurvedEdges curved, FileCage& file, TetFileReport& report) {
-  return file.highOrder.empty() ? Status() : Cutter(path, file, report).cut(curved);
+Status cutHighOrderTets(CurvedEdges curved, FileCage& file, TetFileReport& report) {
+  return file.highOrder.empty() ? Status() : Cutter(file, report).cut(curved);
 }
 
 }  // namespace tetskin::io

@@ -22,6 +22,7 @@ struct HighOrderTet {
 
 /// A cage as it stands in a file.
 struct FileCage {
+  std::string path;                     ///< of the file with the tets; empty: the one that was asked for
   Cage cage;                            ///< all tets by their corners; its arrays are those of the file
   std::vector<HighOrderTet> highOrder;  ///< ascending
   /// The format does not say in which order nodes are on edges: each is on the edge whose middle it is nearest to.
@@ -54,6 +55,6 @@ enum class CurvedEdges {
 /// order stay, unless one of them shares an edge with those: then all are cut, so that no node is on the edge of a tet
 /// that does not have it. Nodes above second order that no tet has any more are removed.
 /// Errors  Malformed, with the line: nodes that cannot be on the edges; TooLarge
-Status cutHighOrderTets(const std::string& path, CurvedEdges curved, FileCage& file, TetFileReport& report);
+Status cutHighOrderTets(CurvedEdges curved, FileCage& file, TetFileReport& report);
 
 }  // namespace tetskin::io

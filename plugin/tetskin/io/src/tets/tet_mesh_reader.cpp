@@ -39,7 +39,8 @@ Result<Cage> load(const std::string& path, io::VtkData data, io::CurvedEdges cur
                          "has no tets" + (found.skippedCells > 0 ? ": " + found.describe() : std::string()) +
                              "; export a volume mesh of tets");
   }
-  if (Status status = io::cutHighOrderTets(path, curved, file.value(), found); !status.ok()) return status;
+  if (file.value().path.empty()) file.value().path = path;
+  if (Status status = io::cutHighOrderTets(curved, file.value(), found); !status.ok()) return status;
   return std::move(file.value().cage);
 }
 

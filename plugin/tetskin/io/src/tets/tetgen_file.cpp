@@ -143,6 +143,7 @@ Result<FileCage> readTetgenFiles(const std::string& path) {
   if (!eleText.ok()) return eleText.status();
 
   FileCage file;
+  file.path = elePath;
   file.anyOrder = true;
   std::int64_t base = 0;
   Status status = readNodes(nodePath, nodeText.value(), file.cage.mesh.nodes, base);

@@ -76,8 +76,7 @@ inline std::array<Tet, 8> refinedTet(const Tet& corners, const std::array<int, 6
   }
   return eightTets(corners, centroid, [&](int a, int b) { return (nodes[a] - nodes[b]).squaredNorm(); });
 }
-/// Overload for a tet without a mesh. Not compiled into the library, as Eigen has another
-/// namespace in some of them.
+/// Overload for a tet without a mesh. Not compiled into the library, as Eigen has another namespace in some of them.
 inline std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
   std::array<std::array<Eigen::Vector3d, 4>, 4> centroid;
   for (int a = 0; a < 4; ++a) {
