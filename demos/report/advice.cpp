@@ -185,15 +185,23 @@ std::string reductionAdvice(const std::vector<Row>& rows) {
   return winner + inWords(better) + ", " + inWords(worse) + ".";
 }
 
+double ownError(double edge, const std::vector<CoarserLevel>& coarser) {
+  if (coarser.empty()) return 0.0;
+  const CoarserLevel& fine = coarser[0];
+  const double p =
+      coarser.size() < 2 ? kMinOrder : orderAgainst(edge, coarser[1].error, fine.error, coarser[1].edge, fine.edge);
+  return ownError(edge, p, fine.error, fine.edge);
+}
+
 double referenceError(const std::vector<Row>& rows) {
-  std::vector<Row> sorted = series(rows, "quadratic", "calibrated");
-  if (sorted.size() < 2) sorted = series(rows, "quadratic", "same");
-  const auto reference = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.isReference(); });
-  if (sorted.size() < 2 || reference == rows.end()) return 0.0;
-  const Row &coarse = sorted[sorted.size() - 2], &fine = sorted.back();
-  if (!(fine.edge > reference->edge)) return 0.0;
-  const double p = orderAgainst(reference->edge, coarse.errorSpaceRms, fine.errorSpaceRms, coarse.edge, fine.edge);
-  return ownError(reference->edge, p, fine.errorSpaceRms, fine.edge);
+  const auto known = std::find_if(rows.begin(), rows.end(),
+                                  [](const Row& row) { return row.isReference() && row.errorSpaceRms > 0.0; });
+  return known == rows.end() ? 0.0 : known->errorSpaceRms;
+}
+
+void markResolved(std::vector<Row>& rows) {
+  const double least = kResolved * referenceError(rows);
+  for (Row& row : rows) row.resolved = row.isReference() || row.errorTotalRms >= least;
 }
 
 double referenceTimeError(const std::vector<Row>& rows) {

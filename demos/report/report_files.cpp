@@ -71,8 +71,7 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
   json["model"] = result.model;
   json["vertices"] = result.vertices;
   json["triangles"] = result.triangles;
-  json["reference"] = {
-      {"from", result.reference.from}, {"tets", result.reference.tets}, {"stiffness_factor", result.reference.factor}};
+  json["reference"] = {{"from", result.reference.from}, {"tets", result.reference.tets}};
   json["units"] =
       "errors and edge: fractions of the diagonal of the mesh's bounding box; _ms, _us: processor time in one thread, "
       "medians; simulation, skin and total: per frame";
