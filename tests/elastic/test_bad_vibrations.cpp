@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <support/bars.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/elastic/vibration_modes.h>
 
 #include <cmath>
@@ -22,7 +23,7 @@ VibrationOptions few(int modes = 4) {
   return options;
 }
 
-void expectError(const TetMesh& tets, const VibrationOptions& options, StatusCode code, const char* says) {
+void expectError(const Cage& tets, const VibrationOptions& options, StatusCode code, const char* says) {
   const Result<VibrationModes> modes = computeVibrationModes(tets, options);
   ASSERT_FALSE(modes.ok()) << says;
   EXPECT_EQ(modes.status().code, code) << modes.status().message;
@@ -88,6 +89,15 @@ TEST(BadVibrations, MaterialAndArrays) {
   expectError(box(), options, StatusCode::InvalidOption, "nodeMasses");
 }
 
+TEST(BadVibrations, CagesThatAreNotWhatTheySay) {
+  Cage cage = refineQuadratic(box()).value();
+  cage.quadraticTet[3] = -1;
+  expectError(cage, few(), StatusCode::InvalidOption, "quadraticTet");
+  cage = box();
+  cage.masses = {1.0};
+  expectError(cage, few(), StatusCode::SizeMismatch, "masses");
+}
+
 class SavedModes : public testing::Test {
  protected:
   SavedModes() {
@@ -124,6 +134,21 @@ TEST_F(SavedModes, AreOfTheirTetsAlone) {
   TetMesh turned = box();
   std::swap(turned.tets[0], turned.tets[1]);
   EXPECT_EQ(load(bytes_, turned).code, StatusCode::CageMismatch);
+}
+
+TEST_F(SavedModes, AreNotOfTheSameTetsIfTheseAreQuadratic) {
+  Cage quadratic = refineQuadratic(box()).value(), linear = quadratic, neither = quadratic;
+  linear.quadraticTet.assign(linear.mesh.tetCount(), -1);
+  neither.quadraticTet.clear();
+  const std::vector<unsigned char> ofLinear = computeVibrationModes(linear, few()).value().save(linear);
+  const std::vector<unsigned char> ofQuadratic = computeVibrationModes(quadratic, few()).value().save(quadratic);
+  const auto code = [](const std::vector<unsigned char>& bytes, const Cage& cage) {
+    return VibrationModes::load(bytes.data(), bytes.size(), cage).status().code;
+  };
+  EXPECT_EQ(code(ofLinear, neither), StatusCode::Ok);
+  EXPECT_EQ(code(ofQuadratic, quadratic), StatusCode::Ok);
+  EXPECT_EQ(code(ofLinear, quadratic), StatusCode::CageMismatch);
+  EXPECT_EQ(code(ofQuadratic, linear), StatusCode::CageMismatch);
 }
 
 TEST_F(SavedModes, AreRefusedWithAnyByteChanged) {

@@ -7,6 +7,7 @@
 //     J. Appl. Mech. 33, 1966 (10 (1 + nu) / (12 + 11 nu) for a rectangle)
 #include <gtest/gtest.h>
 #include <support/bars.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/elastic/src/matrix/block_rows.h>
 #include <tetskin/elastic/vibration_modes.h>
 
@@ -59,7 +60,7 @@ MatrixXd shapesOf(const VibrationModes& modes) {
   return shapes;
 }
 
-MatrixXd stiffnessOf(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale) {
+MatrixXd stiffnessOf(const Cage& mesh, double poissonRatio, const std::vector<double>& scale) {
   return elastic_detail::BlockRows(mesh, poissonRatio, scale).sparse();
 }
 
@@ -75,7 +76,7 @@ MatrixXd rigidMotionsOf(const TetMesh& mesh) {
   return motions;
 }
 
-VibrationModes modesOf(const TetMesh& mesh, const VibrationOptions& options) {
+VibrationModes modesOf(const Cage& mesh, const VibrationOptions& options) {
   Result<VibrationModes> modes = computeVibrationModes(mesh, options);
   EXPECT_TRUE(modes.ok()) << modes.status().message;
   return std::move(modes).value();
@@ -108,11 +109,13 @@ void expectAsDense(const TetMesh& mesh, const VibrationModes& modes, const Matri
   }
 }
 
-/// Angular frequency of a cantilever with a square cross-section of side 1, unit stiffness and density.
-double timoshenko(double length, double poissonRatio, int which) {
+/// Angular frequency of a beam with a square cross-section of side 1, unit stiffness and density: a cantilever, or
+/// free.
+double timoshenko(double length, double poissonRatio, int which, bool clamped = true) {
   const double area = 1.0, inertia = 1.0 / 12.0, shear = 0.5 / (1.0 + poissonRatio);
   const double coefficient = 10.0 * (1.0 + poissonRatio) / (12.0 + 11.0 * poissonRatio);
-  // Deflection, rotation, moment and force along the bar, from a clamped end to one with neither moment nor force.
+  // Deflection, rotation, moment and force along the bar, from an end that is clamped, or has neither moment nor force,
+  // to one that has neither.
   const auto atEnd = [&](double omega) {
     Eigen::Matrix4d rates;
     rates << 0, 1, 0, 1 / (coefficient * shear * area), 0, 0, 1 / inertia, 0, 0, -inertia * omega * omega, 0, -1,
@@ -122,7 +125,7 @@ double timoshenko(double length, double poissonRatio, int which) {
     Eigen::Matrix4d sum = Eigen::Matrix4d::Identity(), term = sum;
     for (int k = 1; k < 12; ++k) sum += term = term * piece / k;
     for (int k = 0; k < 10; ++k) sum = (sum * sum).eval();
-    return sum.block<2, 2>(2, 2).determinant();
+    return sum.block<2, 2>(2, clamped ? 2 : 0).determinant();
   };
   double low = 1e-4;
   for (const double step = 1e-4;; low += step) {
@@ -221,6 +224,49 @@ TEST(VibrationModes, WithPinnedNodesAndStiffnessesAndMassesOfTheirOwnAreThoseOfA
   }
   const Spectrum dense = spectrumOf(stiffness, massesOf(modes));
   expectAsDense(mesh, modes, dense.vectors, dense.values, 0);
+}
+
+TEST(VibrationModes, OfQuadraticTetsAreThoseOfADenseSolver) {
+  const Cage cage = refineQuadratic(makeBox({3, 2, 1}, Vector3d(1.7, 1.1, 0.6))).value();
+  VibrationOptions options;
+  options.modeCount = 10;
+  const VibrationModes modes = modesOf(cage, options);
+  EXPECT_GT(modes.iterations, 0);
+  const Spectrum dense = spectrumOf(stiffnessOf(cage, options.poissonRatio, {}), massesOf(modes));
+  expectAsDense(cage.mesh, modes, dense.vectors, dense.values, 6);
+}
+
+TEST(VibrationModes, OfACageHaveItsStiffnessAndMassesUnlessOthersAreGiven) {
+  Cage cage = makeJagged();
+  VibrationOptions options;
+  options.modeCount = 3;
+  const VibrationModes plain = modesOf(cage, options);
+  cage.stiffnessFactor.assign(cage.mesh.tetCount(), 0.5);
+  cage.volumeFraction.assign(cage.mesh.tetCount(), 0.4);
+  for (const double mass : plain.masses) cage.masses.push_back(2.0 * mass);
+  const VibrationModes own = modesOf(cage, options);
+  options.stiffnessScale.assign(cage.mesh.tetCount(), 1.0);
+  options.nodeMasses = plain.masses;
+  const VibrationModes given = modesOf(cage, options);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(own.eigenvalues[k] / plain.eigenvalues[k], 0.5 * 0.4 / 2.0, 1e-9);
+    EXPECT_NEAR(given.eigenvalues[k] / plain.eigenvalues[k], 1.0, 1e-9);
+  }
+}
+
+/// With masses lumped at the nodes of the eight linear tets of each.
+TEST(VibrationModes, OfAFreeBeamOfFewQuadraticTetsAreWithinAPerCentOfTimoshenkos) {
+  const double length = 10.0;
+  const Cage beam = refineQuadratic(makeBox({10, 2, 2}, Vector3d(length, 1, 1))).value();
+  ASSERT_LT(beam.mesh.nodeCount(), 600u);
+  VibrationOptions options;
+  options.modeCount = 2;
+  const double right = timoshenko(length, options.poissonRatio, 0, false);
+  const std::vector<double> found = modesOf(beam, options).frequencies(1.0, 1.0);
+  for (const double frequency : found) EXPECT_NEAR(frequency / right, 1.0, 0.01);
+  for (const double frequency : modesOf(beam.mesh, options).frequencies(1.0, 1.0)) {
+    EXPECT_GT(frequency / right, 1.05) << "linear tets of the same nodes";
+  }
 }
 
 TEST(VibrationModes, OfTheSmallestMeshesAreFoundAtOnce) {

@@ -3,6 +3,7 @@
 #include "reduced_test.h"
 
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/reduced/src/modes/cage_modes.h>
 
 #include <numeric>
@@ -33,6 +34,15 @@ TEST(CageModes, OfTheFineTetsThemselvesAreTheirOwn) {
     }
     EXPECT_LT(std::sqrt(difference / norm), 2e-3) << r;
   }
+}
+
+TEST(CageModes, OfQuadraticTetsAreTheirOwn) {
+  const Cage cage = refineQuadratic(makeBox({8, 2, 2}, Vector3d(2, 0.5, 0.5))).value();
+  VibrationOptions options;
+  options.modeCount = 6;
+  const CageModes same = modes(computeVibrationModes(cage, options).value(), cage.mesh);
+  EXPECT_EQ(same.outside, 0u);
+  for (const double error : same.projectionErrors) EXPECT_LT(error, 1e-3);
 }
 
 TEST(CageModes, OfACoarserCageCarryTheSoftestOnesWell) {

@@ -5,7 +5,7 @@
 // (tetskin/reduced).
 #pragma once
 
-#include <tetskin/core/mesh.h>
+#include <tetskin/core/cage.h>
 
 #include <cstddef>
 #include <functional>
@@ -17,15 +17,16 @@ namespace tetskin {
 struct VibrationOptions {
   int modeCount = 20;                  ///< number of modes, at least 1
   double poissonRatio = 0.3;           ///< 0 to below 0.5
-  std::vector<double> stiffnessScale;  ///< tetCount, above 0: factors of the stiffness; empty: 1
-  std::vector<double> nodeMasses;  ///< nodeCount, above 0, for a density of 1; empty: a quarter of each tet's volume
-  std::vector<int> pinned;         ///< indices of pinned nodes; empty: the body is free
+  std::vector<double> stiffnessScale;  ///< tetCount, above 0: factors of the stiffness; empty: those of the cage
+  /// nodeCount, above 0, for a density of 1; empty: the cage's, or, if it has none, a quarter of each tet's volume
+  std::vector<double> nodeMasses;
+  std::vector<int> pinned;  ///< indices of pinned nodes; empty: the body is free
   /// Called now and then with the fraction done, from 0 to 1, ascending. May be empty.
   std::function<void(double fraction)> progress;
 };
 
-/// The softest vibration modes of a tet mesh, softest first, for a Young's modulus and a density of 1: the modes of one
-/// body serve any stiffness, time step and mass. Rigid motions of a free body are not included.
+/// The softest vibration modes of a cage's tets, softest first, for a Young's modulus and a density of 1: the modes of
+/// one body serve any stiffness, time step and mass. Rigid motions of a free body are not included.
 struct TETSKIN_ELASTIC_API VibrationModes {
   std::vector<Eigen::Vector3d> nodes;       ///< nodeCount, rest space: nodes of the tets
   std::vector<double> masses;               ///< nodeCount, for a density of 1
@@ -43,29 +44,29 @@ struct TETSKIN_ELASTIC_API VibrationModes {
   std::vector<double> frequencies(double youngsModulus, double density) const;
 
   /// Serialises the modes to bytes, identical on every machine: 24 bytes per node and mode, and 8 per node.
-  /// tets  the tets that the modes were computed for: their hash is stored
-  std::vector<unsigned char> save(const TetMesh& tets) const;
+  /// cage  the one that the modes were computed for: a hash of its tets, and of which are quadratic, is stored
+  std::vector<unsigned char> save(const Cage& cage) const;
   /// Reads back what `save` wrote, bit-identical; iterations and time are 0. Safe for arbitrary bytes.
   /// bytes   `count` bytes; not kept
-  /// tets    the tets that the modes were saved with
+  /// cage    the one that the modes were saved with
   /// Errors  UnsupportedFormat: other data, or another version; Malformed: too few, too many or damaged bytes;
-  ///         CageMismatch: saved with other tets
-  static Result<VibrationModes> load(const unsigned char* bytes, std::size_t count, const TetMesh& tets);
+  ///         CageMismatch: saved with other tets, or with others of them quadratic
+  static Result<VibrationModes> load(const unsigned char* bytes, std::size_t count, const Cage& cage);
 };
 
-/// Computes the softest vibration modes of linear tets with lumped masses, by preconditioned block iteration, in memory
-/// proportional to the mesh: see vibration_modes.cpp. Modes of equal frequency span the right space, in an arbitrary
-/// basis.
+/// Computes the softest vibration modes of linear and quadratic tets with lumped masses, by preconditioned block
+/// iteration, in memory proportional to the mesh: see vibration_modes.cpp. Modes of equal frequency span the right
+/// space, in an arbitrary basis.
 ///
-/// tets    valid (see `validate`), one component, without flat tets; rest space, any unit and size. At least as many
+/// cage    valid (see `validate`), one component, without flat tets; rest space, any unit and size. At least as many
 ///         free nodes as modes
-/// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB per tet, and 60 bytes per tet
-///         and mode
-/// Errors  those of `validate(const TetMesh&)`; InvalidOption: options out of range, more modes than free nodes, or all
+/// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB per tet (1 KB if it is
+///         quadratic), and 60 bytes per tet and mode
+/// Errors  those of `validate(const Cage&)`; InvalidOption: options out of range, more modes than free nodes, or all
 ///         nodes pinned; SizeMismatch: an array of another length; IndexOutOfRange: a pinned node does not exist;
 ///         Degenerate: flat tets, nodes in no tet, several components, regions that are connected by a node or an edge
 ///         alone, so that nothing resists their rotation, or no convergence
-TETSKIN_ELASTIC_API Result<VibrationModes> computeVibrationModes(const TetMesh& tets,
+TETSKIN_ELASTIC_API Result<VibrationModes> computeVibrationModes(const Cage& cage,
                                                                  const VibrationOptions& options = {});
 
 }  // namespace tetskin

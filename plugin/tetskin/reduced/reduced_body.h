@@ -73,9 +73,9 @@ class TETSKIN_REDUCED_API ReducedBody {
   /// Creates the body and adds it to the world.
   /// world   created with a btReducedDeformableBodySolver, and without soft bodies of other kinds; its gravity at the
   ///         time of the call sets the scale of the default stiffness
-  /// modes   of fine tets (see `computeVibrationModes`), at the position of the cage
-  /// cage    valid (see `validate`), without flat tets, around the fine tets. Its volume fractions, stiffness factors
-  ///         and masses are not used: the modes include them
+  /// modes   of fine tets (see `computeVibrationModes`), linear or quadratic, at the position of the cage
+  /// cage    valid (see `validate`), without flat tets, around the fine tets. Its volume fractions, stiffness factors,
+  ///         masses and quadratic tets are not used: the modes include them
   /// Cost    that of `embed` of the fine nodes, and a factorisation of a matrix of the cage's nodes
   /// Errors  InvalidOption: options out of range, modes too fast for the time step (or all of them, with
   ///         `skipFastModes`), another solver, a world that does not update all boxes, a soft body in it that is not

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/src/base/mesh/tets_around_nodes.h>
 #include <tetskin/elastic/src/matrix/block_rows.h>
 
 #include <algorithm>
@@ -13,15 +12,27 @@ namespace {
 constexpr int kTogether = 6;
 
 /// By node: the node itself and those with which it shares a tet, ascending.
-Lists<> neighboursOf(const TetMesh& mesh) {
-  const Lists<> around = tetsAroundNodes(mesh);
+/// tets       the linear ones
+Lists<> neighboursOf(std::size_t nodes, const std::vector<Tet>& tets, const std::vector<RestQuadraticTet>& quadratic) {
+  // By node, the tets around it: the quadratic ones are numbered after the linear ones.
+  const Lists<> around = packLists(nodes, [&](auto&& add) {
+    std::uint32_t number = 0;
+    const auto addTet = [&](const auto& ofTet) {
+      for (const int n : ofTet) add(static_cast<std::size_t>(n), number);
+      ++number;
+    };
+    for (const Tet& tet : tets) addTet(tet);
+    for (const RestQuadraticTet& tet : quadratic) addTet(tet.nodes);
+  });
   Lists<> neighbours;
   neighbours.starts.push_back(0);
   std::vector<std::uint32_t> found;
-  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
+  const auto find = [&](const auto& ofTet) { found.insert(found.end(), ofTet.begin(), ofTet.end()); };
+  for (std::size_t n = 0; n < nodes; ++n) {
     found.clear();
     for (std::uint32_t k = around.starts[n]; k < around.starts[n + 1]; ++k) {
-      for (const int other : mesh.tets[around.values[k]]) found.push_back(static_cast<std::uint32_t>(other));
+      const std::size_t t = around.values[k];
+      t < tets.size() ? find(tets[t]) : find(quadratic[t - tets.size()].nodes);
     }
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -31,16 +42,40 @@ Lists<> neighboursOf(const TetMesh& mesh) {
   return neighbours;
 }
 
+std::vector<RestQuadraticTet> quadraticPart(const Cage& cage, const std::vector<double>& scale) {
+  const Result<std::vector<QuadraticTet>> tets = quadraticTets(cage);
+  assert(tets.ok());
+  return restQuadraticTets(cage, tets.value(), scale);
+}
+
 }  // namespace
 
-BlockRows::BlockRows(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale)
-    : columns_(neighboursOf(mesh)), blocks_(columns_.values.size(), Block::Zero()) {
-  assert(scale.size() == mesh.tetCount());
-  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
-    const Tet& tet = mesh.tets[t];
-    const Eigen::Matrix<double, 12, 12> stiffness = scale[t] * tetStiffness(cornersOf(mesh, tet), poissonRatio);
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) block(tet[a], tet[b]) += stiffness.block<3, 3>(3 * a, 3 * b);
+BlockRows::BlockRows(const Cage& cage, double poissonRatio, const std::vector<double>& scale) {
+  assert(scale.empty() || scale.size() == cage.mesh.tetCount());
+  const std::vector<RestQuadraticTet> quadratic = quadraticPart(cage, scale);
+  const std::vector<double> factors = scale.empty() ? cage.stiffnessScale() : scale;
+  std::vector<Tet> linear;
+  std::vector<double> factorOf;
+  for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
+    if (!cage.quadraticTet.empty() && cage.quadraticTet[t] >= 0) continue;
+    linear.push_back(cage.mesh.tets[t]);
+    factorOf.push_back(factors.empty() ? 1.0 : factors[t]);
+  }
+  columns_ = neighboursOf(cage.mesh.nodeCount(), linear, quadratic);
+  blocks_.assign(columns_.values.size(), Block::Zero());
+  for (std::size_t t = 0; t < linear.size(); ++t) {
+    add(linear[t], (factorOf[t] * tetStiffness(cornersOf(cage.mesh, linear[t]), poissonRatio)).eval());
+  }
+  for (const RestQuadraticTet& tet : quadratic) add(tet.nodes, tetStiffness(tet, poissonRatio));
+}
+
+template <class Nodes, class Matrix>
+void BlockRows::add(const Nodes& nodes, const Matrix& stiffness) {
+  const auto count = static_cast<int>(nodes.size());
+  assert(stiffness.rows() == 3 * count);
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b < count; ++b) {
+      block(nodes[a], nodes[b]) += stiffness.template block<3, 3>(3 * a, 3 * b);
     }
   }
 }

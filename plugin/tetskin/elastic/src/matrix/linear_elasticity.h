@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Linear elasticity of a tet mesh at rest, by linear finite elements: the limit of elastic forces for small
+// Linear elasticity of tets at rest, by linear and quadratic finite elements: the limit of elastic forces for small
 // displacements. The matrix of a whole mesh is BlockRows; bodies in motion, whose tets are rotated, have BlockMatrix.
 #pragma once
 
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/elastic/src/tets/rest_quadratic_tets.h>
 
 #include <vector>
 
@@ -19,6 +20,9 @@ using Fields = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 /// The stiffness matrix of one tet that is not flat, for a Young's modulus of 1: it maps displacements of its corners
 /// to forces, 12 x 12, symmetric.
 Eigen::Matrix<double, 12, 12> tetStiffness(const TetCorners& corners, double poissonRatio);
+
+/// The same of a quadratic tet: of its ten nodes, 30 x 30, with its stiffness factor.
+Eigen::Matrix<double, 30, 30> tetStiffness(const RestQuadraticTet& tet, double poissonRatio);
 
 /// Masses for a density of 1, a quarter of each tet's mass at each of its nodes; 3 nodeCount, each node's mass three
 /// times.

@@ -6,7 +6,7 @@
 //   bytes              what
 //   8                  "tetskmod"
 //   8                  version
-//   8                  hash of the tets, see hashOf
+//   8                  hash of the tets, see hashOfTets
 //   5 x 8              nodeCount, tetCount, modeCount, number of pinned nodes, Poisson's ratio
 //   8 per node         mass
 //   8 per pinned node  index of the node
@@ -26,6 +26,17 @@ namespace {
 constexpr char kMagic[] = "tetskmod";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 8 * 8;
+
+/// That of the mesh, unless some of its tets are quadratic: then a body of the same nodes vibrates otherwise.
+std::uint64_t hashOfTets(const Cage& cage) {
+  const std::vector<int>& number = cage.quadraticTet;
+  const std::uint64_t ofMesh = hashOf(cage.mesh);
+  if (std::all_of(number.begin(), number.end(), [](int k) { return k < 0; })) return ofMesh;
+  Hash hash;
+  hash.add(ofMesh);
+  for (const int k : number) hash.add(std::uint64_t{static_cast<std::uint32_t>(k)});
+  return hash.value();
+}
 
 Status damaged(const std::string& how) {
   return {StatusCode::Malformed, "the saved modes " + how + "; compute them again"};
@@ -80,13 +91,15 @@ bool makeSense(const VibrationModes& modes) {
 
 }  // namespace
 
-std::vector<unsigned char> VibrationModes::save(const TetMesh& tets) const {
+std::vector<unsigned char> VibrationModes::save(const Cage& cage) const {
+  const TetMesh& tets = cage.mesh;
   assert(tets.nodeCount() == nodeCount() && shapes.size() == modeCount());
   ByteWriter writer(kHeaderBytes + 8 * (masses.size() + pinned.size() + modeCount() * (1 + 3 * nodeCount())) +
                     kHashBytes);
   writer.tag(kMagic);
-  for (const std::uint64_t value : {kVersion, hashOf(tets), std::uint64_t{nodeCount()}, std::uint64_t{tets.tetCount()},
-                                    std::uint64_t{modeCount()}, std::uint64_t{pinned.size()}}) {
+  for (const std::uint64_t value :
+       {kVersion, hashOfTets(cage), std::uint64_t{nodeCount()}, std::uint64_t{tets.tetCount()},
+        std::uint64_t{modeCount()}, std::uint64_t{pinned.size()}}) {
     writer.u64(value);
   }
   writer.plane(&poissonRatio, 1);
@@ -97,14 +110,17 @@ std::vector<unsigned char> VibrationModes::save(const TetMesh& tets) const {
   return writer.take();
 }
 
-Result<VibrationModes> VibrationModes::load(const unsigned char* bytes, std::size_t count, const TetMesh& tets) {
+Result<VibrationModes> VibrationModes::load(const unsigned char* bytes, std::size_t count, const Cage& cage) {
+  const TetMesh& tets = cage.mesh;
   Header header;
   if (Status status = readHeader(bytes, count, header); !status.ok()) return status;
-  if (header.nodeCount != tets.nodeCount() || header.tetCount != tets.tetCount() || header.tetsHash != hashOf(tets)) {
+  if (header.nodeCount != tets.nodeCount() || header.tetCount != tets.tetCount() ||
+      header.tetsHash != hashOfTets(cage)) {
     return Status{StatusCode::CageMismatch,
                   "the modes were saved with other tets: " + std::to_string(header.nodeCount) + " nodes and " +
                       std::to_string(header.tetCount) + " tets, but these have " + std::to_string(tets.nodeCount()) +
-                      " and " + std::to_string(tets.tetCount()) + ", or other positions; compute the modes again"};
+                      " and " + std::to_string(tets.tetCount()) +
+                      ", or other positions, or other quadratic tets; compute the modes again"};
   }
   VibrationModes modes;
   modes.nodes = tets.nodes;

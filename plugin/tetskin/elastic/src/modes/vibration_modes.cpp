@@ -90,8 +90,10 @@ Status checkVibrationOptions(const TetMesh& tets, const VibrationOptions& option
   return {};
 }
 
-std::vector<double> massesOf(const TetMesh& tets, const VibrationOptions& options) {
+std::vector<double> massesOf(const Cage& cage, const VibrationOptions& options) {
+  const TetMesh& tets = cage.mesh;
   if (!options.nodeMasses.empty()) return options.nodeMasses;
+  if (!cage.masses.empty()) return cage.masses;
   const Eigen::VectorXd lumped = elastic_detail::lumpedVolumes(tets, std::vector<double>(tets.tetCount(), 1.0));
   std::vector<double> masses(tets.nodeCount());
   for (std::size_t n = 0; n < masses.size(); ++n) masses[n] = lumped[static_cast<Eigen::Index>(3 * n)];
@@ -115,21 +117,22 @@ std::vector<double> shapeOf(const Fields& displacements, Eigen::Index mode) {
 
 }  // namespace
 
-Result<VibrationModes> computeVibrationModes(const TetMesh& tets, const VibrationOptions& options) {
+Result<VibrationModes> computeVibrationModes(const Cage& cage, const VibrationOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
+  const TetMesh& tets = cage.mesh;
   std::vector<char> free;
   if (Status status = checkTets(tets); !status.ok()) return status;
+  if (Status status = validateAttributes(cage); !status.ok()) return status;
   if (Status status = checkVibrationOptions(tets, options, free); !status.ok()) return status;
   VibrationModes modes;
   modes.nodes = tets.nodes;
-  modes.masses = massesOf(tets, options);
+  modes.masses = massesOf(cage, options);
   modes.poissonRatio = options.poissonRatio;
   for (std::size_t n = 0; n < free.size(); ++n) {
     if (!free[n]) modes.pinned.push_back(static_cast<int>(n));
   }
-  const std::vector<double> ones(options.stiffnessScale.empty() ? tets.tetCount() : 0, 1.0);
-  const VibrationProblem problem(
-      tets, BlockRows(tets, options.poissonRatio, ones.empty() ? options.stiffnessScale : ones), modes.masses, free);
+  const VibrationProblem problem(tets, BlockRows(cage, options.poissonRatio, options.stiffnessScale), modes.masses,
+                                 free);
   const Status hinged = {StatusCode::Degenerate,
                          "the body can deform without resistance: components of it share only a node or an edge, or "
                          "too few nodes are pinned"};
