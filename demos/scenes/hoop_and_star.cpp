@@ -16,16 +16,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kHoopRadius = 0.9, kHalfWidth = 0.25, kFoot = 0.18, kTop = 0.06;  // the last two: half thicknesses
+constexpr double kHoopRadius = 0.9, kHalfBand = 0.25, kFootThickness = 0.18,
+                 kTopThickness = 0.06;  // the last two: half thicknesses
 constexpr double kBall = 0.26, kRoot = 0.18, kTip = 0.07, kArm = 1.15, kSpread = 70.0 * kDegree;
-constexpr double kMaxSpacing = 0.1;
+constexpr double kMaxStarSpacing = 0.1;
 
 /// The distance from a band whose section is a rectangle with rounded edges, roughly where it gets thinner.
 double hoopDistance(const Vector3d& p) {
   const double around = std::hypot(p.x(), p.y());
   const double up = around > 0.0 ? 0.5 * (1.0 + p.y() / around) : 0.5;  // 0 at the foot, 1 at the top
-  const double half = kFoot + (kTop - kFoot) * up, rounding = 0.5 * half;
-  const Eigen::Vector2d q(std::abs(around - kHoopRadius) - half + rounding, std::abs(p.z()) - kHalfWidth + rounding);
+  const double half = kFootThickness + (kTopThickness - kFootThickness) * up, rounding = 0.5 * half;
+  const Eigen::Vector2d q(std::abs(around - kHoopRadius) - half + rounding, std::abs(p.z()) - kHalfBand + rounding);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - rounding;
 }
 
@@ -45,9 +46,9 @@ double starDistance(const Vector3d& p) {
   return nearest;
 }
 
-TriangleMesh meshOf(const Box3& box, double (*distance)(const Vector3d&), std::size_t triangles, const char* name) {
+TriangleMesh starMesh(const Box3& box, double (*distance)(const Vector3d&), std::size_t triangles, const char* name) {
   const ImplicitSolid solid{box, distance, [](const Vector3d& p) { return p; }};
-  TriangleMesh mesh = surfaceOf(solid, std::clamp(triangles, kMinHoopTriangles, kMaxHandTriangles), kMaxSpacing);
+  TriangleMesh mesh = surfaceOf(solid, std::clamp(triangles, kMinHoopTriangles, kMaxHandTriangles), kMaxStarSpacing);
   mesh.groups.push_back({name, name, 0, mesh.triangleCount()});
   return mesh;
 }
@@ -55,11 +56,11 @@ TriangleMesh meshOf(const Box3& box, double (*distance)(const Vector3d&), std::s
 }  // namespace
 
 TriangleMesh makeHoop(std::size_t triangles) {
-  return meshOf({Vector3d(-1.1, -1.1, -0.3), Vector3d(1.1, 1.1, 0.3)}, hoopDistance, triangles, "hoop");
+  return starMesh({Vector3d(-1.1, -1.1, -0.3), Vector3d(1.1, 1.1, 0.3)}, hoopDistance, triangles, "hoop");
 }
 
 TriangleMesh makeStar(std::size_t triangles) {
-  return meshOf({Vector3d(-1.3, -1.3, -0.3), Vector3d(1.3, 0.6, 0.3)}, starDistance, triangles, "star");
+  return starMesh({Vector3d(-1.3, -1.3, -0.3), Vector3d(1.3, 0.6, 0.3)}, starDistance, triangles, "star");
 }
 
 }  // namespace tetskin::scenes
