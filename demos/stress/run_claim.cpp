@@ -97,13 +97,12 @@ double referenceExtent(const Claim& claim, const SoftObject& body) {
   ElasticOptions elastic;
   elastic.youngsModulus = claim.youngsModulus;
   elastic.stiffnessDamping = claim.damping;
-  elastic.stiffnessScale = body.stiffnessScale();
   elastic.tolerance = 1e-6;
   elastic.maxIterations = 2000;
   for (int n = 0; n < soft.m_nodes.size(); ++n) {
     elastic.nodeMasses.push_back(1.0 / static_cast<double>(soft.m_nodes[n].m_im));
   }
-  auto reference = ElasticBody<double>::create(body.model().cage.mesh, elastic).value();
+  auto reference = ElasticBody<double>::create(body.model().cage, elastic).value();
   for (std::size_t n = 0; n < reference.nodeCount(); ++n) {
     const btSoftBody::Node& node = soft.m_nodes[static_cast<int>(n)];
     Vector3d::Map(reference.positions()[n]) = toEigen(node.m_x);

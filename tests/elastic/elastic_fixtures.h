@@ -5,7 +5,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/core/mesh.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
@@ -103,44 +103,57 @@ inline Eigen::Matrix<double, 6, 6> rigidMass(const Points& nodes, const std::vec
   return sum;
 }
 
-/// A different stiffness and a different Poisson's ratio in every tet.
-inline std::vector<Lame> variedMaterial(std::size_t tets) {
-  Random random(31);
-  std::vector<Lame> material(tets);
-  for (Lame& m : material) {
-    m.mu = 2.0 + random();
-    m.lambda = 1.5 * (1.0 + random());
-  }
-  return material;
+/// Tets of which no two are alike, linear ones, quadratic ones of eight each, or some of both; the number of each kind
+/// is no multiple of eight.
+Cage oddCage();
+Cage oddQuadraticCage();
+Cage oddMixedCage();
+inline std::vector<Cage> oddCages() {
+  return {oddCage(), oddQuadraticCage(), oddMixedCage()};
 }
+
+/// A different factor of the stiffness for every tet, and for the eight of a quadratic one in common.
+std::vector<double> variedScale(const Cage& cage);
+constexpr Lame kLame{1.0, 0.7};
+
+/// A point at which a tet, linear or quadratic, is integrated: what formulas of finite elements need, in double.
+struct PlainPoint {
+  std::vector<int> nodes;
+  Eigen::Matrix3Xd gradients;  ///< of the nodes' shape functions
+  double volume = 0.0;         ///< times the factor of the stiffness
+
+  Eigen::Matrix3d gradientAt(const Points& positions) const;
+};
+/// scale  see `variedScale`
+std::vector<PlainPoint> plainPoints(const Cage& cage, const std::vector<double>& scale);
 
 /// A deformed body, and its matrix computed in a way of its own.
 struct DeformedBody {
-  DeformedBody(const TetMesh& rest, double amount, double alphaOfMatrix);
+  DeformedBody(const Cage& rest, double amount, double alphaOfMatrix);
 
   void hold(std::size_t node) { masses[node] = 0.0; }
+  RestTets restTets() const { return elastic_detail::restTets(whole, quadraticTets(whole).value(), scale); }
 
   /// M + alpha K, with three rows per node, by polar decompositions.
   Eigen::MatrixXd dense() const;
 
+  Cage whole;
   TetMesh cage;
   Points nodes;
-  std::vector<Lame> material;
+  std::vector<double> scale;  ///< by tet, of the stiffness
+  Lame lame = kLame;
   std::vector<double> masses;
   double alpha;
-
- private:
-  void addTet(std::size_t t, Eigen::MatrixXd& a) const;
 };
 
 /// With the matrix as the library assembles it.
 template <class S>
 struct AssembledBody : DeformedBody {
-  explicit AssembledBody(const TetMesh& rest, double amount = 0.1, double alphaOfMatrix = 0.3)
+  explicit AssembledBody(const Cage& rest, double amount = 0.1, double alphaOfMatrix = 0.3)
       : DeformedBody(rest, amount, alphaOfMatrix),
-        matrix(rest.nodeCount(), rest.tets, CorotatedTets<S>::noTet(rest.tetCount())),
-        tets(elastic_detail::restTets(rest), matrix.pattern().slotOf, matrix.slotCount()) {
-    for (std::size_t t = 0; t < material.size(); ++t) tets.setMaterial(t, material[t]);
+        matrix(rest.mesh.nodeCount(), restTets()),
+        tets(restTets(), matrix.pattern().slotOf, matrix.slotCount()) {
+    tets.setMaterial(lame);
     assemble();
   }
 
@@ -154,7 +167,7 @@ struct AssembledBody : DeformedBody {
     }
     // This is repeated because each call advances the rotations by only a few iterations.
     for (int k = 0; k < 3; ++k) tets.forces(points.data(), forces.data(), threads);
-    matrix.assemble(tets.cornersForMatrix(static_cast<S>(alpha), threads), threads);
+    matrix.assemble(tets.cornersForMatrix(static_cast<S>(alpha), threads), tets.ratio(), threads);
   }
 
   Eigen::VectorXd fromWide(const S* wide) const {

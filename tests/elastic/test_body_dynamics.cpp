@@ -23,8 +23,8 @@ constexpr double kSeconds = 0.2, kDamping = 0.3, kAlpha = kSeconds * kDamping;
 /// Dynamics for a reference body, with velocities.
 template <class S>
 BodyDynamics<S> dynamicsOf(const AssembledBody<S>& body, const VectorXd& velocities) {
-  BodyDynamics<S> dynamics(elastic_detail::restTets(body.cage), body.nodes.size());
-  dynamics.setMaterial(body.material);
+  BodyDynamics<S> dynamics(body.restTets(), body.nodes.size());
+  dynamics.setMaterial(body.lame);
   dynamics.setDamping(kDamping);
   for (std::size_t n = 0; n < body.nodes.size(); ++n) {
     dynamics.setMass(n, static_cast<S>(body.masses[n]));
@@ -81,7 +81,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
 
 TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
   AssembledBody<TypeParam> body(cageForDynamics(), 0.0, kAlpha);
-  for (Lame& lame : body.material) lame = {1e6, 1e6};
+  body.lame = {1e6, 1e6};
   const VectorXd v = Random(51).vector(3 * body.nodes.size());
   for (const bool pinned : {false, true}) {
     if (pinned) body.hold(3);
@@ -319,8 +319,8 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
     dynamics.setMass(4, 9.0);
     return kSeconds;
   }));
-  EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body& body) {
-    dynamics.setMaterial(std::vector<Lame>(body.cage.tetCount(), {5.0, 5.0}));
+  EXPECT_TRUE(changesTheMatrix([](Dynamics& dynamics, const Body&) {
+    dynamics.setMaterial({5.0, 5.0});
     return kSeconds;
   }));
   EXPECT_FALSE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 0.3); })) << "hardly";
@@ -331,7 +331,7 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
 struct SingleTetBesideMany {
   explicit SingleTetBesideMany(double stiffness)
       : cage(withTet()), dynamics(elastic_detail::restTets(cage), cage.nodeCount()) {
-    dynamics.setMaterial(std::vector<Lame>(cage.tetCount(), {stiffness, stiffness}));
+    dynamics.setMaterial({stiffness, stiffness});
     dynamics.setDamping(kDamping);
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
       dynamics.setMass(n, 1.0);

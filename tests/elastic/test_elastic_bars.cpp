@@ -15,17 +15,17 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-template <class S>
-class ElasticBarsOf : public WithScalar<S> {};
+template <class S> class ElasticBarsOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(ElasticBarsOf, Scalars);
 
 /// The mean displacement of the nodes at the free end.
 template <class S>
-Vector3d tipOf(ElasticBody<S>& body, const TetMesh& cage, double length) {
+Vector3d tipOf(ElasticBody<S> &body, const TetMesh &cage, double length) {
   Vector3d sum = Vector3d::Zero();
   int count = 0;
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    if (std::abs(cage.nodes[n].x() - length) > 1e-9) continue;
+    if (std::abs(cage.nodes[n].x() - length) > 1e-9)
+      continue;
     sum += pointsOf(body.positions())[n] - cage.nodes[n];
     ++count;
   }
@@ -34,8 +34,10 @@ Vector3d tipOf(ElasticBody<S>& body, const TetMesh& cage, double length) {
 
 /// Takes steps so long that only the final state of the motion is left.
 template <class S>
-void settle(ElasticBody<S>& body, const std::array<double, 3>& acceleration, int steps) {
-  for (int k = 0; k < steps; ++k) body.step(0.1, acceleration);
+void settle(ElasticBody<S> &body, const std::array<double, 3> &acceleration,
+            int steps) {
+  for (int k = 0; k < steps; ++k)
+    body.step(0.1, acceleration);
 }
 
 TYPED_TEST(ElasticBarsOf, AHangingBarIsAsLongAsTheTextbookSays) {
@@ -44,11 +46,12 @@ TYPED_TEST(ElasticBarsOf, AHangingBarIsAsLongAsTheTextbookSays) {
   ElasticOptions options = soft();
   options.tolerance = 1e-4;
   options.stiffnessDamping = 0.1;
-  options.poissonRatio = 0.0;  // the pinned end cannot get thinner
+  options.poissonRatio = 0.0; // the pinned end cannot get thinner
   ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
   pinTheEnd(body, cage);
   settle(body, {kGravity, 0, 0}, 150);
-  const double expected = options.density * kGravity * kLength * kLength / (2.0 * options.youngsModulus);
+  const double expected = options.density * kGravity * kLength * kLength /
+                          (2.0 * options.youngsModulus);
   ASSERT_GT(expected, 0.05);
   EXPECT_NEAR(tipOf(body, cage, kLength).x() / expected, 1.0, 0.002);
 }
@@ -66,9 +69,12 @@ TYPED_TEST(ElasticBarsOf, APulledBarIsAsLongAsTheTextbookSays) {
   const std::vector<double> fractions = lumped(cage);
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-      if (cage.nodes[n].x() != kLength) continue;
-      if (pass == 0) sum += fractions[n];
-      if (pass == 1) options.nodeMasses[n] = fractions[n] / sum;
+      if (cage.nodes[n].x() != kLength)
+        continue;
+      if (pass == 0)
+        sum += fractions[n];
+      if (pass == 1)
+        options.nodeMasses[n] = fractions[n] / sum;
     }
   }
   ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
@@ -86,12 +92,15 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
   options.density = 1.0;
   options.tolerance = 1e-6;
   options.maxIterations = 2000;
-  const double weight = kHeight * kHeight, inertia = std::pow(kHeight, 4) / 12.0;
+  const double weight = kHeight * kHeight,
+               inertia = std::pow(kHeight, 4) / 12.0;
   const double gravity = 10.0;
-  const double expected = weight * gravity * std::pow(kLength, 4) / (8.0 * options.youngsModulus * inertia);
+  const double expected = weight * gravity * std::pow(kLength, 4) /
+                          (8.0 * options.youngsModulus * inertia);
   double before = 0.0;
   for (const int across : {1, 2, 4}) {
-    const TetMesh cage = latticeCage(8 * across, across, across, kHeight / across);
+    const TetMesh cage =
+        latticeCage(8 * across, across, across, kHeight / across);
     ElasticBody<double> body = made<double>(cage, options);
     pinTheEnd(body, cage);
     settle(body, {0, 0, -gravity}, 20);
@@ -104,7 +113,38 @@ TEST(ElasticBars, ACantileverBendsAsTheTextbookSaysInTheLimitOfFineCages) {
   }
 }
 
-/// What a solve leaves is small beside gravity in each step, and must not add up to a wrong sag, or to a creeping one.
+/// By Timoshenko's theory, whose shear adds little: S. P. Timoshenko, J. N.
+/// Goodier, "Theory of Elasticity", 1970.
+TEST(ElasticBars, ACantileverOfFewQuadraticTetsBendsAsTheTextbookSays) {
+  constexpr double kLength = 2.0, kHeight = 0.25, kGravity = 10.0,
+                   kShearFactor = 5.0 / 6.0;
+  ElasticOptions options;
+  options.youngsModulus = 1e6;
+  options.poissonRatio = 0.0;
+  options.tolerance = 1e-6;
+  options.maxIterations = 2000;
+  const double area = kHeight * kHeight, inertia = std::pow(kHeight, 4) / 12.0,
+               load = area * kGravity;
+  const double bending =
+      load * std::pow(kLength, 4) / (8.0 * options.youngsModulus * inertia);
+  const double shear =
+      load * kLength * kLength /
+      (2.0 * kShearFactor * 0.5 * options.youngsModulus * area);
+  for (const int across : {1, 2}) {
+    const Cage cage = refineQuadratic(latticeCage(8 * across, across, across,
+                                                  kHeight / across))
+                          .value();
+    ElasticBody<double> body = made<double>(cage, options);
+    pinTheEnd(body, cage.mesh);
+    settle(body, {0, 0, -kGravity}, 20);
+    EXPECT_NEAR(-tipOf(body, cage.mesh, kLength).z() / (bending + shear), 1.0,
+                across == 1 ? 0.03 : 0.01)
+        << across;
+  }
+}
+
+/// What a solve leaves is small beside gravity in each step, and must not add
+/// up to a wrong sag, or to a creeping one.
 TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
   const TetMesh cage = latticeCage(20, 3, 3, 0.1);
   const auto settled = [&](double tolerance) {
@@ -119,7 +159,8 @@ TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
   const std::array<double, 3> gravity = {0, 0, -0.8};
   double sag[2] = {};
   for (const bool exact : {false, true}) {
-    ElasticBody<float> body = settled(exact ? 1e-6 : ElasticOptions().tolerance);
+    ElasticBody<float> body =
+        settled(exact ? 1e-6 : ElasticOptions().tolerance);
     pinTheEnd(body, cage);
     int most = 0, last = 0;
     for (int k = 0; k < 2400; ++k) {
@@ -128,11 +169,13 @@ TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
       last += k >= 2160 ? iterations : 0;
     }
     sag[exact] = tipOf(body, cage, 2.0).z();
-    if (exact) continue;
+    if (exact)
+      continue;
     EXPECT_GT(most, 15);
     EXPECT_LT(last, 240) << "one per step";
     double fastest = 0.0;
-    for (const Vector3d& v : pointsOf(body.velocities())) fastest = std::max(fastest, v.norm());
+    for (const Vector3d &v : pointsOf(body.velocities()))
+      fastest = std::max(fastest, v.norm());
     EXPECT_LT(fastest, 1e-3 * std::abs(sag[0])) << "per second";
   }
   EXPECT_LT(sag[1], -0.1);
@@ -147,17 +190,22 @@ TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {
   options.tolerance = 1e-4;
   ElasticBody<double> body = made<double>(cage, options);
   pinTheEnd(body, cage);
-  Points positions = cage.nodes;  // its softest longitudinal vibration, at maximum amplitude
-  for (Vector3d& p : positions) p.x() += 0.01 * std::sin(0.5 * kPi * p.x() / kLength);
+  Points positions =
+      cage.nodes; // its softest longitudinal vibration, at maximum amplitude
+  for (Vector3d &p : positions)
+    p.x() += 0.01 * std::sin(0.5 * kPi * p.x() / kLength);
   fill(body.positions(), positions);
-  const double period = 4.0 * kLength / std::sqrt(options.youngsModulus / options.density), dt = period / 400.0;
+  const double period = 4.0 * kLength /
+                        std::sqrt(options.youngsModulus / options.density),
+               dt = period / 400.0;
   // The time from the first passage through rest to the third is one period.
   std::vector<double> passages;
   double before = tipOf(body, cage, kLength).x();
   for (int k = 1; k <= 700; ++k) {
     body.step(dt);
     const double now = tipOf(body, cage, kLength).x();
-    if (before * now < 0.0) passages.push_back((k - now / (now - before)) * dt);
+    if (before * now < 0.0)
+      passages.push_back((k - now / (now - before)) * dt);
     before = now;
   }
   ASSERT_GE(passages.size(), 3u);
@@ -173,7 +221,8 @@ TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
   const auto nodesAfter = [&](int steps) {
     ElasticBody<double> body = made<double>(cage, options);
     pinTheEnd(body, cage);
-    for (int k = 0; k < steps; ++k) body.step(kTime / steps, {0, 0, -9.8});
+    for (int k = 0; k < steps; ++k)
+      body.step(kTime / steps, {0, 0, -9.8});
     return pointsOf(body.positions());
   };
   const int coarsest = 100;
@@ -183,7 +232,8 @@ TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
   for (const int steps : {coarsest, 2 * coarsest, 4 * coarsest, 8 * coarsest}) {
     const Points nodes = nodesAfter(steps);
     double error = 0.0;
-    for (std::size_t n = 0; n < nodes.size(); ++n) error = std::max(error, (nodes[n] - right[n]).norm());
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      error = std::max(error, (nodes[n] - right[n]).norm());
     if (before > 0.0) {
       EXPECT_GT(std::log2(before / error), 0.9) << steps;
     }
@@ -191,5 +241,5 @@ TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
   }
 }
 
-}  // namespace
-}  // namespace tetskin::test
+} // namespace
+} // namespace tetskin::test

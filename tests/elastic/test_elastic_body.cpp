@@ -16,61 +16,131 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-template <class S>
-class ElasticBodyOf : public WithScalar<S> {};
+template <class S> class ElasticBodyOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(ElasticBodyOf, Scalars);
 
 /// Options that are refused.
 struct Refused {
-  const char* word;  ///< expected in the message
-  std::function<void(ElasticOptions&)> spoil;
+  const char *word; ///< expected in the message
+  std::function<void(ElasticOptions &)> spoil;
   StatusCode code = StatusCode::InvalidOption;
 };
+
+/// Where the options give nothing else, a body has what its cage says.
+TYPED_TEST(ElasticBodyOf, TakesFactorsAndMassesFromItsCage) {
+  Cage cage(latticeCage(2, 1, 1));
+  ElasticOptions options = soft();
+  const Points stretched = mapped(
+      cage.mesh.nodes, Vector3d(1.1, 1.0, 1.0).asDiagonal(), Vector3d::Zero());
+  const auto energyOf = [&] {
+    ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
+    fill(body.positions(), stretched);
+    return body.energy();
+  };
+  const double plain = energyOf();
+  cage.stiffnessFactor.assign(cage.mesh.tetCount(), 0.5);
+  cage.volumeFraction.assign(cage.mesh.tetCount(), 0.25);
+  EXPECT_NEAR(energyOf() / plain, 0.125, 1e-5);
+  options.stiffnessScale.assign(cage.mesh.tetCount(), 3.0);
+  EXPECT_NEAR(energyOf() / plain, 3.0, 1e-5);
+
+  // The momentum that a stretched body keeps tells its masses.
+  cage.masses = lumped(cage.mesh);
+  cage.masses[0] *= 100.0;
+  options.density = 7.0;
+  ElasticBody<TypeParam> heavy = made<TypeParam>(cage, options);
+  fill(heavy.positions(), stretched);
+  heavy.step(1e-3);
+  std::vector<double> masses = cage.masses;
+  Vector3d momentum = Vector3d::Zero();
+  for (std::size_t n = 0; n < masses.size(); ++n)
+    momentum += 7.0 * masses[n] * pointsOf(heavy.velocities())[n];
+  ASSERT_GT(fastest(heavy), 0.1);
+  EXPECT_LT(momentum.norm(), 1e3 * this->kEpsilon * fastest(heavy));
+
+  cage.masses.pop_back();
+  EXPECT_EQ(ElasticBody<TypeParam>::create(cage, options).status().code,
+            StatusCode::SizeMismatch);
+}
+
+TYPED_TEST(ElasticBodyOf, SimulatesTheQuadraticTetsOfItsCage) {
+  const Cage cage = refineQuadratic(singleTet()).value();
+  ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
+  EXPECT_EQ(body.nodeCount(), 10u);
+  // A bending that linear tets take for strain: all four corners stay, and one
+  // edge curves.
+  const auto energyOf = [&](const Cage &of) {
+    ElasticBody<TypeParam> bent = made<TypeParam>(of, soft());
+    bent.positions()[quadraticTets(cage).value()[0].nodes[4]][1] +=
+        TypeParam(0.01);
+    return bent.energy();
+  };
+  const double quadratic = energyOf(cage), linear = energyOf(Cage(cage.mesh));
+  EXPECT_LT(quadratic, 0.95 * linear);
+  EXPECT_GT(quadratic, 0.2 * linear);
+
+  Cage wrong = refineQuadratic(latticeCage(1, 1, 1)).value();
+  std::swap(wrong.quadraticTet[0], wrong.quadraticTet[20]);
+  EXPECT_EQ(ElasticBody<TypeParam>::create(wrong, soft()).status().code,
+            StatusCode::InvalidOption);
+}
 
 TYPED_TEST(ElasticBodyOf, NamesTheOptionThatIsWrong) {
   const TetMesh cage = latticeCage(1, 1, 1);
   std::vector<Refused> refused;
   for (const double value : {0.0, -1.0, kNan, kInfinity}) {
-    refused.push_back({"Young's modulus", [=](auto& o) { o.youngsModulus = value; }});
-    refused.push_back({"density", [=](auto& o) { o.density = value; }});
-    refused.push_back({"stiffnessScale[3]", [=](auto& o) {
+    refused.push_back(
+        {"Young's modulus", [=](auto &o) { o.youngsModulus = value; }});
+    refused.push_back({"density", [=](auto &o) { o.density = value; }});
+    refused.push_back({"stiffnessScale[3]", [=](auto &o) {
                          o.stiffnessScale.assign(6, 1.0);
                          o.stiffnessScale[3] = value;
                        }});
-    refused.push_back({"nodeMasses[7]", [=](auto& o) {
+    refused.push_back({"nodeMasses[7]", [=](auto &o) {
                          o.nodeMasses.assign(8, 1.0);
                          o.nodeMasses[7] = value;
                        }});
   }
-  refused.push_back({"stiff", [](auto& o) {
-                       o.youngsModulus = 0.99 * std::numeric_limits<TypeParam>::max(), o.poissonRatio = 0.49;
+  refused.push_back({"stiff", [](auto &o) {
+                       o.youngsModulus =
+                           0.99 * std::numeric_limits<TypeParam>::max(),
+                       o.poissonRatio = 0.49;
                      }});
   for (const double value : {-0.1, 0.5, 0.7, kNan}) {
-    refused.push_back({"Poisson's ratio", [=](auto& o) { o.poissonRatio = value; }});
+    refused.push_back(
+        {"Poisson's ratio", [=](auto &o) { o.poissonRatio = value; }});
   }
   for (const double value : {-1.0, kNan, kInfinity}) {
-    refused.push_back({"damping", [=](auto& o) { o.stiffnessDamping = value; }});
+    refused.push_back(
+        {"damping", [=](auto &o) { o.stiffnessDamping = value; }});
   }
   for (const double value : {-1.0, 1.0, kNan}) {
-    refused.push_back({"tolerance", [=](auto& o) { o.tolerance = value; }});
+    refused.push_back({"tolerance", [=](auto &o) { o.tolerance = value; }});
   }
-  for (const int value : {0, -1}) refused.push_back({"iteration", [=](auto& o) { o.maxIterations = value; }});
-  refused.push_back(
-      {"stiffnessScale has 5 values", [](auto& o) { o.stiffnessScale.assign(5, 1.0); }, StatusCode::SizeMismatch});
-  refused.push_back(
-      {"nodeMasses has 9 values", [](auto& o) { o.nodeMasses.assign(9, 1.0); }, StatusCode::SizeMismatch});
-  for (const Refused& wrong : refused) {
+  for (const int value : {0, -1})
+    refused.push_back({"iteration", [=](auto &o) { o.maxIterations = value; }});
+  refused.push_back({"stiffnessScale has 5 values",
+                     [](auto &o) { o.stiffnessScale.assign(5, 1.0); },
+                     StatusCode::SizeMismatch});
+  refused.push_back({"nodeMasses has 9 values",
+                     [](auto &o) { o.nodeMasses.assign(9, 1.0); },
+                     StatusCode::SizeMismatch});
+  for (const Refused &wrong : refused) {
     ElasticOptions options = soft();
     ASSERT_TRUE(ElasticBody<TypeParam>::create(cage, options).ok());
     wrong.spoil(options);
-    const Result<ElasticBody<TypeParam>> body = ElasticBody<TypeParam>::create(cage, options);
+    const Result<ElasticBody<TypeParam>> body =
+        ElasticBody<TypeParam>::create(cage, options);
     EXPECT_EQ(body.status().code, wrong.code) << wrong.word;
-    EXPECT_NE(body.status().message.find(wrong.word), std::string::npos) << wrong.word << ": " << body.status().message;
+    EXPECT_NE(body.status().message.find(wrong.word), std::string::npos)
+        << wrong.word << ": " << body.status().message;
   }
 }
 
 TYPED_TEST(ElasticBodyOf, RefusesCagesThatCannotBeUsed) {
-  const auto codeOf = [](const TetMesh& cage) { return ElasticBody<TypeParam>::create(cage, soft()).status().code; };
+  const auto codeOf = [](const TetMesh &cage) {
+    return ElasticBody<TypeParam>::create(cage, soft()).status().code;
+  };
   EXPECT_EQ(codeOf({}), StatusCode::Empty);
   TetMesh cage = latticeCage(1, 1, 1);
   cage.tets[2][1] = 99;
@@ -79,10 +149,12 @@ TYPED_TEST(ElasticBodyOf, RefusesCagesThatCannotBeUsed) {
   cage.nodes[5].y() = kNan;
   EXPECT_EQ(codeOf(cage), StatusCode::NonFinite);
   cage = latticeCage(1, 1, 1);
-  cage.tets.push_back({0, 1, 2, 3});  // one face of a cube
-  Result<ElasticBody<TypeParam>> flat = ElasticBody<TypeParam>::create(cage, soft());
+  cage.tets.push_back({0, 1, 2, 3}); // one face of a cube
+  Result<ElasticBody<TypeParam>> flat =
+      ElasticBody<TypeParam>::create(cage, soft());
   EXPECT_EQ(flat.status().code, StatusCode::Degenerate);
-  EXPECT_NE(flat.status().message.find("tet 6"), std::string::npos) << flat.status().message;
+  EXPECT_NE(flat.status().message.find("tet 6"), std::string::npos)
+      << flat.status().message;
   cage.tets.back() = {0, 0, 1, 7};
   EXPECT_EQ(codeOf(cage), StatusCode::Degenerate);
 }
@@ -95,10 +167,10 @@ TYPED_TEST(ElasticBodyOf, IsEmptyUnlessItIsMade) {
   nothing = std::move(body);
   EXPECT_EQ(nothing.nodeCount(), 4u);
   EXPECT_EQ(nothing.positions()[1][0], 1);
-  EXPECT_EQ(body.nodeCount(), 0u);  // NOLINT: moved from
+  EXPECT_EQ(body.nodeCount(), 0u); // NOLINT: moved from
   const ElasticBody<TypeParam> last(std::move(nothing));
   EXPECT_EQ(last.nodeCount(), 4u);
-  EXPECT_EQ(nothing.nodeCount(), 0u);  // NOLINT: moved from
+  EXPECT_EQ(nothing.nodeCount(), 0u); // NOLINT: moved from
   nothing.setPinned(0);
   EXPECT_EQ(nothing.step(0.01), 0);
   EXPECT_TRUE(nothing.forces().empty());
@@ -107,17 +179,20 @@ TYPED_TEST(ElasticBodyOf, IsEmptyUnlessItIsMade) {
 
 TYPED_TEST(ElasticBodyOf, IsAtRestWhereTheCageIs) {
   TetMesh cage = jittered(latticeCage(3, 2, 1), 0.15, 3);
-  for (std::size_t t = 0; t < cage.tetCount(); t += 2) std::swap(cage.tets[t][0], cage.tets[t][1]);  // negative tets
+  for (std::size_t t = 0; t < cage.tetCount(); t += 2)
+    std::swap(cage.tets[t][0], cage.tets[t][1]); // negative tets
   ElasticBody<TypeParam> body = made<TypeParam>(cage, soft());
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(body.positions()[n][k], static_cast<TypeParam>(cage.nodes[n][k]));
+      EXPECT_EQ(body.positions()[n][k],
+                static_cast<TypeParam>(cage.nodes[n][k]));
       EXPECT_EQ(body.velocities()[n][k], TypeParam(0));
     }
   }
   const double stiffness = 1e4;
   double maximum = 0.0;
-  for (const auto& f : body.forces()) maximum = std::max(maximum, Vector3d(f[0], f[1], f[2]).norm());
+  for (const auto &f : body.forces())
+    maximum = std::max(maximum, Vector3d(f[0], f[1], f[2]).norm());
   EXPECT_LT(maximum, 15.0 * stiffness * this->kEpsilon);
   EXPECT_LT(body.energy(), 100.0 * stiffness * this->kEpsilon * this->kEpsilon);
 }
@@ -132,12 +207,19 @@ TYPED_TEST(ElasticBodyOf, StoresTheEnergyOfItsStrain) {
     options.stiffnessScale.assign(cage.tetCount(), 0.5);
     const double modulus = 0.5 * options.youngsModulus;
     const double mu = modulus / (2.0 * (1.0 + poisson));
-    const double lambda = modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-    const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
+    const double lambda =
+        modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    const double density = mu * strain.squaredNorm() +
+                           0.5 * lambda * strain.trace() * strain.trace();
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    fill(body.positions(), mapped(cage.nodes, turnBy(50, {1, 2, 3}) * (Matrix3d::Identity() + strain), {1, 2, 3}));
-    // At a Poisson's ratio of 0.49, the rounding of volumes has fifty times the effect.
-    EXPECT_NEAR(body.energy() / (totalVolume(cage) * density), 1.0, 300.0 * this->kEpsilon);
+    fill(body.positions(),
+         mapped(cage.nodes,
+                turnBy(50, {1, 2, 3}) * (Matrix3d::Identity() + strain),
+                {1, 2, 3}));
+    // At a Poisson's ratio of 0.49, the rounding of volumes has fifty times the
+    // effect.
+    EXPECT_NEAR(body.energy() / (totalVolume(cage) * density), 1.0,
+                300.0 * this->kEpsilon);
   }
 }
 
@@ -146,17 +228,23 @@ TYPED_TEST(ElasticBodyOf, FallsFreely) {
   const TetMesh cage = jittered(latticeCage(3, 2, 2), 0.15, 3);
   ElasticOptions options = soft();
   options.nodeMasses.assign(cage.nodeCount(), 1.0);
-  for (std::size_t n = 0; n < cage.nodeCount(); n += 3) options.nodeMasses[n] = 50.0;
+  for (std::size_t n = 0; n < cage.nodeCount(); n += 3)
+    options.nodeMasses[n] = 50.0;
   const double dt = 0.01;
   const Vector3d g(1.0, -9.8, 0.5);
   onEachInstructionSet([&] {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
-    for (int k = 0; k < 100; ++k) body.step(dt, {g[0], g[1], g[2]});
-    const Points positions = pointsOf(body.positions()), velocities = pointsOf(body.velocities());
+    for (int k = 0; k < 100; ++k)
+      body.step(dt, {g[0], g[1], g[2]});
+    const Points positions = pointsOf(body.positions()),
+                 velocities = pointsOf(body.velocities());
     double velocity = 0.0, position = 0.0;
     for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-      velocity = std::max(velocity, (velocities[n] - 99.5 * dt * g).norm() / g.norm());
-      position = std::max(position, (positions[n] - cage.nodes[n] - 5000 * dt * dt * g).norm() / g.norm());
+      velocity =
+          std::max(velocity, (velocities[n] - 99.5 * dt * g).norm() / g.norm());
+      position = std::max(
+          position, (positions[n] - cage.nodes[n] - 5000 * dt * dt * g).norm() /
+                        g.norm());
     }
     EXPECT_LT(velocity, 200.0 * this->kEpsilon);
     EXPECT_LT(position, 20.0 * this->kEpsilon);
@@ -167,7 +255,8 @@ TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
   const TetMesh cage = jittered(latticeCage(4, 2, 2, 0.25), 0.03, 3);
   const std::vector<double> masses = lumped(cage);
   Vector3d centre = Vector3d::Zero();
-  for (std::size_t n = 0; n < masses.size(); ++n) centre += masses[n] * cage.nodes[n] / totalVolume(cage);
+  for (std::size_t n = 0; n < masses.size(); ++n)
+    centre += masses[n] * cage.nodes[n] / totalVolume(cage);
   ElasticOptions options = soft();
   options.density = 1.0;
   options.youngsModulus = 500.0;
@@ -175,7 +264,8 @@ TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
     const Vector3d spin(1.0, 2.0, 8.0), drift(0.02, -0.01, 0.03);
     Points velocities, positions = scattered(cage.nodes, 0.02, 12);
-    for (const Vector3d& p : cage.nodes) velocities.push_back(spin.cross(p - centre) + drift);
+    for (const Vector3d &p : cage.nodes)
+      velocities.push_back(spin.cross(p - centre) + drift);
     velocities = scattered(velocities, 0.2, 13);
     fill(body.positions(), positions);
     fill(body.velocities(), velocities);
@@ -183,27 +273,34 @@ TYPED_TEST(ElasticBodyOf, KeepsLinearAndAngularMomentumAndGainsNoEnergy) {
     ASSERT_GT(start.elastic, 0.1 * start.kinetic);
     double push = 0.0, turn = 0.0, speed = 0.0;
     std::vector<double> energies;
-    for (const Vector3d& v : velocities) speed = std::max(speed, v.norm());
+    for (const Vector3d &v : velocities)
+      speed = std::max(speed, v.norm());
     Motion now;
     for (int k = 0; k < 600; ++k) {
-      Motion at;  // the positions between two steps, with the mean of their velocities
+      Motion at; // the positions between two steps, with the mean of their
+                 // velocities
       at.elastic = body.energy();
       const Points last = pointsOf(body.velocities());
       body.step(1.0 / 240.0);
       now = motionOf(body, masses);
       for (std::size_t n = 0; n < masses.size(); ++n) {
-        at.kinetic += 0.125 * masses[n] * (last[n] + pointsOf(body.velocities())[n]).squaredNorm();
+        at.kinetic += 0.125 * masses[n] *
+                      (last[n] + pointsOf(body.velocities())[n]).squaredNorm();
       }
       push = std::max(push, (now.momentum - start.momentum).norm());
       turn = std::max(turn, (now.angular - start.angular).norm());
-      if (k > 0) energies.push_back(at.energy());
+      if (k > 0)
+        energies.push_back(at.energy());
     }
     const double unit = totalVolume(cage) * speed, size = 0.5;
     EXPECT_LT(push, 100.0 * this->kEpsilon * unit);
     EXPECT_LT(turn, 100.0 * this->kEpsilon * unit * size);
-    EXPECT_LT(*std::max_element(energies.begin(), energies.end()), 1.0001 * start.energy());
+    EXPECT_LT(*std::max_element(energies.begin(), energies.end()),
+              1.0001 * start.energy());
     for (std::size_t k = 60; k < energies.size(); ++k) {
-      EXPECT_LT(energies[k], 1.0001 * *std::max_element(energies.begin(), energies.begin() + 60)) << k;
+      EXPECT_LT(energies[k], 1.0001 * *std::max_element(energies.begin(),
+                                                        energies.begin() + 60))
+          << k;
     }
     EXPECT_GT(now.energy(), 0.2 * start.energy()) << "it still turns";
   });
@@ -213,21 +310,27 @@ TEST(ElasticBody, DampingTakesTheVibrationAndLeavesTheTurning) {
   const TetMesh cage = latticeCage(3, 2, 2, 0.25);
   const std::vector<double> masses = lumped(cage);
   Vector3d centre = Vector3d::Zero();
-  for (std::size_t n = 0; n < masses.size(); ++n) centre += masses[n] * cage.nodes[n] / totalVolume(cage);
+  for (std::size_t n = 0; n < masses.size(); ++n)
+    centre += masses[n] * cage.nodes[n] / totalVolume(cage);
   const auto energies = [&](double damping) {
     ElasticOptions options = soft();
     options.density = 1.0;
     options.stiffnessDamping = damping;
     ElasticBody<double> body = made<double>(cage, options);
     Points velocities;
-    for (const Vector3d& p : cage.nodes) velocities.push_back(Vector3d(0, 0, 1).cross(p - centre));
+    for (const Vector3d &p : cage.nodes)
+      velocities.push_back(Vector3d(0, 0, 1).cross(p - centre));
     fill(body.velocities(), velocities);
-    fill(body.positions(), mapped(cage.nodes, Vector3d(1.05, 0.98, 1.0).asDiagonal(), Vector3d::Zero()));
+    fill(body.positions(),
+         mapped(cage.nodes, Vector3d(1.05, 0.98, 1.0).asDiagonal(),
+                Vector3d::Zero()));
     const Motion start = motionOf(body, masses);
-    for (int k = 0; k < 1000; ++k) body.step(1e-4);
+    for (int k = 0; k < 1000; ++k)
+      body.step(1e-4);
     const Motion end = motionOf(body, masses);
     EXPECT_LT((end.angular - start.angular).norm(), 1e-10);
-    return std::make_pair(end.energy() / start.energy(), end.kinetic / start.kinetic);
+    return std::make_pair(end.energy() / start.energy(),
+                          end.kinetic / start.kinetic);
   };
   const auto free = energies(0.0), damped = energies(0.01);
   EXPECT_GT(free.first, 0.1);
@@ -250,9 +353,12 @@ TYPED_TEST(ElasticBodyOf, HeldNodesMoveAsTheyAreToldAndByNothingElse) {
     }
     for (const std::size_t n : {0u, 5u}) {
       for (int k = 0; k < 3; ++k) {
-        EXPECT_EQ(body.velocities()[n][k], n == 5 && k == 1 ? TypeParam(0.5) : TypeParam(0));
-        if (n == 5 && k == 1) continue;
-        EXPECT_EQ(body.positions()[n][k], static_cast<TypeParam>(cage.nodes[n][k]));
+        EXPECT_EQ(body.velocities()[n][k],
+                  n == 5 && k == 1 ? TypeParam(0.5) : TypeParam(0));
+        if (n == 5 && k == 1)
+          continue;
+        EXPECT_EQ(body.positions()[n][k],
+                  static_cast<TypeParam>(cage.nodes[n][k]));
       }
     }
     EXPECT_LT(body.positions()[3][2], TypeParam(-0.1)) << "the others fall";
@@ -265,9 +371,11 @@ TYPED_TEST(ElasticBodyOf, HeldNodesMoveAsTheyAreToldAndByNothingElse) {
     const std::vector<double> masses = lumped(cage);
     const Vector3d before = motionOf(body, masses).momentum;
     body.step(0.01, {0, 0, -9.8});
-    EXPECT_NEAR((motionOf(body, masses).momentum - before).z() / (-0.098 * totalVolume(cage)), 1.0, 1e-3);
+    EXPECT_NEAR((motionOf(body, masses).momentum - before).z() /
+                    (-0.098 * totalVolume(cage)),
+                1.0, 1e-3);
   });
 }
 
-}  // namespace
-}  // namespace tetskin::test
+} // namespace
+} // namespace tetskin::test

@@ -23,16 +23,5 @@ TEST(Lame, TellYoungsModulusAndPoissonsRatioAgain) {
   }
 }
 
-TEST(Lame, AreScaledTetByTet) {
-  const std::vector<Lame> scaled = lameOfTets({2.0, 3.0}, 2, {0.5, 4.0});
-  EXPECT_EQ(scaled[0].mu, 1.0);
-  EXPECT_EQ(scaled[0].lambda, 1.5);
-  EXPECT_EQ(scaled[1].mu, 8.0);
-  EXPECT_EQ(scaled[1].lambda, 12.0);
-  const std::vector<Lame> all = lameOfTets({2.0, 3.0}, 2, {});
-  EXPECT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[1].lambda, 3.0);
-}
-
 }  // namespace
 }  // namespace tetskin::elastic_detail

@@ -36,7 +36,10 @@ class TETSKIN_BULLET_API DeformableBody {
   /// world   created with a `DeformableSolver`; for Bullet's own forces a btDeformableBodySolver works, too. Its
   ///         gravity at the time of the call sets the scale of the default stiffness
   /// cage    at the body's initial position, world space; its volume fractions, stiffness factors and masses are used
-  ///         where the options give none
+  ///         where the options give none. Its quadratic tets are simulated as such by ForceModel::Corotated, while the
+  ///         btSoftBody has the eight linear tets of each, as Bullet's own force models do; they become linear if the
+  ///         application changes the body's tets, or their rest shapes to others than those of a tet with straight
+  ///         edges
   /// Errors  those of `createSoftBody`; InvalidOption for ForceModel::MassSpring, which has no stable setting here, for
   ///         ForceModel::Corotated in a world without a `DeformableSolver`, or with `options.implicit`, and for the
   ///         worlds of reduced bodies

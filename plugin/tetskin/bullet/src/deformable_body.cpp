@@ -155,8 +155,9 @@ struct DeformableBody::Impl {
     elasticity = std::move(force);
   }
   /// Creates the force of the body's material.
-  /// rest  the body's tets; not used by Bullet's forces
-  void makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest);
+  /// linear, quadratic  the body's tets; not used by Bullet's forces
+  void makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
+                      std::vector<QuadraticShape> quadratic);
   void apply(const ElasticMaterial& now) {
     assert(applyMaterial);
     material = now;
@@ -205,6 +206,9 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   const bool corotated = options.forceModel == ForceModel::Corotated;
   Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
   if (!rest.ok()) return rest.status();
+  Result<std::vector<QuadraticShape>> quadratic =
+      corotated ? quadraticShapes(cage, given.stiffnessScale) : std::vector<QuadraticShape>();
+  if (!quadratic.ok()) return quadratic.status();
   const double pressure = weightPressure(cage, masses, static_cast<double>(world.getGravity().length()));
   const ElasticMaterial material{options.youngsModulus
                                      ? *options.youngsModulus
@@ -226,7 +230,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   impl->forceModel = options.forceModel;
   impl->material = material;
   impl->weightPressure = pressure;
-  impl->makeElasticity(options, std::move(rest).value());
+  impl->makeElasticity(options, rest.value(), std::move(quadratic).value());
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&impl->gravity), impl->elasticity.get()}) {
     force->setIndices(solver.getIndices());
@@ -242,7 +246,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
 }
 
-void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, elastic_detail::RestTets rest) {
+void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
+                                          std::vector<QuadraticShape> quadratic) {
   switch (options.forceModel) {
     case ForceModel::LinearElasticity:
       makeElasticity<btDeformableLinearElasticityForce>();
@@ -253,7 +258,7 @@ void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, elasti
       applyMaterial(material);
       return;
     default:
-      makeElasticity<ElasticForce>(world, *body, std::move(rest), material, options.stiffnessScale,
+      makeElasticity<ElasticForce>(world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
                                    SolverSettings{options.solverTolerance, options.maxIterations});
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
@@ -18,6 +19,16 @@ namespace {
 using elastic_detail::BodyDynamics;
 using kernels::kGroup;
 
+/// The options with the cage's values for what they do not give.
+ElasticOptions withCageDefaults(const Cage& cage, ElasticOptions options) {
+  if (options.stiffnessScale.empty()) options.stiffnessScale = cage.stiffnessScale();
+  if (options.nodeMasses.empty()) {
+    for (const double mass : cage.masses) options.nodeMasses.push_back(options.density * mass);
+  }
+  return options;
+}
+
+/// options  with the cage's values
 template <class Scalar>
 Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
@@ -49,7 +60,7 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, options.stiffnessDamping, mass, volume);
 }
 
-Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
+Status checkMesh(const TetMesh& cage, const TetMeshReport& report) {
   if (Status status = validate(cage, report); !status.ok()) return status;
   if (const std::size_t far = firstUnusable(viewOf(cage.nodes)); far < cage.nodeCount()) {
     return {StatusCode::NonFinite,
@@ -64,16 +75,16 @@ Status checkCage(const TetMesh& cage, const TetMeshReport& report) {
 
 template <class Scalar>
 struct ElasticBody<Scalar>::Impl {
-  Impl(const TetMesh& cage, const ElasticOptions& options)
-      : dynamics(elastic_detail::restTets(cage), cage.nodeCount()), masses(options.nodeMasses) {
+  /// options  with the cage's values
+  Impl(elastic_detail::RestTets rest, const TetMesh& cage, const ElasticOptions& options)
+      : dynamics(std::move(rest), cage.nodeCount()), masses(options.nodeMasses) {
     for (const Eigen::Vector3d& p : cage.nodes) {
       for (int k = 0; k < 3; ++k) positions.push_back(static_cast<Scalar>(p[k]));
     }
     velocities.assign(positions.size(), Scalar(0));
     limits.tolerance = options.tolerance;
     limits.iterations = options.maxIterations;
-    const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
-    dynamics.setMaterial(elastic_detail::lameOfTets(lame, cage.tetCount(), options.stiffnessScale));
+    dynamics.setMaterial(elastic_detail::lameOf(options.youngsModulus, options.poissonRatio));
     dynamics.setDamping(options.stiffnessDamping);
     dynamics.setStaggered(true);
     if (masses.empty()) {
@@ -140,12 +151,17 @@ template <class Scalar>
 ElasticBody<Scalar>& ElasticBody<Scalar>::operator=(ElasticBody&&) noexcept = default;
 
 template <class Scalar>
-Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const TetMesh& cage, const ElasticOptions& options) {
-  TetMesh positive = cage;
-  if (Status status = checkCage(cage, repairTetMesh(positive)); !status.ok()) return status;
-  if (Status status = checkOptions<Scalar>(cage, options); !status.ok()) return status;
+Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const Cage& cage, const ElasticOptions& options) {
+  Cage positive = cage;
+  if (Status status = checkMesh(cage.mesh, repairTetMesh(positive.mesh)); !status.ok()) return status;
+  if (Status status = validateAttributes(cage); !status.ok()) return status;
+  const ElasticOptions all = withCageDefaults(cage, options);
+  if (Status status = checkOptions<Scalar>(cage.mesh, all); !status.ok()) return status;
+  const Result<std::vector<QuadraticTet>> quadratic = quadraticTets(positive);
+  if (!quadratic.ok()) return quadratic.status();
   ElasticBody body;
-  body.impl_ = std::make_unique<Impl>(positive, options);
+  body.impl_ = std::make_unique<Impl>(elastic_detail::restTets(positive, quadratic.value(), options.stiffnessScale),
+                                      positive.mesh, all);
   return body;
 }
 

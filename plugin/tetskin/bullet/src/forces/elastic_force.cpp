@@ -7,18 +7,20 @@
 
 namespace tetskin::bullet_detail {
 
-ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
-                           const ElasticMaterial& material, std::vector<double> stiffnessScale,
+ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
+                           const elastic_detail::RestTets& linear, const ElasticMaterial& material,
+                           std::vector<double> stiffnessScale, std::vector<QuadraticShape> quadratic,
                            const SolverSettings& settings)
     : material_(material), settings_(settings) {
-  assert(checkMaterial(material).ok() && rest.count() == static_cast<std::size_t>(body.m_tetras.size()));
-  assert(stiffnessScale.empty() || stiffnessScale.size() == rest.count());
+  assert(checkMaterial(material).ok());
+  assert(stiffnessScale.empty() || stiffnessScale.size() == linear.count());
   assert(settings.tolerance >= 0.0 && settings.tolerance < 1.0 && settings.iterations >= 1);
   body_.body = &body;
   body_.world = &world;
   body_.worldInfo = &world.getWorldInfo();
   body_.stiffnessScale = std::move(stiffnessScale);
-  body_.build(std::move(rest), material);
+  body_.quadratic = std::move(quadratic);
+  body_.build(linear, material);
 }
 
 void ElasticForce::setMaterial(const ElasticMaterial& material) {
@@ -30,7 +32,7 @@ void ElasticForce::setMaterial(const ElasticMaterial& material) {
 void ElasticForce::reinitialize(bool) {
   if (m_softBodies.size() == 0 || body_.hasItsRestShapes()) return;
   if (Result<elastic_detail::RestTets> rest = restTetsOf(*body_.body); rest.ok()) {
-    body_.build(std::move(rest).value(), material_);
+    body_.build(rest.value(), material_);
   } else if (!body_.hasOwnCounts()) {
     removeSoftBody(body_.body);
   }

@@ -13,14 +13,17 @@ namespace tetskin::bullet_detail {
 /// that Bullet reports when the body leaves the world, and can ask for its energy.
 ///
 /// Corotated linear elasticity: every tet's rotation is removed from its deformation. The tet therefore neither resists
-/// rotation nor, as with linear elasticity, swells by it; it recovers from being flat or inside out.
+/// rotation nor, as with linear elasticity, swells by it; it recovers from being flat or inside out. A quadratic tet
+/// has four such rotations.
 class ElasticForce : public InactiveForce {
  public:
-  /// rest            tets of the body: see `restTetsOf`
+  /// linear          tets of the body: see `restTetsOf`
   /// material        checked: see `checkMaterial`
   /// stiffnessScale  tetCount, above 0; or empty: 1
-  ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, elastic_detail::RestTets rest,
-               const ElasticMaterial& material, std::vector<double> stiffnessScale, const SolverSettings& settings);
+  /// quadratic       of the body's cage
+  ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, const elastic_detail::RestTets& linear,
+               const ElasticMaterial& material, std::vector<double> stiffnessScale,
+               std::vector<QuadraticShape> quadratic, const SolverSettings& settings);
 
   void setMaterial(const ElasticMaterial& material);
   const SolverSettings& settings() const { return settings_; }

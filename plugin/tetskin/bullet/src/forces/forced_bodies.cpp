@@ -96,27 +96,29 @@ Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
   return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, whole, volume);
 }
 
-void ForcedBody::build(elastic_detail::RestTets rest, const ElasticMaterial& material) {
-  assert(body && rest.count() == static_cast<std::size_t>(body->m_tetras.size()));
-  if (stiffnessScale.size() != static_cast<std::size_t>(body->m_tetras.size())) stiffnessScale.clear();
+void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMaterial& material) {
+  assert(body && linear.count() == static_cast<std::size_t>(body->m_tetras.size()));
+  if (stiffnessScale.size() != linear.count()) stiffnessScale.clear();
+  if (dynamics && tetCount != linear.count()) quadratic.clear();
+  tetCount = linear.count();
   const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
-  dynamics = std::make_unique<Dynamics>(std::move(rest), static_cast<std::size_t>(body->m_nodes.size()));
+  dynamics = std::make_unique<Dynamics>(withQuadraticTets(linear, stiffnessScale, quadratic),
+                                        static_cast<std::size_t>(body->m_nodes.size()));
   dynamics->setLastSeconds(lastSeconds);
   restMeasure = restMeasureOf(*body);
   setMaterial(material);
 }
 
 void ForcedBody::setMaterial(const ElasticMaterial& material) {
-  assert(dynamics && (stiffnessScale.empty() || stiffnessScale.size() == dynamics->tets()->count()));
-  const elastic_detail::Lame lame = elastic_detail::lameOf(material.youngsModulus, material.poissonRatio);
-  dynamics->setMaterial(elastic_detail::lameOfTets(lame, dynamics->tets()->count(), stiffnessScale));
+  assert(dynamics);
+  dynamics->setMaterial(elastic_detail::lameOf(material.youngsModulus, material.poissonRatio));
   dynamics->setDamping(material.damping);
 }
 
 bool ForcedBody::hasOwnCounts() const {
   assert(body && dynamics);
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
-         dynamics->tets()->count() == static_cast<std::size_t>(body->m_tetras.size());
+         tetCount == static_cast<std::size_t>(body->m_tetras.size());
 }
 
 bool ForcedBody::hasItsRestShapes() const {

@@ -6,6 +6,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/forces/quadratic_shapes.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <memory>
@@ -31,8 +32,8 @@ using Dynamics = elastic_detail::BodyDynamics<btScalar>;
 /// The state of a body's nodes.
 void readNodes(const btSoftBody& body, Dynamics& dynamics);
 
-/// The body's tets at rest, by Bullet's numbers: the same whether the body has just been created or has been scaled
-/// since.
+/// The body's tets at rest, all of them linear, by Bullet's numbers: the same whether the body has just been created or
+/// has been scaled since.
 /// Cost    O(nodes + tets)
 /// Errors  Degenerate: the reason why the tets cannot be simulated
 Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
@@ -43,16 +44,18 @@ Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
 /// One body, and the data derived from it.
 struct ForcedBody {
   btSoftBody* body = nullptr;
-  std::vector<double> stiffnessScale;  ///< by tet, or empty
+  std::vector<double> stiffnessScale;     ///< by tet, or empty
+  std::vector<QuadraticShape> quadratic;  ///< as far as the body's tets still are their parts, see `withQuadraticTets`
   std::unique_ptr<Dynamics> dynamics;
+  std::size_t tetCount = 0;  ///< tets of the body when `dynamics` was made
   btScalar restMeasure = 0;  ///< measure of some tets: a change shows that the body was scaled
   /// The world in which it was added; another world would have another force for the body.
   btDeformableMultiBodyDynamicsWorld* world = nullptr;
   const btSoftBodyWorldInfo* worldInfo = nullptr;
 
-  /// Computes, or renews, the data derived from the body's tets.
-  /// rest  see `restTetsOf`
-  void build(elastic_detail::RestTets rest, const ElasticMaterial& material);
+  /// Computes, or renews, the data derived from the body's tets. Scale factors and quadratic tets are dropped if the
+  /// body has another number of tets now. linear  see `restTetsOf`
+  void build(const elastic_detail::RestTets& linear, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.
   bool hasOwnCounts() const;

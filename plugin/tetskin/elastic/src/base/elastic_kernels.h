@@ -21,33 +21,47 @@ constexpr int kGroup = 8;
 
 /// Scalars of a chunk's vectors, of its symmetric blocks (xx xy xz yy yz zz), and of an entry's blocks (by rows).
 constexpr std::size_t kWideVector = 3 * kGroup, kWideSymmetric = 6 * kGroup, kWideBlock = 9 * kGroup;
-/// Scalars of a tet's corners: four points.
-constexpr std::size_t kCorners = 16;
-
 /// Eight tets at rest.
 template <class S>
 struct TetPack {
-  S gradients[9][kGroup];          ///< of the barycentric weights of nodes 1, 2 and 3, rest space
-  S shear[kGroup];                 ///< 2 mu x volume; 0 for padding in the last pack
-  S bulk[kGroup];                  ///< lambda x volume
-  std::uint32_t nodes[4][kGroup];  ///< slots of the nodes
+  static constexpr std::size_t kPoints = 1, kNodes = 4;
+  S gradients[9][kGroup];               ///< of the barycentric weights of nodes 1, 2 and 3, rest space
+  S shear[kGroup];                      ///< 2 mu x volume; 0 for padding in the last pack
+  S bulk[kGroup];                       ///< lambda x volume
+  std::uint32_t nodes[kNodes][kGroup];  ///< slots of the nodes
 };
 
+/// Eight quadratic tets at rest, which are integrated at four points.
 template <class S>
+struct QuadraticPack {
+  static constexpr std::size_t kPoints = 4, kNodes = 10;
+  S gradients[9][kGroup];               ///< of the barycentric weights of corners 1, 2 and 3, rest space
+  S points[3 * kPoints][kGroup];        ///< the same weights at each point
+  S shear[kGroup];                      ///< 2 mu x volume of a point; 0 for padding in the last pack
+  S bulk[kGroup];                       ///< lambda x volume of a point
+  std::uint32_t nodes[kNodes][kGroup];  ///< slots of the corners, and of the middles of edges 01, 02, 03, 12, 13, 23
+};
+
+/// Scalars of a tet's corners: a point for each of its nodes, at each point where it is integrated.
+template <class Pack>
+constexpr std::size_t kCorners = 4 * Pack::kPoints* Pack::kNodes;
+
+/// Pack  TetPack or QuadraticPack
+template <class S, class Pack>
 struct TetWork {
   std::size_t firstPack = 0, lastPack = 0;
-  const TetPack<S>* packs = nullptr;
-  S* rotations = nullptr;        ///< quaternions w x y z, wide, by pack
+  const Pack* packs = nullptr;
+  S* rotations = nullptr;        ///< quaternions w x y z, wide, by pack and point
   const S* assembled = nullptr;  ///< the rotations with which the matrix was assembled
   const S* points = nullptr;     ///< by slot
-  S* corners = nullptr;          ///< by tet
-  S* sums = nullptr;             ///< by slot: forces are added here; null: they are written to `corners`
-  S alpha = 0, flatAlpha = 0;    ///< the second one: of flat and inverted tets, at least the first
+  S* corners = nullptr;          ///< by tet, point and node
+  S* sums = nullptr;           ///< by slot: forces are added here; null: they are written to the first point's corners
+  S alpha = 0, flatAlpha = 0;  ///< the second one: where a tet is flat or inverted, at least the first
 };
 
 template <class S>
 struct TetFindings {
-  S maxTurned = 0;  ///< the largest squared difference between a tet's rotation and that of the matrix, as quaternions
+  S maxTurned = 0;      ///< the largest squared difference between a rotation and that of the matrix, as quaternions
   double turned = 0.0;  ///< sum of these differences, each a quarter of the squared angle
   double energy = 0.0;
 };
@@ -66,7 +80,8 @@ struct RowWork {
   // Used by the assembly.
   const std::uint32_t* sums = nullptr;   ///< by entry, and the end: index of the first of its terms
   const std::uint32_t* terms = nullptr;  ///< 16 per term: corners of the rows' nodes, corners of the neighbours
-  const S* corners = nullptr;            ///< rotated gradients, see `rotatedGradients`
+  const S* corners = nullptr;            ///< see `TetLoops::rotatedGradients`
+  S ratio = 0;                           ///< lambda / mu
   S minMass = 0;                         ///< relative to the trace of the stiffness's diagonal block; see `assemble`
 
   // Used by products and solves. Wide vectors are by chunk, points by slot.
@@ -95,6 +110,16 @@ struct SumWork {
   S* points = nullptr;
 };
 
+/// The loops over tets of one kind.
+template <class S, class Pack>
+struct TetLoops {
+  /// Elastic forces at the points' positions, by node or, with the same bits, summed; updates `rotations`.
+  TetFindings<S> (*forces)(const TetWork<S, Pack>&, bool energy);
+  /// R g sqrt(alpha mu V) of all corners, with g the gradient of the node's shape function; the fourth scalar of each
+  /// is lambda / mu. Where a tet is flat at the points' positions, with `flatAlpha`.
+  void (*rotatedGradients)(const TetWork<S, Pack>&);
+};
+
 /// The loops of one instruction set.
 ///
 /// Of the conjugate gradient, with A = L + D + U and the preconditioner (D + L) D^-1 (D + U), by Eisenstat's trick:
@@ -105,11 +130,8 @@ struct SumWork {
 /// `backward` must be called for the last rows first, `forward` and `lower` for the first ones.
 template <class S>
 struct ElasticTable {
-  /// Elastic forces at the points' positions, by corner or, with the same bits, summed; updates `rotations`.
-  TetFindings<S> (*forces)(const TetWork<S>&, bool energy);
-  /// R g sqrt(alpha mu V) of all four corners; the fourth scalar of each is lambda / mu. Where a tet is flat at the
-  /// points' positions, with `flatAlpha`.
-  void (*rotatedGradients)(const TetWork<S>&);
+  TetLoops<S, TetPack<S>> linear;
+  TetLoops<S, QuadraticPack<S>> quadratic;
   void (*sum)(const SumWork<S>&);
   /// Computes the blocks, the diagonal, and its inverse, which is 0 where the mass is 0.
   void (*assemble)(const RowWork<S>&);

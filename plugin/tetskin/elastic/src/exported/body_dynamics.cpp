@@ -50,10 +50,9 @@ struct LaneSums {
 }  // namespace
 
 template <class S>
-BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
-    : matrix_(nodes, rest.tets, CorotatedTets<S>::noTet(rest.count())), pinned_(nodes) {
-  findComponents(rest.tets);
-  if (rest.count() > 0) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
+BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes) : matrix_(nodes, rest), pinned_(nodes) {
+  findComponents(rest);
+  if (!rest.empty()) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
   for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
     v->assign(4 * matrix_.slotCount(), S(0));
   }
@@ -62,11 +61,13 @@ BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
 
 /// Slots without a node, which have no mass, count as part of the first component.
 template <class S>
-void BodyDynamics<S>::findComponents(const std::vector<Tet>& tets) {
+void BodyDynamics<S>::findComponents(const RestTets& rest) {
   DisjointSets sets(nodeCount());
-  for (const Tet& tet : tets) {
-    for (std::size_t k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
-  }
+  const auto connect = [&](const auto& nodes) {
+    for (const int n : nodes) sets.unite(nodes[0], n);
+  };
+  for (const Tet& tet : rest.tets) connect(tet);
+  for (const RestQuadraticTet& tet : rest.quadratic) connect(tet.nodes);
   partOf_.assign(matrix_.slotCount(), 0);
   std::vector<std::uint32_t> numbers(nodeCount(), 0);  // numbers begin at 1
   std::uint32_t components = 0;
@@ -80,15 +81,16 @@ void BodyDynamics<S>::findComponents(const std::vector<Tet>& tets) {
 }
 
 template <class S>
-void BodyDynamics<S>::setMaterial(const std::vector<Lame>& lame) {
-  assert(tets_ && lame.size() == tets_->count());
+void BodyDynamics<S>::setMaterial(const Lame& lame) {
+  assert(tets_);
   const RestTets& rest = tets_->rest();
+  tets_->setMaterial(lame);
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
-  for (std::size_t t = 0; t < lame.size(); ++t) {
-    tets_->setMaterial(t, lame[t]);
-    const std::uint32_t component = partOf_[matrix_.slotOf(static_cast<std::size_t>(rest.tets[t][0]))];
-    stiffness_[component] += rest.volumes[t] * (2.0 * lame[t].mu + lame[t].lambda);
-  }
+  const auto add = [&](int node, double volume) {
+    stiffness_[partOf_[matrix_.slotOf(static_cast<std::size_t>(node))]] += volume * (2.0 * lame.mu + lame.lambda);
+  };
+  for (std::size_t t = 0; t < rest.count(); ++t) add(rest.tets[t][0], rest.volumes[t]);
+  for (const RestQuadraticTet& tet : rest.quadratic) add(tet.nodes[0], tet.volume);
   changed_ = true;
 }
 
@@ -178,7 +180,8 @@ void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, Para
   const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
   if (!changed_ && alpha == alpha_ && !turned) return;
   const auto flatAlpha = static_cast<S>(pressed_ ? kFlatAlpha * seconds * seconds : 0.0);
-  matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr, threads);
+  matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr,
+                   tets_ ? tets_->ratio() : S(0), threads);
   alpha_ = alpha;
   changed_ = false;
 }

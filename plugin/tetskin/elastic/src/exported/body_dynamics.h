@@ -50,8 +50,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   const BlockMatrix<S>& matrix() const { return matrix_; }
   std::size_t nodeCount() const { return matrix_.nodeCount(); }
 
-  /// Takes effect at the next `predict`. By tet; `damping` in seconds.
-  void setMaterial(const std::vector<Lame>& lame);
+  /// Takes effect at the next `predict`.
+  void setMaterial(const Lame& lame);
+  /// damping  seconds
   void setDamping(double damping);
   /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
   void setPressed(bool pressed) { pressed_ = pressed; }
@@ -171,7 +172,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void keep(const AlignedVector<S>& impulses, double seconds);
   void beginForces(double seconds);
   void chooseScheme(double seconds);
-  void findComponents(const std::vector<Tet>& tets);
+  void findComponents(const RestTets& rest);
   void findMotions(double seconds);
   void moveRigidly(double seconds);
   void assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads);
@@ -203,8 +204,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::size_t pinned_;                    ///< number of pinned nodes
   std::vector<std::uint32_t> partOf_;     ///< by slot: number of its component
   std::vector<ComponentMotion> motions_;  ///< by component, of the last `predict`
-  std::vector<double> stiffness_;         ///< by component: sum of V (2 mu + lambda) over its tets
-  double stiffnessOverInertia_ = 0.0;     ///< times dt^2: how much rotation is taken for strain; the largest
+  std::vector<double> stiffness_;      ///< by component: sum of V (2 mu + lambda) over its tets, linear and quadratic
+  double stiffnessOverInertia_ = 0.0;  ///< times dt^2: how much rotation is taken for strain; the largest
   double squaredDeviation_ = 0.0;
   InitialGuess<S> guess_;
 };

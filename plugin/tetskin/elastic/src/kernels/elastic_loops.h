@@ -4,6 +4,7 @@
 // Internal: all loops behind elastic_kernels.h, W tets or rows at a time. Included once for each instruction set.
 #pragma once
 
+#include <tetskin/elastic/src/kernels/quadratic_tet_loops.h>
 #include <tetskin/elastic/src/kernels/row_loops.h>
 #include <tetskin/elastic/src/kernels/tet_loops.h>
 
@@ -11,8 +12,17 @@ namespace tetskin::kernels::TETSKIN_KERNELS {
 
 template <class S, int W>
 constexpr ElasticTable<S> elasticTable() {
-  return {forces<S, W>,  rotatedGradients<S, W>, sum<S>,      assemble<S, W>,   multiply<S, W>, backward<S, W>,
-          forward<S, W>, advance<S, W>,          lower<S, W>, difference<S, W>, inner<S, W>};
+  return {{forces<S, W>, rotatedGradients<S, W>},
+          {quadraticForces<S, W>, quadraticRotatedGradients<S, W>},
+          sum<S>,
+          assemble<S, W>,
+          multiply<S, W>,
+          backward<S, W>,
+          forward<S, W>,
+          advance<S, W>,
+          lower<S, W>,
+          difference<S, W>,
+          inner<S, W>};
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS

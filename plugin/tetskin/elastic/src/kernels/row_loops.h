@@ -60,26 +60,27 @@ TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, 
   put<S, W>((d[0] * d[3] - d[1] * d[1]) * scale, to + 5 * kGroup);
 }
 
-/// The block of a pair of nodes: the sum, over the tets around their edge, of
+/// The block of a pair of nodes: the sum, over the tets around their edge and the points of each, of
 ///   lambda / mu  a b^T + b a^T + (a . b) 1
-/// with a and b as `rotatedGradients` made them.
+/// with a and b as `rotatedGradients` made them. All of it follows from the sum of a b^T.
 template <class S, int W>
 TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int lane, Lanes<S, W> block[9]) {
   using V = Lanes<S, W>;
-  for (int k = 0; k < 9; ++k) block[k] = V{};
-  V trace{};
+  V sum[9] = {};
   for (std::uint32_t term = work.sums[entry]; term < work.sums[entry + 1]; ++term) {
     const std::uint32_t* indices = work.terms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
-    const WidePoints<S, W> p = pointsAt<S, W>(work.corners, indices);
+    const WideVector<S, W> p = vectorsAt<S, W>(work.corners, indices);
     const WideVector<S, W> q = vectorsAt<S, W>(work.corners, indices + kGroup);
     const V a[3] = {p.x, p.y, p.z}, b[3] = {q.x, q.y, q.z};
     for (int i = 0; i < 3; ++i) {
-      const V scaled = p.w * a[i];
-      for (int j = 0; j < 3; ++j) block[3 * i + j] += scaled * b[j] + b[i] * a[j];
-      trace += a[i] * b[i];
+      for (int j = 0; j < 3; ++j) sum[3 * i + j] += a[i] * b[j];
     }
   }
-  for (int i = 0; i < 3; ++i) block[4 * i] += trace;
+  const V trace = sum[0] + sum[4] + sum[8];
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) block[3 * i + j] = work.ratio * sum[3 * i + j] + sum[3 * j + i];
+    block[4 * i] += trace;
+  }
 }
 
 /// The diagonal block of a row is the sum of its mass and its off-diagonal blocks, so that a body moves as a whole

@@ -1,236 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: corotated linear elasticity of W tets at a time.
-//
-// This work is based on:
-//   Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004 (corotated stiffness)
-//   Matthias Müller, Jan Bender, Nuttapong Chentanez, Miles Macklin, "A Robust Method to Extract the Rotational Part of
-//   Deformations", MIG 2016, doi 10.1145/2994258.2994269 (a quaternion, turned along; here by Newton's step)
-//
-// With F the deformation gradient, R the rotation that maximises tr(R^T F), S = R^T F and E = sym(S) - 1:
-//   energy = V (mu E : E + lambda / 2 tr(E)^2),  force on node a = -V R (2 mu E + lambda tr(E)) g_a
-// which is the gradient of the energy where R is that maximum: S is then symmetric. A tet that is turned inside out
-// also has such a rotation.
+// Internal to the kernels: corotated elasticity of W linear tets at a time, which have one deformation gradient each.
 #pragma once
 
-#include <tetskin/elastic/src/kernels/wide.h>
+#include <tetskin/elastic/src/kernels/corotation.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
-
-/// The square of the angle in radians below which a Newton step is the last one: the next one would be of the order of
-/// its square. And the most steps, beyond which `findRotation` is faster.
-template <class S>
-constexpr S kLastStep = sizeof(S) == sizeof(float) ? S(1e-4) : S(1e-8);
-constexpr int kMaxSteps = 8;
-
-template <class S, int W>
-struct Quaternions {
-  Lanes<S, W> w, x, y, z;
-};
-
-template <class S, int W>
-TETSKIN_INLINE Quaternions<S, W> quaternions(const S* from) {
-  return {wide<S, W>(from), wide<S, W>(from + kGroup), wide<S, W>(from + 2 * kGroup), wide<S, W>(from + 3 * kGroup)};
-}
-
-/// The difference of two rotations, whatever the quaternions' signs: 4 sin^2 of a quarter of the angle between them.
-/// Unlike 1 minus the quaternions' dot product, it is precise for rotations that are nearly equal.
-template <class S, int W>
-TETSKIN_INLINE Lanes<S, W> squaredDifference(const Quaternions<S, W>& p, const Quaternions<S, W>& q) {
-  using V = Lanes<S, W>;
-  const auto opposite = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < S(0);
-  const V sign = opposite ? all<S, W>(-1) : all<S, W>(1);
-  const V w = p.w - sign * q.w, x = p.x - sign * q.x, y = p.y - sign * q.y, z = p.z - sign * q.z;
-  return w * w + x * x + y * y + z * z;
-}
-
-/// W matrices of 3 x 3, row by row.
-template <class S, int W>
-struct WideMatrix {
-  Lanes<S, W> at[9];
-};
-
-template <class S, int W>
-TETSKIN_INLINE WideMatrix<S, W> rotationOf(const Quaternions<S, W>& q) {
-  using V = Lanes<S, W>;
-  const V x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-  const V xx = q.x * x2, yy = q.y * y2, zz = q.z * z2, xy = q.x * y2, xz = q.x * z2, yz = q.y * z2;
-  const V wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
-  return {{S(1) - (yy + zz), xy - wz, xz + wy, xy + wz, S(1) - (xx + zz), yz - wx, xz - wy, yz + wx, S(1) - (xx + yy)}};
-}
-
-template <class S, int W>
-TETSKIN_INLINE WideMatrix<S, W> transposedProduct(const WideMatrix<S, W>& r, const WideMatrix<S, W>& f) {
-  WideMatrix<S, W> s;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      s.at[3 * i + j] = r.at[i] * f.at[j] + r.at[3 + i] * f.at[3 + j] + r.at[6 + i] * f.at[6 + j];
-    }
-  }
-  return s;
-}
-
-/// Properties of a step towards the rotation, by tet.
-template <class S, int W>
-struct RotationStep {
-  Lanes<S, W> squaredAngle;
-  Lanes<S, W> unsafe;  ///< 1 for a gradient step, 0 for a Newton step
-};
-
-/// One Newton step on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix is
-/// not safely positive, a gradient step.
-template <class S, int W>
-TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W>& s) {
-  using V = Lanes<S, W>;
-  const V* a = s.at;
-  const V bx = a[7] - a[5], by = a[2] - a[6], bz = a[3] - a[1];
-  const V m00 = a[4] + a[8], m11 = a[0] + a[8], m22 = a[0] + a[4];
-  const V m01 = S(-0.5) * (a[1] + a[3]), m02 = S(-0.5) * (a[2] + a[6]), m12 = S(-0.5) * (a[5] + a[7]);
-  const V c00 = m11 * m22 - m12 * m12, c01 = m02 * m12 - m01 * m22, c02 = m01 * m12 - m02 * m11;
-  const V c11 = m00 * m22 - m02 * m02, c12 = m01 * m02 - m00 * m12, c22 = m00 * m11 - m01 * m01;
-  const V det = m00 * c00 + m01 * c01 + m02 * c02;
-  const V size = absolute<S, W>(a[0] + a[4] + a[8]) + S(1e-9);
-  const auto good = (det > S(0.02) * size * size * size) & (c22 > S(0)) & (m00 > S(0));
-  const V inverseDet = S(1) / (good ? det : all<S, W>(1)), inverseSize = S(1) / size;
-  const V wx = good ? (c00 * bx + c01 * by + c02 * bz) * inverseDet : bx * inverseSize;
-  const V wy = good ? (c01 * bx + c11 * by + c12 * bz) * inverseDet : by * inverseSize;
-  const V wz = good ? (c02 * bx + c12 * by + c22 * bz) * inverseDet : bz * inverseSize;
-  // q <- q (1, w / 2), of length 1
-  const V hx = S(0.5) * wx, hy = S(0.5) * wy, hz = S(0.5) * wz;
-  const V w = q.w - q.x * hx - q.y * hy - q.z * hz, x = q.x + q.w * hx + q.y * hz - q.z * hy;
-  const V y = q.y + q.w * hy + q.z * hx - q.x * hz, z = q.z + q.w * hz + q.x * hy - q.y * hx;
-  // The squared length is at least 1 for finite values; a tet whose values were not finite begins again.
-  const V squared = w * w + x * x + y * y + z * z;
-  const auto finite = (squared > S(0.5)) & (squared < S(1e18));
-  const V unit = S(1) / squareRoots<S, W>(finite ? squared : all<S, W>(1));
-  q = {finite ? w * unit : all<S, W>(1), finite ? x * unit : V{}, finite ? y * unit : V{}, finite ? z * unit : V{}};
-  return {wx * wx + wy * wy + wz * wz, good ? V{} : all<S, W>(1)};
-}
-
-/// 1 where the rotation is at a saddle point or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue
-/// below 0. An eigenvalue of 0, as of a mirrored tet, means many maxima, of which the present one is as good as any.
-template <class S, int W>
-TETSKIN_INLINE Lanes<S, W> atNoMaximum(const WideMatrix<S, W>& s) {
-  using V = Lanes<S, W>;
-  const V* a = s.at;
-  const V trace = a[0] + a[4] + a[8], diagonal = S(1 + 1e-3) * trace;
-  const V m00 = diagonal - a[0], m11 = diagonal - a[4], m22 = diagonal - a[8];
-  const V m01 = S(-0.5) * (a[1] + a[3]), m02 = S(-0.5) * (a[2] + a[6]), m12 = S(-0.5) * (a[5] + a[7]);
-  const V c00 = m11 * m22 - m12 * m12, c01 = m02 * m12 - m01 * m22, c02 = m01 * m12 - m02 * m11;
-  const V det = m00 * c00 + m01 * c01 + m02 * c02;
-  const auto negative = (m00 < S(0)) | (m00 * m11 < m01 * m01) | (det < S(0)) | (trace < S(0));
-  return negative ? all<S, W>(1) : V{};
-}
-
-/// Diagonalises a symmetric 4x4 matrix by Jacobi's method; its eigenvectors become the columns of `vectors`.
-TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4][4]) {
-  constexpr int kSweeps = 8;  // convergence is quadratic: three or four sweeps suffice
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i + 1; j < 4; ++j) {
-        if (a[i][j] * a[i][j] < 1e-36) continue;
-        const double half = (a[j][j] - a[i][i]) / (2 * a[i][j]), size = half < 0 ? -half : half;
-        const double tangent = (half < 0 ? -1.0 : 1.0) / (size + squareRoot(half * half + 1));
-        const double c = 1 / squareRoot(tangent * tangent + 1), s = tangent * c;
-        const auto turn = [&](double& x, double& y) {
-          const double before = x;
-          x = c * before - s * y;
-          y = s * before + c * y;
-        };
-        for (auto& row : a) turn(row[i], row[j]);
-        for (int k = 0; k < 4; ++k) turn(a[i][k], a[j][k]);
-        for (auto& row : vectors) turn(row[i], row[j]);
-      }
-    }
-  }
-}
-
-/// The quaternion w x y z of the rotation that maximises tr(R^T F), from any start: the first eigenvector of that form
-/// (Berthold K. P. Horn, "Closed-form solution of absolute orientation using unit quaternions", J. Opt. Soc. Am. A 4,
-/// 1987, doi 10.1364/JOSAA.4.000629). It takes about 1 us. The quaternion stays unchanged where F is 0 or not finite.
-TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) {
-  double squared = 0.0;
-  for (const double x : f) squared += x * x;
-  if (!(squared > 0.0 && squared < 1e300)) return;
-  const double unit = 1 / squareRoot(squared);
-  double m[9];
-  for (int k = 0; k < 9; ++k) m[k] = unit * f[k];
-  const double t = m[0] + m[4] + m[8];
-  const double x = m[7] - m[5], y = m[2] - m[6], z = m[3] - m[1];
-  const double xy = m[1] + m[3], xz = m[2] + m[6], yz = m[5] + m[7];
-  double a[4][4] = {{t, x, y, z}, {x, 2 * m[0] - t, xy, xz}, {y, xy, 2 * m[4] - t, yz}, {z, xz, yz, 2 * m[8] - t}};
-  double vectors[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-  diagonalise(a, vectors);
-  int first = 0;
-  for (int k = 1; k < 4; ++k) first = a[k][k] > a[first][first] ? k : first;
-  // Of several rotations that are equally good, as for a body turned inside out, the nearest to the one before is
-  // chosen, or to a fixed one: neighbouring tets must not choose by their rounding.
-  constexpr double kAsGood = 1e-3, kHasPart = 1e-3;
-  const double fixed[4] = {0, 1, 0, 0};
-  const auto project = [&](const double* wanted, double* to) {
-    double length = 0.0;
-    for (int k = 0; k < 4; ++k) to[k] = 0.0;
-    for (int n = 0; n < 4; ++n) {
-      if (a[n][n] < a[first][first] - kAsGood) continue;
-      double part = 0.0;
-      for (int k = 0; k < 4; ++k) part += wanted[k] * vectors[k][n];
-      for (int k = 0; k < 4; ++k) to[k] += part * vectors[k][n];
-      length += part * part;
-    }
-    length = squareRoot(length);
-    if (!(length > kHasPart)) return false;
-    for (int k = 0; k < 4; ++k) to[k] /= length;
-    return true;
-  };
-  double found[4];
-  const bool chosen = project(q, found) || project(fixed, found);
-  for (int k = 0; k < 4; ++k) q[k] = chosen ? found[k] : vectors[k][first];
-}
-
-/// Repairs the rotations of those tets that have lost their maximum.
-template <class S, int W>
-TETSKIN_NOINLINE void findRotations(const WideMatrix<S, W>& f, const Lanes<S, W>& lost, Quaternions<S, W>& q) {
-  S from[9][W], to[4][W], which[W];
-  for (int k = 0; k < 9; ++k) put<S, W>(f.at[k], from[k]);
-  put<S, W>(q.w, to[0]), put<S, W>(q.x, to[1]), put<S, W>(q.y, to[2]), put<S, W>(q.z, to[3]);
-  put<S, W>(lost, which);
-  for (int i = 0; i < W; ++i) {
-    if (!(which[i] > S(0))) continue;
-    double gradient[9], found[4];
-    for (int k = 0; k < 9; ++k) gradient[k] = static_cast<double>(from[k][i]);
-    for (int k = 0; k < 4; ++k) found[k] = static_cast<double>(to[k][i]);
-    findRotation(gradient, found);
-    for (int k = 0; k < 4; ++k) to[k][i] = static_cast<S>(found[k]);
-  }
-  q = {wide<S, W>(to[0]), wide<S, W>(to[1]), wide<S, W>(to[2]), wide<S, W>(to[3])};
-}
-
-/// The rotations that maximise tr(R^T F), starting from those of the step before; s becomes R^T F. As a quadratic form
-/// of R's quaternion it has no other maxima, but it has saddle points from which steps hardly lead away: a tet that has
-/// been rotated by 180 degrees begins at one.
-template <class S, int W>
-TETSKIN_INLINE void turnToMaximum(const WideMatrix<S, W>& f, Quaternions<S, W>& q, WideMatrix<S, W>& r,
-                                  WideMatrix<S, W>& s) {
-  const auto follow = [&] {
-    r = rotationOf<S, W>(q);
-    s = transposedProduct<S, W>(r, f);
-  };
-  follow();
-  RotationStep<S, W> step{};
-  bool turning = true;
-  for (int k = 0; k < kMaxSteps && turning; ++k) {
-    step = turnAlong<S, W>(q, s);
-    follow();
-    turning = anyAbove<S, W>(step.squaredAngle, kLastStep<S>);
-  }
-  if (!turning && !anyAbove<S, W>(step.unsafe, S(0.5))) return;
-  const Lanes<S, W> stillTurning = (step.squaredAngle > kLastStep<S>) ? all<S, W>(1) : Lanes<S, W>{};
-  const Lanes<S, W> lost = larger(atNoMaximum<S, W>(s), stillTurning);
-  if (!anyAbove<S, W>(lost, S(0.5))) return;
-  findRotations<S, W>(f, lost, q);
-  follow();
-}
 
 template <class S, int W>
 TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const TetPack<S>& pack, const S* points, int lane) {
@@ -254,113 +30,52 @@ TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const TetPack<S>& pack, cons
 
 /// R (m g_a) for corners 1 to 3, and for corner 0 the value that makes the sum 0.
 template <class S, int W, class Carried>
-TETSKIN_INLINE void putCorners(const TetPack<S>& pack, int lane, const Lanes<S, W>& fourth, S* corners,
-                               Carried&& carried) {
+TETSKIN_INLINE void putCorners(const TetPack<S>& pack, int lane, S* corners, Carried&& carried) {
   using V = Lanes<S, W>;
   WideVector<S, W> first{V{}, V{}, V{}};
   for (int a = 0; a < 3; ++a) {
     const S* g = pack.gradients[3 * a] + lane;
     const WideVector<S, W> v = carried(wide<S, W>(g), wide<S, W>(g + kGroup), wide<S, W>(g + 2 * kGroup));
     first = {first.x - v.x, first.y - v.y, first.z - v.z};
-    putPoints<S, W>(WidePoints<S, W>{v.x, v.y, v.z, fourth}, corners + 4 * (a + 1), kCorners);
+    putPoints<S, W>(v, corners + 4 * (a + 1), kCorners<TetPack<S>>);
   }
-  putPoints<S, W>(WidePoints<S, W>{first.x, first.y, first.z, fourth}, corners, kCorners);
+  putPoints<S, W>(first, corners, kCorners<TetPack<S>>);
 }
 
 template <class S, int W>
-TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S, W>& x, const Lanes<S, W>& y,
-                                        const Lanes<S, W>& z) {
-  return {r.at[0] * x + r.at[1] * y + r.at[2] * z, r.at[3] * x + r.at[4] * y + r.at[5] * z,
-          r.at[6] * x + r.at[7] * y + r.at[8] * z};
-}
-
-/// Adds the corners of W tets to the points of their nodes, tet by tet.
-template <class S, int W>
-TETSKIN_INLINE void addCorners(const TetPack<S>& pack, int lane, const S* corners, S* sums) {
-  using V = Lanes<S, 4>;
-  for (int i = 0; i < W; ++i) {
-    for (int a = 0; a < 4; ++a) {
-      S* const to = sums + 4 * static_cast<std::size_t>(pack.nodes[a][lane + i]);
-      V force, sum;
-      ::memcpy(&force, corners + kCorners * static_cast<std::size_t>(i) + 4 * a, sizeof force);
-      ::memcpy(&sum, to, sizeof sum);
-      sum += force;
-      ::memcpy(to, &sum, sizeof sum);
-    }
-  }
-}
-
-template <class S, int W>
-TetFindings<S> forces(const TetWork<S>& work, bool withEnergy) {
+TetFindings<S> forces(const TetWork<S, TetPack<S>>& work, bool withEnergy) {
   using V = Lanes<S, W>;
-  alignas(64) S own[kCorners * W];
-  V maxTurned{}, turned{};
-  double energy = 0.0;
+  constexpr std::size_t kScalars = kCorners<TetPack<S>>;
+  alignas(64) S own[kScalars * W];
+  WideFindings<S, W> findings;
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
-      const WideMatrix<S, W> f = deformationGradient<S, W>(pack, work.points, lane);
-      S* const rotations = work.rotations + 4 * kGroup * p + lane;
-      Quaternions<S, W> q = quaternions<S, W>(rotations);
-      WideMatrix<S, W> r, s;
-      turnToMaximum<S, W>(f, q, r, s);
-      put<S, W>(q.w, rotations);
-      put<S, W>(q.x, rotations + kGroup);
-      put<S, W>(q.y, rotations + 2 * kGroup);
-      put<S, W>(q.z, rotations + 3 * kGroup);
-      const Quaternions<S, W> before = quaternions<S, W>(work.assembled + 4 * kGroup * p + lane);
-      const V turn = squaredDifference<S, W>(q, before);
-      maxTurned = larger(turn, maxTurned);
-      turned += turn;
-
-      const V e0 = s.at[0] - S(1), e4 = s.at[4] - S(1), e8 = s.at[8] - S(1);
-      const V e1 = S(0.5) * (s.at[1] + s.at[3]), e2 = S(0.5) * (s.at[2] + s.at[6]), e5 = S(0.5) * (s.at[5] + s.at[7]);
-      const V shear = wide<S, W>(pack.shear + lane), trace = e0 + e4 + e8;
-      const V pressure = wide<S, W>(pack.bulk + lane) * trace;
-      const V s0 = shear * e0 + pressure, s4 = shear * e4 + pressure, s8 = shear * e8 + pressure;
-      const V s1 = shear * e1, s2 = shear * e2, s5 = shear * e5;
-      S* const corners = work.sums ? own : work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane));
-      putCorners<S, W>(pack, lane, V{}, corners, [&](const V& gx, const V& gy, const V& gz) {
-        const WideVector<S, W> v =
-            rotated<S, W>(r, s0 * gx + s1 * gy + s2 * gz, s1 * gx + s4 * gy + s5 * gz, s2 * gx + s5 * gy + s8 * gz);
+      const std::size_t at = 4 * kGroup * p + static_cast<std::size_t>(lane);
+      const RotatedStress<S, W> stress = rotatedStress<S, W>(
+          deformationGradient<S, W>(pack, work.points, lane), work.rotations + at, work.assembled + at,
+          wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
+      S* const corners = work.sums ? own : work.corners + kScalars * (kGroup * p + static_cast<std::size_t>(lane));
+      putCorners<S, W>(pack, lane, corners, [&](const V& gx, const V& gy, const V& gz) {
+        const WideVector<S, W> v = stress(gx, gy, gz);
         return WideVector<S, W>{-v.x, -v.y, -v.z};
       });
-      if (work.sums) addCorners<S, W>(pack, lane, own, work.sums);
-      if (withEnergy) {
-        const V squares = e0 * e0 + e4 * e4 + e8 * e8 + S(2) * (e1 * e1 + e2 * e2 + e5 * e5);
-        energy += 0.5 * static_cast<double>(laneSum<S, W>(shear * squares + pressure * trace));
-      }
+      if (work.sums) addToNodes<S, W>(pack, lane, own, work.sums);
     }
   }
-  return {largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)), energy};
-}
-
-/// Volume over that at rest, below which a tet counts as flat. Under its own weight or in an impact no body is flat;
-/// one that is squashed by ten times what it can carry is.
-template <class S>
-constexpr S kFlat = S(0.1);
-
-template <class S, int W>
-TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S>& work, const TetPack<S>& pack, int lane) {
-  if (!(work.flatAlpha > work.alpha)) return all<S, W>(work.alpha);
-  const WideMatrix<S, W> f = deformationGradient<S, W>(pack, work.points, lane);
-  const auto* a = f.at;
-  const Lanes<S, W> ratio =
-      a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
-  return ratio < kFlat<S> ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
+  return findings.all();
 }
 
 template <class S, int W>
-void rotatedGradients(const TetWork<S>& work) {
+void rotatedGradients(const TetWork<S, TetPack<S>>& work) {
   using V = Lanes<S, W>;
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
       const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
-      const V mu = S(0.5) * wide<S, W>(pack.shear + lane),
-              factor = squareRoots<S, W>(alphaOf<S, W>(work, pack, lane) * mu);
-      const V ratio = wide<S, W>(pack.bulk + lane) / (mu > S(0) ? mu : all<S, W>(1));
-      putCorners<S, W>(pack, lane, ratio, work.corners + kCorners * (kGroup * p + static_cast<std::size_t>(lane)),
+      const V alpha = alphaOf<S, W>(work, [&] { return deformationGradient<S, W>(pack, work.points, lane); });
+      const V mu = S(0.5) * wide<S, W>(pack.shear + lane), factor = squareRoots<S, W>(alpha * mu);
+      putCorners<S, W>(pack, lane, work.corners + kCorners<TetPack<S>> * (kGroup * p + static_cast<std::size_t>(lane)),
                        [&](const V& gx, const V& gy, const V& gz) {
                          return rotated<S, W>(r, factor * gx, factor * gy, factor * gz);
                        });

@@ -35,8 +35,7 @@ void invertSymmetric(const S block[6], S out[6]) {
 }  // namespace
 
 template <class S>
-BlockMatrix<S>::BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std::size_t noTet)
-    : pattern_(blockPattern(nodes, tets, noTet)) {
+BlockMatrix<S>::BlockMatrix(std::size_t nodes, const RestTets& rest) : pattern_(blockPattern(nodes, rest)) {
   const std::size_t chunks = pattern_.chunkCount(), slots = pattern_.slotCount();
   masses_.assign(slots, S(0));
   couplingAt_.assign(pattern_.neighbours.size(), 0);
@@ -126,12 +125,13 @@ double BlockMatrix<S>::summed() const {
 }
 
 template <class S>
-void BlockMatrix<S>::assemble(const S* corners, ParallelFor* threads) {
+void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads) {
   assert(corners || pattern_.neighbours.empty());
   const auto& table = kernels::elasticInUse<S>();
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.corners = corners;
+    part.ratio = ratio;
     part.minMass = kMinMass<S>;
     part.diagonal = freeDiagonal_.data();
     part.inverse = freeInverse_.data();

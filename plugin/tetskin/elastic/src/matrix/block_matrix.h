@@ -7,10 +7,10 @@
 // once: see elastic_kernels.h.
 #pragma once
 
-#include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
+#include <tetskin/elastic/src/tets/rest_tets.h>
 
 #include <cassert>
 #include <cstdint>
@@ -42,13 +42,14 @@ struct BlockPattern {
   std::size_t taskCount() const { return tasks.size() - 1; }
 };
 
-/// Corners of tet t are 4 t to 4 t + 3; those of tet `noTet` are 0. Cost O(T).
-BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::size_t noTet);
+/// rest  whose corners are the terms
+/// Cost  O(T)
+BlockPattern blockPattern(std::size_t nodes, const RestTets& rest);
 
 template <class S>
 class TETSKIN_ELASTIC_API BlockMatrix {
  public:
-  BlockMatrix(std::size_t nodes, const std::vector<Tet>& tets, std::size_t noTet);
+  BlockMatrix(std::size_t nodes, const RestTets& rest);
 
   const BlockPattern& pattern() const { return pattern_; }
   std::size_t nodeCount() const { return pattern_.slotOf.size(); }
@@ -73,8 +74,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void setMass(std::size_t node, S mass) { masses_[slotOf(node)] = mass; }
   double totalMass() const;
 
-  /// corners  4 points per tet, see ElasticTable::rotatedGradients; null: without tets, so that A = M
-  void assemble(const S* corners, ParallelFor* threads);
+  /// corners  see CorotatedTets::cornersForMatrix; null: without tets, so that A = M
+  /// ratio    lambda / mu
+  void assemble(const S* corners, S ratio, ParallelFor* threads);
 
   /// Fixes a node in all directions, in one direction, or in all but one.
   void fix(std::size_t node);

@@ -37,16 +37,27 @@ struct Pair {
   Term term;
 };
 
-std::vector<Row> rowsOf(std::size_t nodes, const std::vector<Tet>& tets) {
-  assert(tets.size() < 0xFFFFFFFFu / 4);
+/// Calls visit(node, pair) for all ordered pairs of nodes of a tet.
+/// corner  that of the first node
+template <std::size_t N, class Visit>
+void visitPairs(const std::array<int, N>& nodes, std::size_t corner, Visit&& visit) {
+  for (std::size_t a = 0; a < N; ++a) {
+    for (std::size_t b = 0; b < N; ++b) {
+      if (a == b) continue;
+      const Term term{static_cast<std::uint32_t>(corner + a), static_cast<std::uint32_t>(corner + b)};
+      visit(static_cast<std::size_t>(nodes[a]), Pair{static_cast<std::uint32_t>(nodes[b]), term});
+    }
+  }
+}
+
+std::vector<Row> rowsOf(std::size_t nodes, const RestTets& rest) {
+  assert(rest.cornerCount() < 0xFFFFFFFFu);
   const Lists<Pair> pairs = packLists<Pair>(nodes, [&](auto&& visit) {
-    for (std::uint32_t t = 0; t < tets.size(); ++t) {
-      for (std::uint32_t a = 0; a < 4; ++a) {
-        for (std::uint32_t b = 0; b < 4; ++b) {
-          if (a == b) continue;
-          visit(static_cast<std::size_t>(tets[t][a]),
-                Pair{static_cast<std::uint32_t>(tets[t][b]), {4 * t + a, 4 * t + b}});
-        }
+    for (std::size_t t = 0; t < rest.count(); ++t) visitPairs(rest.tets[t], 4 * t, visit);
+    std::size_t corner = rest.firstQuadraticCorner();
+    for (const RestQuadraticTet& tet : rest.quadratic) {
+      for (std::size_t point = 0; point < kQuadraticPoints; ++point, corner += kQuadraticNodes) {
+        visitPairs(tet.nodes, corner, visit);
       }
     }
   });
@@ -181,8 +192,8 @@ std::size_t lowerCount(const Row& row, std::uint32_t level, const std::vector<st
 class PatternMaker {
  public:
   PatternMaker(BlockPattern& pattern, const std::vector<Row>& rows, const std::vector<std::uint32_t>& levels,
-               std::size_t noTet)
-      : pattern_(pattern), rows_(rows), levels_(levels), none_(static_cast<std::uint32_t>(4 * noTet)) {
+               std::size_t zeroCorner)
+      : pattern_(pattern), rows_(rows), levels_(levels), none_(static_cast<std::uint32_t>(zeroCorner)) {
     pattern_.starts.push_back(0);
     pattern_.sums.push_back(0);
   }
@@ -237,9 +248,8 @@ class PatternMaker {
 
 }  // namespace
 
-BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::size_t noTet) {
-  assert(noTet >= tets.size());
-  const std::vector<Row> rows = rowsOf(nodes, tets);
+BlockPattern blockPattern(std::size_t nodes, const RestTets& rest) {
+  const std::vector<Row> rows = rowsOf(nodes, rest);
   const std::vector<std::uint32_t> colours = coloursOf(rows);
   const std::uint32_t colourCount = colours.empty() ? 0 : *std::max_element(colours.begin(), colours.end()) + 1;
   const Division division = divide(rows);
@@ -266,7 +276,7 @@ BlockPattern blockPattern(std::size_t nodes, const std::vector<Tet>& tets, std::
     slot = (slot + kGroup - 1) / kGroup * kGroup;
   }
 
-  PatternMaker maker(pattern, rows, levels, noTet);
+  PatternMaker maker(pattern, rows, levels, rest.zeroCorner());
   std::uint32_t chunk = 0;
   pattern.rangeChunks.push_back(0);
   pattern.tasks.push_back(0);

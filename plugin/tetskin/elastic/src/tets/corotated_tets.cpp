@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/base/lists.h>
-#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <algorithm>
@@ -14,77 +13,130 @@ namespace {
 
 using kernels::kGroup;
 
-/// Handing work to another thread costs some microseconds, in which this many packs, or nodes, are processed.
-constexpr std::size_t kPacksPerTask = 64, kSlotsPerTask = 256;
+/// Handing work to another thread costs some microseconds, in which this many points of packs, or nodes, are processed.
+constexpr std::size_t kPointsPerTask = 64, kSlotsPerTask = 256;
+
+template <class Pack>
+constexpr std::size_t kPacksPerTask = kPointsPerTask / Pack::kPoints;
 
 std::size_t tasksFor(std::size_t items, std::size_t perTask) {
-  return std::max<std::size_t>(1, (items + perTask - 1) / perTask);
+  return (items + perTask - 1) / perTask;
 }
 
 }  // namespace
 
-RestTets restTets(const TetMesh& cage) {
-  RestTets rest;
-  rest.tets = cage.tets;
-  for (const Tet& tet : cage.tets) {
-    const TetCorners corners = cornersOf(cage, tet);
-    const std::array<Eigen::Vector3d, 4> gradients = BarycentricMap(corners).gradients();
-    std::array<double, 9>& g = rest.gradients.emplace_back();
-    for (std::size_t k = 0; k < 9; ++k) g[k] = gradients[1 + k / 3][static_cast<Eigen::Index>(k % 3)];
-    rest.volumes.push_back(std::abs(signedVolume(corners)));
-  }
-  return rest;
-}
-
 template <class S>
 CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>& slotOf, std::size_t slots)
     : rest_(std::move(rest)), slots_(slots) {
-  assert(count() > 0 && rest_.gradients.size() == count() && rest_.volumes.size() == count());
-  const std::size_t packs = noTet(count()) / kGroup;
-  packs_.resize(packs);
-  rotations_.assign(4 * kGroup * packs, S(0));
-  corners_.assign(kernels::kCorners * (kGroup * packs + 1), S(0));
-  for (std::size_t k = 0; k < kGroup * packs; ++k) {
-    kernels::TetPack<S>& pack = packs_[k / kGroup];
-    const std::size_t lane = k % kGroup, tet = std::min(k, count() - 1);
+  assert(!rest_.empty() && rest_.gradients.size() == rest_.count() && rest_.volumes.size() == rest_.count());
+  makePacks(rest_.count(), 0, linear_);
+  makePacks(rest_.quadratic.size(), rest_.firstQuadraticCorner(), quadratic_);
+  corners_.assign(4 * rest_.cornerCount(), S(0));
+  findings_.resize(linear_.tasks + quadratic_.tasks);
+  fillLinear(slotOf);
+  fillQuadratic(slotOf);
+  listCorners(slotOf);
+}
+
+template <class S>
+template <class Pack>
+void CorotatedTets<S>::makePacks(std::size_t tets, std::size_t firstCorner, Packed<Pack>& packed) {
+  const std::size_t packs = RestTets::padded(tets) / kGroup;
+  packed.packs.resize(packs);
+  packed.rotations.assign(4 * kGroup * Pack::kPoints * packs, S(0));
+  for (std::size_t k = 0; k < packed.rotations.size(); k += 4 * kGroup) {
+    std::fill_n(&packed.rotations[k], kGroup, S(1));
+  }
+  packed.assembled = packed.rotations;
+  packed.firstCorner = firstCorner;
+  packed.tasks = tasksFor(packs, kPacksPerTask<Pack>);
+}
+
+/// The last tet is repeated, without stiffness, in what is left of the last pack.
+template <class S>
+void CorotatedTets<S>::fillLinear(const std::vector<std::uint32_t>& slotOf) {
+  for (std::size_t k = 0; k < kGroup * linear_.packs.size(); ++k) {
+    kernels::TetPack<S>& pack = linear_.packs[k / kGroup];
+    const std::size_t lane = k % kGroup, tet = std::min(k, rest_.count() - 1);
     for (std::size_t i = 0; i < 9; ++i) pack.gradients[i][lane] = static_cast<S>(rest_.gradients[tet][i]);
     for (std::size_t i = 0; i < 4; ++i) pack.nodes[i][lane] = slotOf[static_cast<std::size_t>(rest_.tets[tet][i])];
     pack.shear[lane] = pack.bulk[lane] = S(0);
-    rotations_[4 * kGroup * (k / kGroup) + lane] = S(1);
   }
-  assembled_ = rotations_;
-  findings_.resize(tasksFor(packs, kPacksPerTask));
+}
 
-  Lists<> corners = packLists(slots, [&](auto&& visit) {
-    for (std::uint32_t t = 0; t < count(); ++t) {
-      for (std::uint32_t a = 0; a < 4; ++a) visit(slotOf[static_cast<std::size_t>(rest_.tets[t][a])], 4 * t + a);
+template <class S>
+void CorotatedTets<S>::fillQuadratic(const std::vector<std::uint32_t>& slotOf) {
+  for (std::size_t k = 0; k < kGroup * quadratic_.packs.size(); ++k) {
+    kernels::QuadraticPack<S>& pack = quadratic_.packs[k / kGroup];
+    const std::size_t lane = k % kGroup;
+    const RestQuadraticTet& tet = rest_.quadratic[std::min(k, rest_.quadratic.size() - 1)];
+    for (std::size_t i = 0; i < tet.gradients.size(); ++i) pack.gradients[i][lane] = static_cast<S>(tet.gradients[i]);
+    for (std::size_t i = 0; i < tet.points.size(); ++i) pack.points[i][lane] = static_cast<S>(tet.points[i]);
+    for (std::size_t i = 0; i < tet.nodes.size(); ++i) {
+      pack.nodes[i][lane] = slotOf[static_cast<std::size_t>(tet.nodes[i])];
+    }
+    pack.shear[lane] = pack.bulk[lane] = S(0);
+  }
+}
+
+/// In the order in which one thread adds the forces.
+template <class S>
+void CorotatedTets<S>::listCorners(const std::vector<std::uint32_t>& slotOf) {
+  Lists<> corners = packLists(slots_, [&](auto&& visit) {
+    for (std::size_t t = 0; t < rest_.count(); ++t) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        visit(slotOf[static_cast<std::size_t>(rest_.tets[t][a])], static_cast<std::uint32_t>(4 * t + a));
+      }
+    }
+    for (std::size_t t = 0; t < rest_.quadratic.size(); ++t) {
+      const std::size_t first = quadratic_.firstCorner + kQuadraticPoints * kQuadraticNodes * t;
+      for (std::size_t a = 0; a < kQuadraticNodes; ++a) {
+        visit(slotOf[static_cast<std::size_t>(rest_.quadratic[t].nodes[a])], static_cast<std::uint32_t>(first + a));
+      }
     }
   });
   cornerStarts_ = std::move(corners.starts);
   cornersAt_ = std::move(corners.values);
-  assert(cornersAt_.size() == 4 * count());
+  assert(cornersAt_.size() == 4 * rest_.count() + kQuadraticNodes * rest_.quadratic.size());
 }
 
 template <class S>
-void CorotatedTets<S>::setMaterial(std::size_t tet, const Lame& lame) {
-  assert(tet < count() && lame.mu > 0.0 && lame.lambda >= 0.0);
-  kernels::TetPack<S>& pack = packs_[tet / kGroup];
-  pack.shear[tet % kGroup] = static_cast<S>(2.0 * lame.mu * rest_.volumes[tet]);
-  pack.bulk[tet % kGroup] = static_cast<S>(lame.lambda * rest_.volumes[tet]);
+void CorotatedTets<S>::setMaterial(const Lame& lame) {
+  assert(lame.mu > 0.0 && lame.lambda >= 0.0);
+  ratio_ = static_cast<S>(lame.lambda / lame.mu);
+  const auto set = [&](auto& pack, std::size_t lane, double volume) {
+    pack.shear[lane] = static_cast<S>(2.0 * lame.mu * volume);
+    pack.bulk[lane] = static_cast<S>(lame.lambda * volume);
+  };
+  for (std::size_t t = 0; t < rest_.count(); ++t) set(linear_.packs[t / kGroup], t % kGroup, rest_.volumes[t]);
+  for (std::size_t t = 0; t < rest_.quadratic.size(); ++t) {
+    set(quadratic_.packs[t / kGroup], t % kGroup, rest_.quadratic[t].volume / kQuadraticPoints);
+  }
+}
+
+template <class S>
+template <class Pack>
+kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size_t task) {
+  kernels::TetWork<S, Pack> work;
+  work.firstPack = task * kPacksPerTask<Pack>;
+  work.lastPack = std::min(packed.packs.size(), work.firstPack + kPacksPerTask<Pack>);
+  work.packs = packed.packs.data();
+  work.rotations = packed.rotations.data();
+  work.assembled = packed.assembled.data();
+  work.corners = corners_.data() + 4 * packed.firstCorner;
+  return work;
 }
 
 template <class S>
 template <class Kernel>
 void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
+  const auto& table = kernels::elasticInUse<S>();
   runTasks(threads, findings_.size(), [&](std::size_t task) {
-    kernels::TetWork<S> work;
-    work.firstPack = task * kPacksPerTask;
-    work.lastPack = std::min(packs_.size(), work.firstPack + kPacksPerTask);
-    work.packs = packs_.data();
-    work.rotations = rotations_.data();
-    work.assembled = assembled_.data();
-    work.corners = corners_.data();
-    kernel(work, task);
+    if (task < linear_.tasks) {
+      kernel(work(linear_, task), table.linear, task);
+    } else {
+      kernel(work(quadratic_, task - linear_.tasks), table.quadratic, task);
+    }
   });
 }
 
@@ -92,11 +144,10 @@ template <class S>
 double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads) {
   assert(points);
   if (!energy) points_ = points;  // a query of the energy changes nothing
-  const auto& table = kernels::elasticInUse<S>();
-  byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t task) {
+  byPacks(threads, [&](auto work, const auto& loops, std::size_t task) {
     work.points = points;
     work.sums = sums;
-    findings_[task] = table.forces(work, energy);
+    findings_[task] = loops.forces(work, energy);
   });
   maxTurned_ = S(0);
   turned_ = 0.0;
@@ -120,7 +171,7 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
   }
   const auto& table = kernels::elasticInUse<S>();
   cornerForces(points, nullptr, false, threads);
-  runTasks(threads, tasksFor(slots_, kSlotsPerTask), [&](std::size_t task) {
+  runTasks(threads, std::max<std::size_t>(1, tasksFor(slots_, kSlotsPerTask)), [&](std::size_t task) {
     kernels::SumWork<S> work;
     work.firstSlot = task * kSlotsPerTask;
     work.lastSlot = std::min(slots_, work.firstSlot + kSlotsPerTask);
@@ -135,11 +186,12 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
 template <class S>
 double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
   // A query changes nothing, so that the next step finds its rotations starting from the same ones.
-  const AlignedVector<S> rotations = rotations_;
+  const AlignedVector<S> linear = linear_.rotations, quadratic = quadratic_.rotations;
   const S maxTurned = maxTurned_;
   const double turned = turned_;
   const double energy = cornerForces(points, nullptr, true, threads);
-  rotations_ = rotations;
+  linear_.rotations = linear;
+  quadratic_.rotations = quadratic;
   maxTurned_ = maxTurned;
   turned_ = turned;
   return energy;
@@ -147,7 +199,8 @@ double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
 
 template <class S>
 double CorotatedTets<S>::meanTurn() const {
-  return std::sqrt(4.0 * turned_ / static_cast<double>(noTet(count())));
+  const std::size_t scalars = linear_.rotations.size() + quadratic_.rotations.size();  // four per rotation
+  return std::sqrt(16.0 * turned_ / static_cast<double>(scalars));
 }
 
 template <class S>
@@ -158,13 +211,13 @@ double CorotatedTets<S>::maxTurn() const {
 template <class S>
 const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha) {
   assert(points_ || !(flatAlpha > alpha));
-  const auto& table = kernels::elasticInUse<S>();
-  assembled_ = rotations_;
-  byPacks(threads, [&](kernels::TetWork<S>& work, std::size_t) {
+  linear_.assembled = linear_.rotations;
+  quadratic_.assembled = quadratic_.rotations;
+  byPacks(threads, [&](auto work, const auto& loops, std::size_t) {
     work.alpha = alpha;
     work.flatAlpha = flatAlpha;
     work.points = points_;
-    table.rotatedGradients(work);
+    loops.rotatedGradients(work);
   });
   return corners_.data();
 }

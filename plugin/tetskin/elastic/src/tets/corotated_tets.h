@@ -1,75 +1,81 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Elastic forces of a body's tets, each with its own rotation and stiffness: see tet_loops.h.
+// Elastic forces of a body's tets, with a rotation for each linear one, and for each of four points of quadratic ones:
+// see corotation.h.
 #pragma once
 
-#include <tetskin/core/mesh.h>
 #include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/base/aligned.h>
-#include <tetskin/elastic/src/base/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/material.h>
+#include <tetskin/elastic/src/tets/rest_tets.h>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace tetskin::elastic_detail {
 
-/// The tets at rest. None is flat.
-struct RestTets {
-  std::vector<Tet> tets;
-  std::vector<std::array<double, 9>> gradients;  ///< by rows: of the weights of nodes 1, 2 and 3, rest space
-  std::vector<double> volumes;                   ///< above 0
-
-  std::size_t count() const { return tets.size(); }
-};
-
-/// The tets of a cage without flat ones. Cost O(T).
-TETSKIN_ELASTIC_API RestTets restTets(const TetMesh& cage);
-
 template <class S>
 class TETSKIN_ELASTIC_API CorotatedTets {
  public:
+  /// rest    not empty
   /// slotOf  by node: the index of its point
   CorotatedTets(RestTets rest, const std::vector<std::uint32_t>& slotOf, std::size_t slots);
 
-  std::size_t count() const { return rest_.count(); }
   const RestTets& rest() const { return rest_; }
-  /// Index of the tet whose corners are 0: it follows the padding of the last pack, whose corners are 0, too.
-  static std::size_t noTet(std::size_t tets) {
-    return (tets + kernels::kGroup - 1) / kernels::kGroup * kernels::kGroup;
-  }
 
-  void setMaterial(std::size_t tet, const Lame& lame);
+  void setMaterial(const Lame& lame);
 
   /// Elastic forces at `points`, both 4 scalars per slot; updates the tets' rotations.
   void forces(const S* points, S* out, ParallelFor* threads);
   /// The elastic energy at `points`.
   double energy(const S* points, ParallelFor* threads);
 
-  /// The rotation of tets since `cornersForMatrix`, in radians: root mean square, and maximum.
+  /// The rotation of tets since `cornersForMatrix`, in radians: root mean square over all rotations, and maximum.
   double meanTurn() const;
   double maxTurn() const;
   /// The corners for BlockMatrix::assemble, with the current rotations.
-  /// flatAlpha  if larger than `alpha`: its value for tets that were flat or inverted in the last `forces`, whose
-  ///            points must still be there
+  /// flatAlpha  if larger than `alpha`: its value where tets were flat or inverted in the last `forces`, whose points
+  ///            must still be there
   const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
+  /// lambda / mu, for BlockMatrix::assemble.
+  S ratio() const { return ratio_; }
 
  private:
+  /// The tets of one kind, packed, with their rotations.
+  template <class Pack>
+  struct Packed {
+    AlignedVector<Pack> packs;
+    AlignedVector<S> rotations, assembled;  ///< by pack and point
+    std::size_t firstCorner = 0;
+    std::size_t tasks = 0;
+  };
+  using Linear = Packed<kernels::TetPack<S>>;
+  using Quadratic = Packed<kernels::QuadraticPack<S>>;
+
+  template <class Pack>
+  void makePacks(std::size_t tets, std::size_t firstCorner, Packed<Pack>& packed);
+  void fillLinear(const std::vector<std::uint32_t>& slotOf);
+  void fillQuadratic(const std::vector<std::uint32_t>& slotOf);
+  void listCorners(const std::vector<std::uint32_t>& slotOf);
+  template <class Pack>
+  kernels::TetWork<S, Pack> work(Packed<Pack>& packed, std::size_t task);
+  /// Calls kernel(work, its loops, number of the task) for all packs.
   template <class Kernel>
   void byPacks(ParallelFor* threads, Kernel&& kernel);
   /// sums  see TetWork
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
-  AlignedVector<kernels::TetPack<S>> packs_;
-  AlignedVector<S> rotations_, assembled_, corners_;
-  std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot
+  Linear linear_;
+  Quadratic quadratic_;
+  AlignedVector<S> corners_;                             ///< see RestTets
+  std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot: those that get forces
   std::size_t slots_ = 0;
   const S* points_ = nullptr;  ///< of the last `forces`
-  S maxTurned_ = 0;            ///< squared difference of quaternions
-  double turned_ = 0.0;        ///< sum of the squared differences, each a quarter of the squared angle
+  S ratio_ = 0;
+  S maxTurned_ = 0;      ///< squared difference of quaternions
+  double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task
 };
 

@@ -7,7 +7,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
 namespace tetskin::elastic_detail {
 
@@ -67,17 +66,6 @@ Status checkStiffness(double youngsModulus, double damping, double mass, double 
                 "in %s: at most %.3g",
                 youngsModulus, damping, mass, volume, sizeof(Scalar) == sizeof(float) ? "float" : "double", maximum);
   return {StatusCode::InvalidOption, text};
-}
-
-/// stiffnessScale  stiffness factor by tet, or empty: 1
-inline std::vector<Lame> lameOfTets(const Lame& lame, std::size_t tets, const std::vector<double>& stiffnessScale) {
-  assert(stiffnessScale.empty() || stiffnessScale.size() == tets);
-  std::vector<Lame> scaled(tets, lame);
-  for (std::size_t t = 0; t < stiffnessScale.size(); ++t) {
-    scaled[t].mu *= stiffnessScale[t];
-    scaled[t].lambda *= stiffnessScale[t];
-  }
-  return scaled;
 }
 
 }  // namespace tetskin::elastic_detail

@@ -4,7 +4,7 @@
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/elastic/src/tets/rest_quadratic_tets.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cassert>
 #include <cmath>
 
@@ -33,26 +33,38 @@ struct Moments {
   }
 };
 
-/// The material of one of the eight tets.
-/// fine  kFineTets volume fractions in 255ths, or null: full
-void addMaterial(const TetCorners& corners, double factor, const std::uint8_t* fine, Moments& moments) {
-  if (!fine) return moments.add(corners, factor);
+/// The same in the coordinates of a map.
+TetCorners mapped(TetCorners corners, const BarycentricMap& map) {
+  for (Eigen::Vector3d& p : corners) p = map(p).tail<3>();
+  return corners;
+}
+
+/// The material of one of the eight tets, in the quadratic one's weights.
+/// corners  rest space: there it is decided how a tet is cut into cells
+/// fine     kFineTets volume fractions in 255ths, or null: full
+void addMaterial(const TetCorners& corners, const BarycentricMap& map, double factor, const std::uint8_t* fine,
+                 Moments& moments) {
+  if (!fine) return moments.add(mapped(corners, map), factor);
   for (const TetCorners& piece : refinedTet(corners)) {
-    for (const TetCorners& cell : refinedTet(piece)) moments.add(cell, factor * *fine++ / 255.0);
+    for (const TetCorners& cell : refinedTet(piece)) moments.add(mapped(cell, map), factor * *fine++ / 255.0);
   }
 }
 
-/// Four points of equal weight with these moments: the centroid plus the columns of a root of the covariance, times the
-/// corners of a regular tet.
+/// Four points of equal weight with these moments: the centroid plus twice the columns of the root of the covariance of
+/// all four weights. That root is symmetric, so that no corner is preferred: the order of a tet's nodes does not
+/// matter.
 std::array<double, 3 * kQuadraticPoints> pointsWith(const Moments& moments) {
-  static const double kCorners[kQuadraticPoints][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   const Eigen::Vector3d centroid = moments.first / moments.volume;
   const Eigen::Matrix3d covariance = moments.second / moments.volume - centroid * centroid.transpose();
-  const Eigen::Matrix3d root = covariance.llt().matrixL();
+  Eigen::Matrix<double, 4, 3> allFour;  // weights by the last three, whose sum with the first is 1
+  allFour << Eigen::RowVector3d::Constant(-1.0), Eigen::Matrix3d::Identity();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> axes(allFour * covariance * allFour.transpose());
+  const Eigen::Vector4d roots = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::Matrix4d root = axes.eigenvectors() * roots.asDiagonal() * axes.eigenvectors().transpose();
   std::array<double, 3 * kQuadraticPoints> points{};
   for (std::size_t q = 0; q < kQuadraticPoints; ++q) {
     Eigen::Map<Eigen::Vector3d> point(&points[3 * q]);
-    point = centroid + root * Eigen::Vector3d::Map(kCorners[q]);
+    point = centroid + 2.0 * root.col(static_cast<Eigen::Index>(q)).tail<3>();
     assert(point.allFinite());
   }
   return points;
@@ -79,14 +91,12 @@ std::vector<RestQuadraticTet> restQuadraticTets(const Cage& cage, const std::vec
     Moments moments;
     double ghost = 0.0;
     for (const int t : tet.tets) {
-      TetCorners part = cornersOf(cage.mesh, cage.mesh.tets[t]);
-      for (Eigen::Vector3d& p : part) p = map(p).tail<3>();
       double factor = given ? stiffnessScale[t] : cage.stiffnessFactor.empty() ? 1.0 : cage.stiffnessFactor[t];
       ghost += kGhost * factor / static_cast<double>(kSubTets);
       const bool fine = !given && !cage.fineVolumeFraction.empty();
       if (!given && !fine && !cage.volumeFraction.empty()) factor *= cage.volumeFraction[t];
-      addMaterial(part, factor, fine ? &cage.fineVolumeFraction[kFineTets * static_cast<std::size_t>(t)] : nullptr,
-                  moments);
+      addMaterial(cornersOf(cage.mesh, cage.mesh.tets[t]), map, factor,
+                  fine ? &cage.fineVolumeFraction[kFineTets * static_cast<std::size_t>(t)] : nullptr, moments);
     }
     if (!given && !cage.volumeFraction.empty()) moments.add(unit, ghost);
     made.points = pointsWith(moments);

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to the kernels: corotated elasticity of W quadratic tets at a time, with a rotation at each of four points.
+// With barycentric weights L_i, their gradients g_i, corners x_i and middles of edges x_ij, the shape functions are
+// L_i (2 L_i - 1) and 4 L_i L_j, so that
+//   H_i = (4 L_i - 1) x_i + 4 sum_{j != i} L_j x_ij,   F = sum_i H_i g_i^T = sum_{k > 0} (H_k - H_0) g_k^T
+#pragma once
+
+#include <tetskin/elastic/src/kernels/corotation.h>
+
+namespace tetskin::kernels::TETSKIN_KERNELS {
+
+/// The node at the middle of the edge of two corners.
+constexpr int kMiddleOf[4][4] = {{0, 4, 5, 6}, {4, 0, 7, 8}, {5, 7, 0, 9}, {6, 8, 9, 0}};
+
+template <class S, int W>
+TETSKIN_INLINE void weightsAt(const QuadraticPack<S>& pack, std::size_t point, int lane, Lanes<S, W> weights[4]) {
+  for (std::size_t k = 0; k < 3; ++k) weights[k + 1] = wide<S, W>(pack.points[3 * point + k] + lane);
+  weights[0] = S(1) - (weights[1] + weights[2] + weights[3]);
+}
+
+/// The positions of the nodes relative to the first one: a sum over all of them would lose the digits of a strain.
+template <class S, int W>
+TETSKIN_INLINE void nodesFromFirst(const QuadraticPack<S>& pack, const S* points, int lane, WideVector<S, W> x[10]) {
+  x[0] = vectorsAt<S, W>(points, pack.nodes[0] + lane);
+  for (int a = 1; a < 10; ++a) {
+    const WideVector<S, W> v = vectorsAt<S, W>(points, pack.nodes[a] + lane);
+    x[a] = {v.x - x[0].x, v.y - x[0].y, v.z - x[0].z};
+  }
+}
+
+/// A quarter of H_i.
+/// x  from the first node
+template <class S, int W>
+TETSKIN_INLINE WideVector<S, W> weightedNodes(const WideVector<S, W> x[10], const Lanes<S, W> weights[4], int i) {
+  using V = Lanes<S, W>;
+  WideVector<S, W> sum{V{}, V{}, V{}};
+  if (i > 0) {
+    const V own = weights[i] - S(0.25);
+    sum = {own * x[i].x, own * x[i].y, own * x[i].z};
+  }
+  for (int j = 0; j < 4; ++j) {
+    if (j == i) continue;
+    const WideVector<S, W>& middle = x[kMiddleOf[i][j]];
+    sum = {sum.x + weights[j] * middle.x, sum.y + weights[j] * middle.y, sum.z + weights[j] * middle.z};
+  }
+  return sum;
+}
+
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const QuadraticPack<S>& pack, int lane,
+                                                    const WideVector<S, W> x[10], const Lanes<S, W> weights[4]) {
+  using V = Lanes<S, W>;
+  const WideVector<S, W> h0 = weightedNodes<S, W>(x, weights, 0);
+  WideMatrix<S, W> f{};
+  for (int k = 0; k < 3; ++k) {
+    const WideVector<S, W> h = weightedNodes<S, W>(x, weights, k + 1);
+    const V from[3] = {S(4) * (h.x - h0.x), S(4) * (h.y - h0.y), S(4) * (h.z - h0.z)};
+    for (int j = 0; j < 3; ++j) {
+      const V g = wide<S, W>(pack.gradients[3 * k + j] + lane);
+      for (int i = 0; i < 3; ++i) f.at[3 * i + j] += from[i] * g;
+    }
+  }
+  return f;
+}
+
+/// Calls visit(node, vector) with the sum over i of c_i times what `carried` makes of g_i, where the gradient of the
+/// node's shape function is the sum of c_i g_i.
+/// carried  linear: gets and returns a vector
+template <class S, int W, class Carried, class Visit>
+TETSKIN_INLINE void byShapeGradients(const QuadraticPack<S>& pack, int lane, const Lanes<S, W> weights[4],
+                                     Carried&& carried, Visit&& visit) {
+  using V = Lanes<S, W>;
+  WideVector<S, W> g[4];
+  g[0] = {V{}, V{}, V{}};
+  for (int k = 0; k < 3; ++k) {
+    const S* from = pack.gradients[3 * k] + lane;
+    g[k + 1] = carried(S(4) * wide<S, W>(from), S(4) * wide<S, W>(from + kGroup), S(4) * wide<S, W>(from + 2 * kGroup));
+    g[0] = {g[0].x - g[k + 1].x, g[0].y - g[k + 1].y, g[0].z - g[k + 1].z};
+  }
+  for (int i = 0; i < 4; ++i) {
+    const V own = weights[i] - S(0.25);
+    visit(i, WideVector<S, W>{own * g[i].x, own * g[i].y, own * g[i].z});
+    for (int j = i + 1; j < 4; ++j) {
+      visit(kMiddleOf[i][j],
+            WideVector<S, W>{weights[i] * g[j].x + weights[j] * g[i].x, weights[i] * g[j].y + weights[j] * g[i].y,
+                             weights[i] * g[j].z + weights[j] * g[i].z});
+    }
+  }
+}
+
+template <class S, int W>
+TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool withEnergy) {
+  using V = Lanes<S, W>;
+  using Pack = QuadraticPack<S>;
+  alignas(64) S own[4 * Pack::kNodes * W];
+  WideFindings<S, W> findings;
+  for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
+    const Pack& pack = work.packs[p];
+    for (int lane = 0; lane < kGroup; lane += W) {
+      WideVector<S, W> x[10], force[10];
+      nodesFromFirst<S, W>(pack, work.points, lane, x);
+      for (WideVector<S, W>& f : force) f = {V{}, V{}, V{}};
+      for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+        V weights[4];
+        weightsAt<S, W>(pack, point, lane, weights);
+        const std::size_t at = 4 * kGroup * (Pack::kPoints * p + point) + static_cast<std::size_t>(lane);
+        const RotatedStress<S, W> stress = rotatedStress<S, W>(
+            deformationGradient<S, W>(pack, lane, x, weights), work.rotations + at, work.assembled + at,
+            wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
+        byShapeGradients<S, W>(pack, lane, weights, stress, [&](int a, const WideVector<S, W>& v) {
+          force[a] = {force[a].x - v.x, force[a].y - v.y, force[a].z - v.z};
+        });
+      }
+      const std::size_t tet = kGroup * p + static_cast<std::size_t>(lane);
+      S* const to = work.sums ? own : work.corners + kCorners<Pack> * tet;
+      const std::size_t apart = work.sums ? 4 * Pack::kNodes : kCorners<Pack>;
+      for (std::size_t a = 0; a < Pack::kNodes; ++a) putPoints<S, W>(force[a], to + 4 * a, apart);
+      if (work.sums) addToNodes<S, W>(pack, lane, own, work.sums);
+    }
+  }
+  return findings.all();
+}
+
+template <class S, int W>
+void quadraticRotatedGradients(const TetWork<S, QuadraticPack<S>>& work) {
+  using V = Lanes<S, W>;
+  using Pack = QuadraticPack<S>;
+  for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
+    const Pack& pack = work.packs[p];
+    for (int lane = 0; lane < kGroup; lane += W) {
+      const V mu = S(0.5) * wide<S, W>(pack.shear + lane);
+      for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+        V weights[4];
+        weightsAt<S, W>(pack, point, lane, weights);
+        const V alpha = alphaOf<S, W>(work, [&] {
+          WideVector<S, W> x[10];
+          nodesFromFirst<S, W>(pack, work.points, lane, x);
+          return deformationGradient<S, W>(pack, lane, x, weights);
+        });
+        const V factor = squareRoots<S, W>(alpha * mu);
+        const std::size_t at = 4 * kGroup * (Pack::kPoints * p + point) + static_cast<std::size_t>(lane);
+        const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + at));
+        S* const corners =
+            work.corners + kCorners<Pack> * (kGroup * p + static_cast<std::size_t>(lane)) + 4 * Pack::kNodes * point;
+        byShapeGradients<S, W>(
+            pack, lane, weights,
+            [&](const V& gx, const V& gy, const V& gz) {
+              return rotated<S, W>(r, factor * gx, factor * gy, factor * gz);
+            },
+            [&](int a, const WideVector<S, W>& v) { putPoints<S, W>(v, corners + 4 * a, kCorners<Pack>); });
+      }
+    }
+  }
+}
+
+}  // namespace tetskin::kernels::TETSKIN_KERNELS

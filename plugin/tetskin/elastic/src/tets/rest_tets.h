@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The tets of a body at rest, linear and quadratic ones, and where each writes its corners for the matrix.
+#pragma once
+
+#include <tetskin/elastic/src/base/elastic_kernels.h>
+#include <tetskin/elastic/src/tets/rest_quadratic_tets.h>
+
+#include <array>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// A body's tets at rest. None is flat. Linear ones are those that are in no quadratic one.
+struct RestTets {
+  std::vector<Tet> tets;
+  std::vector<std::array<double, 9>> gradients;  ///< by rows: of the weights of nodes 1, 2 and 3, rest space
+  std::vector<double> volumes;                   ///< above 0: volume times the factor of the stiffness
+  std::vector<RestQuadraticTet> quadratic;
+
+  std::size_t count() const { return tets.size(); }
+  bool empty() const { return tets.empty() && quadratic.empty(); }
+
+  // Corners are points that the matrix is assembled from: one per linear tet and node, then, after one that is 0, one
+  // per quadratic tet, point and node.
+  static std::size_t padded(std::size_t tets) {
+    return (tets + kernels::kGroup - 1) / kernels::kGroup * kernels::kGroup;
+  }
+  std::size_t zeroCorner() const { return 4 * padded(tets.size()); }
+  std::size_t firstQuadraticCorner() const { return zeroCorner() + 1; }
+  std::size_t cornerCount() const {
+    return firstQuadraticCorner() + kQuadraticPoints * kQuadraticNodes * padded(quadratic.size());
+  }
+};
+
+/// The tets of a cage without flat ones.
+/// quadratic       see `quadraticTets`
+/// stiffnessScale  by tet of the cage, above 0; empty: the cage's own
+/// Cost            O(T); O(64 T) where quadratic tets are filled in part
+TETSKIN_ELASTIC_API RestTets restTets(const Cage& cage, const std::vector<QuadraticTet>& quadratic = {},
+                                      const std::vector<double>& stiffnessScale = {});
+
+}  // namespace tetskin::elastic_detail
