@@ -8,18 +8,13 @@
 
 #include "report/advice.h"
 #include "report/scene_runner.h"
+#include "scenes/statistics.h"
 
 namespace tetskin::report {
 namespace {
 
 /// Of a reference and its coarser levels.
 constexpr int kAllRuns = ReferenceShelf::kLevels;
-
-double rms(const std::vector<double>& values) {
-  double squared = 0.0;
-  for (const double value : values) squared += value * value;
-  return std::sqrt(squared / static_cast<double>(values.size()));
-}
 
 }  // namespace
 
@@ -110,7 +105,7 @@ void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& 
     frequencies.push_back({edge, still.frequencyError});
   }
   row.errorSpaceRms = ownError(row.edge, space);
-  if (row.errorSpaceRms > 0.0) row.errorOfMotion = row.errorSpaceRms / rms(amplitudes);
+  if (row.errorSpaceRms > 0.0) row.errorOfMotion = row.errorSpaceRms / scenes::rms(amplitudes);
   row.errorAtRest = ownError(row.edge, rest);
   row.frequencyError = ownError(row.edge, frequencies);
 }

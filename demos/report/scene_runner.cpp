@@ -11,6 +11,7 @@
 
 #include "report/build_id.h"
 #include "report/coloured_mesh.h"
+#include "scenes/statistics.h"
 
 namespace tetskin::report {
 namespace {
@@ -93,12 +94,6 @@ void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
                       static_cast<int>(modes)});
     }
   }
-}
-
-double rms(const std::vector<double>& values) {
-  double squared = 0.0;
-  for (const double value : values) squared += value * value;
-  return std::sqrt(squared / static_cast<double>(values.size()));
 }
 
 void addFindings(const Job& job, const Simulation& simulation, const scenes::Reduction& reduction, Row& row) {
@@ -343,7 +338,7 @@ Row SceneRunner::compared(const Job& job, const Cage& cage, SurfaceKind kind, co
   row.interpolation = nameOf(kind);
   row.errorTotalRms = total.rms;
   row.errorTotalMax = total.max;
-  row.errorOfMotion = total.rms / rms(total.amplitudeByFrame);
+  row.errorOfMotion = total.rms / scenes::rms(total.amplitudeByFrame);
   row.normalErrorMeanDeg = total.normalMeanDeg;
   row.errorByFrame = total.rmsByFrame;
   row.amplitudeByFrame = total.amplitudeByFrame;
