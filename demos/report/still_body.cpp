@@ -14,11 +14,12 @@
 namespace tetskin::report {
 namespace {
 
-/// Seconds. A body of the scenes swings about once a second; more damping than this would only delay it.
-constexpr double kStep = 0.1, kDamping = 0.3;
-constexpr int kMaxSteps = 400;
-/// Largest way of a node in a step at rest, over the body's size.
-constexpr double kStill = 2e-6;
+/// A body of the scenes swings about once a second. More damping would delay it, and longer steps would take the solver
+/// more iterations than it has.
+constexpr double kDamping = 0.3;
+constexpr int kSubsteps = 2, kFrames = 240;
+/// Largest way of a node in the last frame, over the body's size.
+constexpr double kStill = 2e-5;
 
 float farthestStep(const std::vector<Eigen::Vector3f>& before, const std::vector<Eigen::Vector3f>& after) {
   float farthest = 0.0f;
@@ -27,19 +28,16 @@ float farthestStep(const std::vector<Eigen::Vector3f>& before, const std::vector
 }
 
 Trajectory restOf(const scenes::SceneEntry& entry, const Cage& cage, scenes::SceneOptions options) {
-  options.frameSeconds = kStep;
-  options.substeps = 1;
-  options.frames = kMaxSteps;
+  options.substeps = kSubsteps;
+  options.frames = kFrames;
   options.body.stiffnessDamping = kDamping;
   const std::unique_ptr<scenes::Scene> scene = entry.make(cage, options);
   Trajectory rest(2, scenes::nodesOf<float>(scene->body()));
-  for (int step = 1; step <= kMaxSteps; ++step) {
-    scene->step(step);
-    std::vector<Eigen::Vector3f> nodes = scenes::nodesOf<float>(scene->body());
-    const bool still = farthestStep(rest[1], nodes) <= static_cast<float>(kStill * options.size);
-    rest[1] = std::move(nodes);
-    if (still) return rest;
-  }
+  for (int frame = 1; frame < kFrames; ++frame) scene->step(frame);
+  const std::vector<Eigen::Vector3f> before = scenes::nodesOf<float>(scene->body());
+  scene->step(kFrames);
+  rest[1] = scenes::nodesOf<float>(scene->body());
+  if (farthestStep(before, rest[1]) <= static_cast<float>(kStill * options.size)) return rest;
   throw scenes::InputError("scene " + entry.name + ": the body does not come to rest; choose sag or cantilever");
 }
 

@@ -26,10 +26,9 @@ TriangleMesh makeBeam(std::size_t triangles) {
 }
 
 TetMesh makeBeamTets(std::size_t tets) {
-  constexpr double kTetsOfCell = 5.0;
-  const double cells = static_cast<double>(tets) / kTetsOfCell;
-  const int across = std::max(1, static_cast<int>(std::lround(std::cbrt(cells / 4.0))));
-  const Eigen::Vector3i size(std::max(1, static_cast<int>(std::lround(cells / (across * across)))), across, across);
+  constexpr double kCoarsest = 20.0;  // five tets in each of four cells
+  const int across = std::max(1, static_cast<int>(std::lround(std::cbrt(static_cast<double>(tets) / kCoarsest))));
+  const Eigen::Vector3i size(4 * across, across, across);
   TetMesh mesh;
   const auto node = [&](const Eigen::Vector3i& c) { return (c.z() * (across + 1) + c.y()) * (size.x() + 1) + c.x(); };
   for (int z = 0; z <= across; ++z) {

@@ -17,7 +17,7 @@ TriangleMesh makeBeam(std::size_t triangles = 60000);
 /// The fewest tets that makeBeamTets makes.
 constexpr std::size_t kMinBeamTets = 20;
 
-/// The same body as a conforming mesh of about `tets` tets, five to each nearly cubic cell of a grid.
+/// The same body as a conforming mesh of 20 n^3 tets, five to each cube of a grid, with the n that is nearest.
 TetMesh makeBeamTets(std::size_t tets);
 
 }  // namespace tetskin::scenes
