@@ -54,17 +54,18 @@ void addMaterial(const TetCorners& corners, const BarycentricMap& map, double fa
 /// all four weights. That root is symmetric, so that no corner is preferred: the order of a tet's nodes does not
 /// matter.
 std::array<double, 3 * kQuadraticPoints> pointsWith(const Moments& moments) {
+  // Weights relative to the centroid, whose sum is 0, have three coordinates by a regular tet with these corners.
+  Eigen::Matrix<double, 4, 3> regular;
+  regular << 0.5, 0.5, 0.5, 0.5, -0.5, -0.5, -0.5, 0.5, -0.5, -0.5, -0.5, 0.5;
+  const Eigen::Matrix3d fromLast = (regular.bottomRows<3>().rowwise() - regular.row(0)).transpose();
   const Eigen::Vector3d centroid = moments.first / moments.volume;
   const Eigen::Matrix3d covariance = moments.second / moments.volume - centroid * centroid.transpose();
-  Eigen::Matrix<double, 4, 3> allFour;  // weights by the last three, whose sum with the first is 1
-  allFour << Eigen::RowVector3d::Constant(-1.0), Eigen::Matrix3d::Identity();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> axes(allFour * covariance * allFour.transpose());
-  const Eigen::Vector4d roots = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::Matrix4d root = axes.eigenvectors() * roots.asDiagonal() * axes.eigenvectors().transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(fromLast * covariance * fromLast.transpose());
+  const Eigen::Matrix<double, 4, 4> columns = regular * axes.operatorSqrt() * regular.transpose();
   std::array<double, 3 * kQuadraticPoints> points{};
   for (std::size_t q = 0; q < kQuadraticPoints; ++q) {
     Eigen::Map<Eigen::Vector3d> point(&points[3 * q]);
-    point = centroid + 2.0 * root.col(static_cast<Eigen::Index>(q)).tail<3>();
+    point = centroid + 2.0 * columns.col(static_cast<Eigen::Index>(q)).tail<3>();
     assert(point.allFinite());
   }
   return points;
