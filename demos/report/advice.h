@@ -73,4 +73,8 @@ ReductionLimit reductionLimit(const std::vector<Row>& rows);
 /// these cages. Empty without reduced rows.
 std::string reductionAdvice(const std::vector<Row>& rows);
 
+/// Which order of tets to use in this scene, in a sentence: quadratic ones if most of their cages have less error than
+/// the linear ones that cost no more. Empty unless both orders were compared.
+std::string orderAdvice(const std::vector<Row>& rows);
+
 }  // namespace tetskin::report

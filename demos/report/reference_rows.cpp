@@ -4,7 +4,6 @@
 // The reference of a scene, and how far it can be trusted.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "report/advice.h"
@@ -99,11 +98,9 @@ void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& 
     const SurfaceErrors errors = surfaceErrors(reference(), model_.mesh, cage, SurfaceKind::Quadratic, nodes);
     space.push_back({edge, errors.rms});
     amplitudes = errors.amplitudeByFrame;
-    std::fprintf(stderr, "level %d: %zu tets edge %g (own %g) space %g of %g\n", level, cage.mesh.tetCount(), edge, row.edge, errors.rms, scenes::rms(amplitudes));
     if (!options_.measuresOrders) continue;
     Row still;
     compareStill(cage, SurfaceKind::Quadratic, still);
-    std::fprintf(stderr, "  rest %g (%+g) freq %g\n", still.errorAtRest, still.sagExcess, still.frequencyError);
     rest.push_back({edge, still.errorAtRest});
     frequencies.push_back({edge, still.frequencyError});
   }

@@ -109,7 +109,11 @@ ReportResult makeReport(const ReportOptions& desired) {
     }
   }
   const SceneRunner* shown = options.view.empty() ? nullptr : runnerOf(shownScene(options), runners);
-  ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
+  ReportResult result{model.name + (options.filled ? ", filled" : ""),
+                      model.mesh.vertexCount(),
+                      model.mesh.triangleCount(),
+                      model.reference,
+                      {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
     result.scenes.push_back(runScene(*runner, progress));

@@ -63,6 +63,7 @@ struct Row {
   bool pareto = false;                   ///< nothing in the same scene is both faster and more accurate
 
   bool isReduced() const { return modes != 0; }
+  bool isQuadratic() const { return material == "quadratic" || material == "quadratic_calibrated"; }
   bool isReference() const { return interpolation == "reference"; }
   /// True for a setting that a user of the library may choose.
   bool isChoice() const { return !isReference() && interpolation != "bullet" && finite != 0; }
