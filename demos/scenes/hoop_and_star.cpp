@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kHoopRadius = 0.9, kHalfBand = 0.25, kFootThickness = 0.18,
                  kTopThickness = 0.06;  // the last two: half thicknesses
-constexpr double kBall = 0.26, kRoot = 0.18, kTip = 0.07, kArm = 1.15, kSpread = 70.0 * kDegree;
+constexpr double kBall = 0.26, kLeg = 0.32, kRoot = 0.18, kTip = 0.07, kArm = 1.15, kSpread = 70.0 * kDegree;
 constexpr double kMaxStarSpacing = 0.1;
 
 /// The distance from a band whose section is a rectangle with rounded edges, roughly where it gets thinner.
@@ -30,19 +30,19 @@ double hoopDistance(const Vector3d& p) {
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - rounding;
 }
 
-/// The distance from a ball at the origin, a smaller one on an arm of this direction, and the cone between them.
-double armDistance(const Vector3d& p, const Vector3d& direction) {
-  const double slope = (kRoot - kTip) / kArm, rise = std::sqrt(1.0 - slope * slope);
+/// The distance from a ball at the origin, another one on an arm of this direction, and the cone between them.
+double armDistance(const Vector3d& p, const Vector3d& direction, double root, double tip) {
+  const double slope = (root - tip) / kArm, rise = std::sqrt(1.0 - slope * slope);
   const double along = p.dot(direction), across = (p - along * direction).norm(), k = rise * along - slope * across;
-  if (k < 0.0) return p.norm() - kRoot;
-  if (k > rise * kArm) return std::hypot(across, along - kArm) - kTip;
-  return across * rise + along * slope - kRoot;
+  if (k < 0.0) return p.norm() - root;
+  if (k > rise * kArm) return std::hypot(across, along - kArm) - tip;
+  return across * rise + along * slope - root;
 }
 
 double starDistance(const Vector3d& p) {
-  double nearest = p.norm() - kBall;
-  for (const double angle : {kPi, kSpread, -kSpread})
-    nearest = std::min(nearest, armDistance(p, {std::sin(angle), std::cos(angle), 0.0}));
+  double nearest = std::min(p.norm() - kBall, armDistance(p, -Vector3d::UnitY(), kBall, kLeg));
+  for (const double angle : {kSpread, -kSpread})
+    nearest = std::min(nearest, armDistance(p, {std::sin(angle), std::cos(angle), 0.0}, kRoot, kTip));
   return nearest;
 }
 
@@ -60,7 +60,7 @@ TriangleMesh makeHoop(std::size_t triangles) {
 }
 
 TriangleMesh makeStar(std::size_t triangles) {
-  return starMesh({Vector3d(-1.3, -1.3, -0.3), Vector3d(1.3, 0.6, 0.3)}, starDistance, triangles, "star");
+  return starMesh({Vector3d(-1.3, -1.5, -0.35), Vector3d(1.3, 0.6, 0.35)}, starDistance, triangles, "star");
 }
 
 }  // namespace tetskin::scenes

@@ -18,8 +18,8 @@ constexpr std::size_t kMinHoopTriangles = 2000;
 /// the hand, with the minimum above.
 TriangleMesh makeHoop(std::size_t triangles = 60000);
 
-/// A star of three tapering arms around a ball, one of them the leg, the other two stretched upwards and apart, 2.2
-/// from tip to tip. Otherwise as the hoop.
+/// A star of two tapering arms that are stretched upwards and apart, 2.2 from tip to tip, on a thick leg; all of them
+/// grow from a ball. Otherwise as the hoop.
 TriangleMesh makeStar(std::size_t triangles = 60000);
 
 }  // namespace tetskin::scenes
