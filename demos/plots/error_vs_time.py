@@ -11,7 +11,8 @@ SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_substeps.pn
 substeps; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
 deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
 installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is. Of a comparison of solvers (--solvers): one
-table, which is SCENE_solvers.csv, too, and SCENE_solvers.png.
+table, which is SCENE_solvers.csv, too, and SCENE_solvers.png. Of a comparison of orders (--orders): SCENE_orders.csv and
+SCENE_orders.png; orders.py makes one table of several models.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
 """
 import argparse
@@ -28,18 +29,22 @@ from matplotlib.lines import Line2D
 
 sys.dont_write_bytecode = True  # leaves nothing in the repository
 from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
+from orders import COLUMNS as ORDER_COLUMNS, draw_orders, is_of_orders, order_rows, orders_table, write_orders  # noqa: E402
 from solvers import draw_solvers, is_of_solvers, solvers_csv, solvers_text  # noqa: E402
 
 COLOURS = {"linear": BLUE, "quadratic": ORANGE, "bullet": GREY}
 MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
 STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--",
-          "reduced": (0, (1, 1.5))}
+          "uncalibrated": ":", "quadratic": "-", "quadratic_calibrated": "-.", "reduced": (0, (1, 1.5))}
 # Kinds that only serve to separate causes of error, with one surface: distinguished by colour and marker as well.
-KIND_COLOURS = {"same_calibrated": SKY, "split": GREEN, "filled": PINK, "reduced": "#000000"}
-KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*"}
+KIND_COLOURS = {"same_calibrated": SKY, "split": GREEN, "filled": PINK, "reduced": "#000000", "uncalibrated": GREY,
+                "quadratic": ORANGE, "quadratic_calibrated": GREEN}
+KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*", "uncalibrated": "x", "quadratic": "s",
+                "quadratic_calibrated": "^"}
 # What follows a surface's name.
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
-         "calibrated": ", calibrated", "reduced": ", reduced"}
+         "calibrated": ", calibrated", "reduced": ", reduced", "uncalibrated": ", not calibrated",
+         "quadratic": ", quadratic tets", "quadratic_calibrated": ", quadratic tets, calibrated"}
 
 HEAD = ("| tets | duplicates | stiffness | surface | substeps | error, RMS | in space | in time | largest | embedding only | "
         "at the nodes | normals, degrees | simulation, ms | skin, µs | total, ms | speed-up | embedding, ms | memory, MB |"
@@ -95,7 +100,8 @@ def table_line(row, scene, against):
     surface = f"**{setting(row)}**" if row["pareto"] else setting(row)
     if not row["finite"]:
         surface += " (exploded)"
-    return (f"{tets_of(row)} {surface} | {row['substeps']:.0f} | {row['error_total_rms']:.2e} | "
+    total = f"{row['error_total_rms']:.2e}{'' if row['resolved'] else ' ~'}"
+    return (f"{tets_of(row)} {surface} | {row['substeps']:.0f} | {total} | "
             f"{row['error_space_rms']:.1e} | {row['error_time_rms']:.1e} | {row['error_total_max']:.1e} | "
             f"{row['error_embedding_rms']:.1e} | {row['error_simulation_rms']:.1e} | {row['normal_error_mean_deg']:.2f} | "
             f"{row['simulation_ms']:.3g} | {row['skin_us']:.0f} | {row['total_ms']:.3g} | {row['speedup']:.3g} | "
@@ -165,10 +171,8 @@ def reference_text(reference):
         text = f"The reference is a built cage of about {count}, with duplicate elements and volume fractions, not fitted"
     else:
         whose = "made by formula" if reference["from"] == "formula" else f"from {reference['from']}"
-        text = f"The reference is a mesh of {count} {whose}, not a built cage"
-    if reference["stiffness_factor"] == 1:
-        return text + "; it is not calibrated, and slightly too stiff itself.\n"
-    return text + f", and calibrated: its stiffness is scaled by {reference['stiffness_factor']:.3f}.\n"
+        return f"The reference is a mesh of {count} {whose}, not a built cage.\n"
+    return text + ": eight to each quadratic tet, and linear for Bullet's forces and for modes, then calibrated.\n"
 
 
 KINDS_TEXT = ("Cages: without a note, bare tets, each entirely full of material, which fuse nearby components; *split*, with "
@@ -192,14 +196,17 @@ def tables(results, target):
         if is_of_solvers(scene):
             text += solvers_text(scene)
             continue
+        if is_of_orders(scene):
+            text += orders_table(scene, results["model"])
+            continue
         text += HEAD.format(more=AGAINST if against else "", lines="---|---|" if against else "")
         text += "".join(table_line(row, scene, against) for row in scene["rows"])
         if against:
             text += ("\nTwo references with the same cage and material: one with the library's elasticity and solver, one with "
                      "Bullet's elasticity, which handles rotation and damping differently.\n")
         if scene["reference_error"] > 0:
-            text += (f"\nThe error of the reference itself in space is about {scene['reference_error']:.1e}, estimated from the "
-                     "finest cages that are made as it is; smaller differences are not significant.\n")
+            text += (f"\nThe error of the reference itself in space is about {scene['reference_error']:.1e}, estimated from "
+                     "coarser ones made in the same way; errors below three times that are not resolved (~).\n")
         if scene["reference_time_error"] > 0:
             text += (f"\nThe error of the reference itself in time is about {scene['reference_time_error']:.1e}, estimated from "
                      f"the same tets in {substeps_of(scene)}.\n")
@@ -486,6 +493,10 @@ def draw(scene, model, arguments, folder):
     if is_of_solvers(scene):
         yield save(draw_solvers(scene, f"{title_of(scene)} ({model})"), folder, f"{scene['scene']}_solvers")
         return
+    if is_of_orders(scene):
+        rows = [dict(zip(ORDER_COLUMNS, row)) for row in order_rows(scene, model)]
+        yield save(draw_orders(rows), folder, f"{scene['scene']}_orders")
+        return
     yield save(error_against_time(scene, name), folder, base)
     if series_in_time(scene):
         yield save(error_over_substeps(scene, name), folder, f"{base}_substeps")
@@ -528,6 +539,10 @@ def main():
     for scene in filter(is_of_solvers, results["scenes"]):
         path = folder / f"{scene['scene']}_solvers.csv"
         path.write_text(solvers_csv(scene), encoding="utf-8")
+        said(path)
+    for scene in filter(is_of_orders, results["scenes"]):
+        path = folder / f"{scene['scene']}_orders.csv"
+        write_orders(path, [results])
         said(path)
     for scene in results["scenes"]:
         for path in draw(scene, Path(results["model"]).stem, arguments, folder):

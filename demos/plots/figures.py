@@ -20,6 +20,7 @@ from PIL.PngImagePlugin import PngInfo
 
 sys.dont_write_bytecode = True  # leaves nothing in the repository
 from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
+from orders import draw_orders  # noqa: E402
 from solvers import draw_table  # noqa: E402
 
 TABLES = Path(__file__).resolve().parents[1] / "figures"
@@ -270,7 +271,11 @@ def solvers(rows):
     return draw_table(rows, f"The serpent, pinned by its coil, sags: {int(rows[0]['tets']):,} tets, all the same")
 
 
-PLOTS = (cage_kinds, reduction, attach_update_build, crowd, solvers, step_time, landing, gaps, contact_checks)
+def orders(rows):
+    return draw_orders(rows)
+
+
+PLOTS = (cage_kinds, orders, reduction, attach_update_build, crowd, solvers, step_time, landing, gaps, contact_checks)
 
 
 def hash_of(table):

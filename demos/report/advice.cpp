@@ -145,11 +145,11 @@ ReductionLimit reductionLimit(const std::vector<Row>& rows) {
 
 namespace {
 
-/// The most accurate cage that costs no more; null if there is none.
-const Row* cageBeside(const Row& reduced, const std::vector<Row>& rows) {
+/// The most accurate cage of linear tets that costs no more; null if there is none.
+const Row* cageBeside(const Row& other, const std::vector<Row>& rows) {
   const Row* best = nullptr;
   for (const Row& row : rows) {
-    if (!row.isChoice() || row.isReduced() || row.totalMs > reduced.totalMs) continue;
+    if (!row.isChoice() || row.isReduced() || row.isQuadratic() || row.totalMs > other.totalMs) continue;
     if (!best || row.errorTotalRms < best->errorTotalRms) best = &row;
   }
   return best;
@@ -158,7 +158,8 @@ const Row* cageBeside(const Row& reduced, const std::vector<Row>& rows) {
 std::string inWords(const Row& row) {
   char text[128];
   std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms per frame", row.errorTotalRms, row.totalMs);
-  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets in " +
+  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) +
+                           (row.isQuadratic() ? " tets, eight to a quadratic one, in " : " tets in ") +
                            std::to_string(std::lround(row.substeps)) + (row.substeps == 1.0 ? " substep" : " substeps");
   return (row.isReduced() ? std::to_string(std::lround(row.modes)) + " modes in " + cage : cage) + text;
 }
@@ -185,15 +186,41 @@ std::string reductionAdvice(const std::vector<Row>& rows) {
   return winner + inWords(better) + ", " + inWords(worse) + ".";
 }
 
+std::string orderAdvice(const std::vector<Row>& rows) {
+  struct Pair {
+    double gain;
+    const Row *quadratic, *linear;
+  };
+  std::vector<Pair> pairs;
+  for (const Row& row : rows) {
+    if (!row.isQuadratic() || !row.isChoice()) continue;
+    if (const Row* beside = cageBeside(row, rows))
+      pairs.push_back({beside->errorTotalRms / row.errorTotalRms, &row, beside});
+  }
+  if (pairs.empty()) return {};
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.gain < b.gain; });
+  const auto& [gain, quadratic, linear] = pairs[pairs.size() / 2];
+  if (gain > 1.0) return "Use quadratic tets: " + inWords(*quadratic) + ", " + inWords(*linear) + ".";
+  return "Use linear tets: " + inWords(*linear) + ", " + inWords(*quadratic) + ".";
+}
+
+double ownError(double edge, const std::vector<CoarserLevel>& coarser) {
+  if (coarser.empty()) return 0.0;
+  const CoarserLevel& fine = coarser[0];
+  const double p =
+      coarser.size() < 2 ? kMinOrder : orderAgainst(edge, coarser[1].error, fine.error, coarser[1].edge, fine.edge);
+  return ownError(edge, p, fine.error, fine.edge);
+}
+
 double referenceError(const std::vector<Row>& rows) {
-  std::vector<Row> sorted = series(rows, "quadratic", "calibrated");
-  if (sorted.size() < 2) sorted = series(rows, "quadratic", "same");
-  const auto reference = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.isReference(); });
-  if (sorted.size() < 2 || reference == rows.end()) return 0.0;
-  const Row &coarse = sorted[sorted.size() - 2], &fine = sorted.back();
-  if (!(fine.edge > reference->edge)) return 0.0;
-  const double p = orderAgainst(reference->edge, coarse.errorSpaceRms, fine.errorSpaceRms, coarse.edge, fine.edge);
-  return ownError(reference->edge, p, fine.errorSpaceRms, fine.edge);
+  const auto known = std::find_if(rows.begin(), rows.end(),
+                                  [](const Row& row) { return row.isReference() && row.errorSpaceRms > 0.0; });
+  return known == rows.end() ? 0.0 : known->errorSpaceRms;
+}
+
+void markResolved(std::vector<Row>& rows) {
+  const double least = kResolved * referenceError(rows);
+  for (Row& row : rows) row.resolved = row.isReference() || row.errorTotalRms >= least;
 }
 
 double referenceTimeError(const std::vector<Row>& rows) {

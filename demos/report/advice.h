@@ -37,11 +37,23 @@ struct TimeOrder {
 /// The observed orders of all cages that were simulated with several numbers of substeps.
 std::vector<TimeOrder> timeOrders(const std::vector<Row>& rows);
 
-/// The reference's own error in space, estimated from the two finest cages made as it is (duplicated elements, volume
-/// fractions, calibrated), or else from the two finest bare ones. If errors against the truth fall as C edge^p, then
-/// those against the reference are C (edge^p - reference edge^p), and two of them give C and p (which is kept between 1
-/// and 3). 0 if there are fewer than two.
+/// A cage made as a reference is, but coarser: mean length of its edges, and its distance from the reference.
+struct CoarserLevel {
+  double edge = 0, error = 0;
+};
+/// The error of a reference itself, estimated from coarser levels, the finer one first. If errors against the truth
+/// fall as C edge^p, then those against the reference are C (edge^p - reference edge^p), and two of them give C and p
+/// (which is kept between 1 and 3). One level alone is taken to be of order 1, which is cautious. 0 without any.
+/// edge  of the reference
+double ownError(double edge, const std::vector<CoarserLevel>& coarser);
+
+/// The error in space that the reference's row gives for itself; 0 if it is not known.
 double referenceError(const std::vector<Row>& rows);
+
+/// An error of a row says something if it is this many times the reference's own.
+constexpr double kResolved = 3.0;
+/// Marks the rows whose errors the reference resolves.
+void markResolved(std::vector<Row>& rows);
 
 /// The reference's own error in time, estimated from its error in fewer substeps and the order (kept between 1 and 3)
 /// that the finest cage has between the fewest and the most substeps. 0 if either is missing.
@@ -60,5 +72,9 @@ ReductionLimit reductionLimit(const std::vector<Row>& rows);
 /// What to use in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
 /// these cages. Empty without reduced rows.
 std::string reductionAdvice(const std::vector<Row>& rows);
+
+/// Which order of tets to use in this scene, in a sentence: quadratic ones if most of their cages have less error than
+/// the linear ones that cost no more. Empty unless both orders were compared.
+std::string orderAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

@@ -4,9 +4,12 @@
 
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/core/quadratic_tets.h>
 
+#include <algorithm>
 #include <set>
 
+#include "report/quadratic_cage.h"
 #include "scenes/caged_mesh.h"
 #include "scenes/input_error.h"
 
@@ -19,17 +22,6 @@ void makeBare(Cage& cage) {
   cage.fineVolumeFraction.clear();
   cage.masses.clear();
   cage.stiffnessFactor.clear();
-}
-
-ShelvedCage shelved(Cage cage, bool calibrated) {
-  ShelvedCage result{std::move(cage), {}};
-  if (!calibrated) return result;
-  CalibrationOptions options;
-  options.poissonRatio = SoftBodyOptions().poissonRatio;
-  Result<CalibrationReport> calibration = calibrate(result.cage, options);
-  scenes::require(calibration.status());
-  result.calibration = std::move(calibration).value();
-  return result;
 }
 
 }  // namespace
@@ -45,28 +37,40 @@ std::size_t copiesIn(const Cage& cage) {
   return cage.sourceTet.size() - std::set<int>(cage.sourceTet.begin(), cage.sourceTet.end()).size();
 }
 
+ShelvedCage shelved(Cage cage, bool calibrated) {
+  ShelvedCage result{std::move(cage), {}};
+  if (!calibrated) return result;
+  CalibrationOptions options;
+  options.poissonRatio = SoftBodyOptions().poissonRatio;
+  Result<CalibrationReport> calibration = calibrate(result.cage, options);
+  scenes::require(calibration.status());
+  result.calibration = std::move(calibration).value();
+  return result;
+}
+
+Filling fillingFor(const scenes::ModelOptions& model, const scenes::Placement& placement) {
+  const std::size_t fewest = scenes::fewestConformingTets(model.builtIn);
+  if (!model.mesh.empty() || fewest == 0) return {};
+  return [builtIn = model.builtIn, fewest, placement](std::size_t tets) {
+    return placement.toWorld(*scenes::conformingTets(builtIn, std::max(tets, fewest)));
+  };
+}
+
+Cage CageShelf::made(std::size_t tets, CageKind kind) const {
+  const std::size_t elements = isQuadratic(kind) ? std::max<std::size_t>(1, tets / kSubTets) : tets;
+  CageOptions options;
+  options.targetTets = elements;
+  options.duplicateElements = isSplit(kind);
+  options.fit = !isQuadratic(kind);
+  Cage cage = filling_ ? filling_(elements) : scenes::builtCage(mesh_, options);
+  if (!isFilled(kind)) makeBare(cage);
+  return isQuadratic(kind) ? quadraticCage(cage, mesh_) : cage;
+}
+
 const ShelvedCage& CageShelf::at(std::size_t tets, CageKind kind) {
   const auto found = cages_.find({tets, kind});
   if (found != cages_.end()) return found->second;
-  CageOptions options;
-  options.targetTets = tets;
-  options.duplicateElements = isSplit(kind);
-  Cage cage = scenes::builtCage(mesh_, options);
-  if (!isFilled(kind)) makeBare(cage);
-  return cages_[{tets, kind}] = shelved(std::move(cage), isCalibrated(kind));
-}
-
-const ShelvedCage& CageShelf::reference() {
-  if (reference_) return *reference_;
-  CageOptions options;
-  options.targetTets = referenceTets_;
-  options.fit = false;
-  putReference(scenes::builtCage(mesh_, options), true);
-  return *reference_;
-}
-
-void CageShelf::putReference(Cage cage, bool calibrated) {
-  reference_ = shelved(std::move(cage), calibrated);
+  return cages_[{tets, kind}] = shelved(made(tets, kind), isCalibrated(kind));
 }
 
 }  // namespace tetskin::report

@@ -7,11 +7,13 @@
 #include <tetskin/elastic/calibration.h>
 
 #include <cstddef>
+#include <functional>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "report/cage_kind.h"
+#include "scenes/model.h"
+#include "scenes/placement.h"
 
 namespace tetskin::report {
 
@@ -25,26 +27,31 @@ struct ShelvedCage {
   CalibrationReport calibration;  ///< of the cage as built, without calibration: a factor of 1
 };
 
-/// The cages of one mesh by the requested number of tets and their kind, and the reference's cage. Each is made when it
-/// is first asked for. Throws InputError.
+/// A cage with its stiffness corrected, or as it is. Throws InputError.
+ShelvedCage shelved(Cage cage, bool calibrated);
+
+/// About so many tets that fill the body of a mesh, in the space where cages are compared.
+using Filling = std::function<Cage(std::size_t tets)>;
+/// The filling of a built-in model that has one by formula; otherwise none.
+/// placement  from the model's space to where cages are compared
+Filling fillingFor(const scenes::ModelOptions& model, const scenes::Placement& placement);
+
+/// The cages of one mesh by the requested number of tets and their kind. Each is made when it is first asked for.
+/// Throws InputError.
 class CageShelf {
  public:
-  /// mesh  outlives this object
-  CageShelf(const TriangleMesh& mesh, std::size_t referenceTets) : mesh_(mesh), referenceTets_(referenceTets) {}
+  /// mesh     outlives this object
+  /// filling  not empty: cages are such tets, instead of built ones, which the mesh cuts
+  explicit CageShelf(const TriangleMesh& mesh, Filling filling = {}) : mesh_(mesh), filling_(std::move(filling)) {}
 
   const ShelvedCage& at(std::size_t tets, CageKind kind);
-  /// The cage of a reference has duplicate elements and volume fractions, so that it approaches the mesh itself. It is
-  /// not fitted, as fitted tets of many shapes are stiffer. It is calibrated where it is not too fine for that: its
-  /// excess stiffness would otherwise count as the cages' error.
-  const ShelvedCage& reference();
-  /// Uses a given cage as the reference's, instead of building one.
-  void putReference(Cage cage, bool calibrated);
 
  private:
+  Cage made(std::size_t tets, CageKind kind) const;
+
   const TriangleMesh& mesh_;
-  std::size_t referenceTets_;
+  Filling filling_;
   std::map<std::pair<std::size_t, CageKind>, ShelvedCage> cages_;
-  std::optional<ShelvedCage> reference_;
 };
 
 }  // namespace tetskin::report

@@ -15,6 +15,10 @@ constexpr double kStiffness = 150.0, kLandingStiffness = 50.0;
 /// Damping in substeps. Half a substep is the least that is stable at any stiffness.
 constexpr double kDampingSubsteps = 0.6;
 constexpr int kMaxSubsteps = 64;
+/// What the solver may leave of the residual in the reference's substeps, and the limit of its iterations. With its
+/// defaults, what it leaves is more than what so many substeps gain where bodies touch.
+constexpr double kConvergedTolerance = 1e-6;
+constexpr int kConvergedIterations = 1000;
 
 /// kg per volume of the mesh, or per volume of the tets where the mesh's is not known.
 double densityOf(const Cage& reference) {
@@ -73,6 +77,17 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& ref
     options.force = scenes::Force::Elastic;
     options.substeps = scenes::SceneOptions().substeps;
   }
+  return options;
+}
+
+scenes::SceneOptions withSubsteps(scenes::SceneOptions options, int substeps) {
+  if (substeps > 0) options.substeps = substeps;
+  return options;
+}
+
+scenes::SceneOptions converged(scenes::SceneOptions options) {
+  options.body.solverTolerance = kConvergedTolerance;
+  options.body.maxIterations = kConvergedIterations;
   return options;
 }
 

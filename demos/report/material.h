@@ -25,4 +25,11 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& ref
 /// Seconds of damping at which Bullet's explicit steps of this length are stable at any stiffness.
 double stableDamping(double substep);
 
+/// The same in some substeps per frame.
+/// substeps  0: the options' own
+scenes::SceneOptions withSubsteps(scenes::SceneOptions options, int substeps);
+
+/// The same with a solver that leaves so little of the residual that it adds nothing to the error of many substeps.
+scenes::SceneOptions converged(scenes::SceneOptions options);
+
 }  // namespace tetskin::report

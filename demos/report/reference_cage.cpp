@@ -3,7 +3,13 @@
 #include "report/reference_cage.h"
 
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/quadratic_tets.h>
 
+#include <algorithm>
+#include <cassert>
+
+#include "report/quadratic_cage.h"
+#include "scenes/caged_mesh.h"
 #include "scenes/files.h"
 
 namespace tetskin::report {
@@ -26,6 +32,7 @@ std::uint64_t hashOf(const std::vector<Value>& values, std::uint64_t seed) {
 std::uint64_t hashOf(const Cage& cage) {
   std::uint64_t hash = hashOf(cage.mesh.tets, hashOf(cage.mesh.nodes, scenes::kNoHash));
   hash = hashOf(cage.vertexTets, hash);
+  hash = hashOf(cage.quadraticTet, hash);
   for (const std::vector<double>* values : {&cage.volumeFraction, &cage.stiffnessFactor, &cage.masses})
     hash = hashOf(*values, hash);
   return hash;
@@ -33,38 +40,66 @@ std::uint64_t hashOf(const Cage& cage) {
 
 }  // namespace
 
-ReferenceCage referenceCageFor(const TriangleMesh& mesh, const ReportOptions& options,
-                               const scenes::Placement& placement) {
-  ReferenceCage reference;
+ReferenceSource referenceFor(const TriangleMesh& mesh, const ReportOptions& options,
+                             const scenes::Placement& placement) {
+  ReferenceSource source;
+  source.tets = options.referenceTets;
   if (!options.reference.empty()) {
     Cage cage = scenes::loadCage(options.reference);
     (void)repairTetMesh(cage.mesh);
     requireFit(mesh, cage, options);
-    reference.from = options.reference;
-    reference.cage = std::move(cage);
-  } else if (options.model.mesh.empty()) {
-    reference.cage = scenes::conformingTets(options.model.builtIn, options.referenceTets);
-    if (reference.cage) reference.from = kFormula;
+    source.from = options.reference;
+    source.cage = placement.toWorld(std::move(cage));
+    source.tets = source.cage->mesh.tetCount();
+    source.hash = hashOf(*source.cage);
+  } else if (Filling filling = fillingFor(options.model, placement)) {
+    source.fewest = scenes::fewestConformingTets(options.model.builtIn);
+    if (options.referenceTets >= source.fewest) {
+      source.from = kFormula;
+      source.filling = std::move(filling);
+      const Cage elements = source.filling(std::max(options.referenceTets / kSubTets, source.fewest));
+      source.tets = kSubTets * elements.mesh.tetCount();
+      source.hash = hashOf(elements);
+    }
   }
-  reference.tets = options.referenceTets;
-  if (reference.cage) {
-    reference.cage = placement.toWorld(std::move(*reference.cage));
-    reference.tets = reference.cage->mesh.tetCount();
-    reference.hash = hashOf(*reference.cage);
-  }
-  requireFiner(options, reference.tets);
-  return reference;
+  requireFiner(options, source.tets);
+  return source;
 }
 
-std::string describe(const ReferenceCage& reference) {
-  const std::string tets = std::to_string(reference.tets) + " tets";
-  std::string text = isBuilt(reference)           ? "a built cage of about " + tets
-                     : reference.from == kFormula ? tets + " by formula"
-                                                  : tets + " from " + reference.from;
-  if (reference.factor == 1.0) return text;
-  char factor[64];
-  std::snprintf(factor, sizeof factor, ", calibrated (stiffness scaled by %.3f)", reference.factor);
-  return text + factor;
+std::string describe(const ReferenceSource& source) {
+  const std::string tets = std::to_string(source.tets) + " tets";
+  if (source.from == kBuilt) return "a built cage of about " + tets;
+  return tets + (source.from == kFormula ? " by formula" : " from " + source.from);
+}
+
+std::size_t ReferenceShelf::elementsAt(ReferenceTets tets, int level) const {
+  std::size_t count = tets == ReferenceTets::Quadratic ? source_.tets / kSubTets : source_.tets;
+  for (int k = 0; k < level; ++k) count /= kLevelRatio;
+  return count;
+}
+
+int ReferenceShelf::levelCount(ReferenceTets tets) const {
+  if (source_.cage) return 1;
+  int levels = 1;
+  while (levels < kLevels && elementsAt(tets, levels) >= std::max<std::size_t>(source_.fewest, 1)) ++levels;
+  return levels;
+}
+
+ShelvedCage ReferenceShelf::made(ReferenceTets tets, int level) const {
+  if (source_.cage) return shelved(*source_.cage, false);
+  CageOptions options;
+  options.targetTets = elementsAt(tets, level);
+  options.fit = false;
+  Cage cage = source_.filling ? source_.filling(options.targetTets) : scenes::builtCage(mesh_, options);
+  if (tets == ReferenceTets::Quadratic) return shelved(quadraticCage(cage, mesh_), false);
+  return shelved(std::move(cage), true);
+}
+
+const ShelvedCage& ReferenceShelf::at(ReferenceTets tets, int level) {
+  assert(level >= 0 && level < levelCount(tets));
+  const auto found = cages_.find({tets, level});
+  if (found != cages_.end()) return found->second;
+  return cages_[{tets, level}] = made(tets, level);
 }
 
 }  // namespace tetskin::report

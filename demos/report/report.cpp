@@ -24,9 +24,9 @@ ReportModel loadReportModel(const ReportOptions& options) {
   model.name = std::move(surface.name);
   model.modelDiagonal = boundingBox(surface.mesh.positions).diagonal().norm();
   model.mesh = std::move(surface.mesh);
-  const scenes::Placement placement = scenes::placementOf(boundingBox(model.mesh.positions));
-  model.reference = referenceCageFor(model.mesh, options, placement);
-  placement.toWorld(model.mesh.positions);
+  model.placement = scenes::placementOf(boundingBox(model.mesh.positions));
+  model.reference = referenceFor(model.mesh, options, model.placement);
+  model.placement.toWorld(model.mesh.positions);
   model.diagonal = boundingBox(model.mesh.positions).diagonal().norm();
   const auto& positions = model.mesh.positions;
   const auto& triangles = model.mesh.triangles;
@@ -54,7 +54,7 @@ class JobProgress {
   scenes::Progress bar_;
 };
 
-SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobProgress& progress) {
+SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
   SceneResult result{runner.scene(), runner.integrator(), {}};
   for (const Job& job : runner.jobs()) {
     const double cost = runner.costOf(job);
@@ -74,7 +74,8 @@ SceneResult runScene(SceneRunner& runner, const ReferenceCage& reference, JobPro
     row.speedupAgainstBullet = bulletsMs / row.totalMs;
   }
   markPareto(result.rows);
-  if (isBuilt(reference)) result.referenceError = referenceError(result.rows);
+  result.referenceError = referenceError(result.rows);
+  markResolved(result.rows);
   result.referenceTimeError = referenceTimeError(result.rows);
   return result;
 }
@@ -95,28 +96,27 @@ ReportResult makeReport(const ReportOptions& desired) {
   const ResultStore store(options.out + "/rows");
   scenes::requireWritable(options.json);
   if (!options.view.empty()) scenes::requireViewable();
-  CageShelf cages(model.mesh, model.reference.tets);
-  // A file's tets are taken as exact, without calibration.
-  const bool calibrated = model.reference.from == kFormula;
-  if (model.reference.cage) cages.putReference(std::move(*model.reference.cage), calibrated);
-  model.reference.cage.reset();
+  CageShelf cages(model.mesh, options.filled ? fillingFor(options.model, model.placement) : Filling());
+  ReferenceShelf references(model.mesh, model.reference);
   Runners runners;
   double cost = 0.0;
   for (const std::string& scene : options.scenes) {
     for (const Elasticity elasticity :
          {options.bullet ? Elasticity::BulletExplicit : Elasticity::Tetskin, Elasticity::BulletImplicit}) {
       if (elasticity == Elasticity::BulletImplicit && (!options.implicit || scene == kExact)) continue;
-      runners.push_back(std::make_unique<SceneRunner>(model, cages, store, options, scene, elasticity));
+      runners.push_back(std::make_unique<SceneRunner>(model, cages, references, store, options, scene, elasticity));
       for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
     }
   }
   const SceneRunner* shown = options.view.empty() ? nullptr : runnerOf(shownScene(options), runners);
-  ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
+  ReportResult result{model.name + (options.filled ? ", filled" : ""),
+                      model.mesh.vertexCount(),
+                      model.mesh.triangleCount(),
+                      model.reference,
+                      {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
-    result.scenes.push_back(runScene(*runner, model.reference, progress));
-    const Row& first = result.scenes.back().rows.front();
-    if (first.isReference()) result.reference.factor = first.stiffnessFactor;
+    result.scenes.push_back(runScene(*runner, progress));
     writeReport(result, options, runner->colouredMesh());
     if (runner.get() == shown) writeView(*runner, model, options);
     runner.reset();  // also frees its reference, which may be large

@@ -8,9 +8,11 @@
 //   cage_shelf         the cages, built and calibrated
 // simulation         a cage's motion in a scene, and the time of steps and surfaces
 // reference          the motion that counts as exact
-// reference_cage     the tets that have this motion
+// reference_cage     the tets that have this motion, and coarser ones, which tell its own error
+//   quadratic_cage     a cage of quadratic tets
 // driven_nodes       where it would take the nodes of other cages
 // surface_errors     errors of surfaces and nodes against it
+// still_body         a cage at rest, and its frequencies
 // solver             what else simulates the same cage
 //   xpbd_fit           the constants that suit XPBD best
 // scene_runner       all cages of a scene, or the results of an earlier run (result_store)
@@ -38,7 +40,7 @@ struct SceneResult {
 struct ReportResult {
   std::string model;
   std::size_t vertices = 0, triangles = 0;
-  ReferenceCage reference;  ///< without the cage
+  ReferenceSource reference;
   std::vector<SceneResult> scenes;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/report_files.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "report/advice.h"
@@ -18,11 +19,20 @@ nlohmann::ordered_json toJson(const ObservedOrder& order) {
           {"embedding", order.embedding}};
 }
 
+/// The kinds of cages, in the order of the rows.
+std::vector<std::string> materialsOf(const SceneResult& scene) {
+  std::vector<std::string> materials;
+  for (const Row& row : scene.rows) {
+    const bool isNew = std::find(materials.begin(), materials.end(), row.material) == materials.end();
+    if (isNew && !row.isReduced()) materials.push_back(row.material);
+  }
+  return materials;
+}
+
 nlohmann::ordered_json ordersOf(const SceneResult& scene) {
   auto json = nlohmann::ordered_json::array();
   for (const char* interpolation : {"linear", "quadratic"}) {
-    for (const CageKind kind : kCageKinds) {
-      const char* material = nameOf(kind);
+    for (const std::string& material : materialsOf(scene)) {
       nlohmann::ordered_json one = {{"interpolation", interpolation}, {"material", material}};
       one["overall"] = toJson(overallOrder(scene.rows, interpolation, material));
       one["steps"] = nlohmann::ordered_json::array();
@@ -71,8 +81,7 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
   json["model"] = result.model;
   json["vertices"] = result.vertices;
   json["triangles"] = result.triangles;
-  json["reference"] = {
-      {"from", result.reference.from}, {"tets", result.reference.tets}, {"stiffness_factor", result.reference.factor}};
+  json["reference"] = {{"from", result.reference.from}, {"tets", result.reference.tets}};
   json["units"] =
       "errors and edge: fractions of the diagonal of the mesh's bounding box; _ms, _us: processor time in one thread, "
       "medians; simulation, skin and total: per frame";
@@ -87,6 +96,7 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
     one["reference_time_error"] = scene.referenceTimeError;
     one["orders"] = ordersOf(scene);
     one["time_orders"] = timeOrdersOf(scene);
+    one["order_advice"] = orderAdvice(scene.rows);
     one["reduction_advice"] = reductionAdvice(scene.rows);
     const ReductionLimit limit = reductionLimit(scene.rows);
     one["reduction_limit"] = {{"modes", limit.modes}, {"amplitude", limit.amplitude}};

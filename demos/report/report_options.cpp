@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t kFullTets = 300000;
 constexpr int kMaxReferenceSubsteps = 1024;
+/// Of a comparison of orders: a swing and a half, in which errors in time of four substeps still show.
+constexpr std::size_t kSubstepsOfOrders = 32;
+constexpr int kFramesOfOrders = 90;
 
 void sortUniquely(std::vector<std::size_t>& counts) {
   std::sort(counts.begin(), counts.end());
@@ -87,6 +90,12 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
       "Compare solvers in calibrated cages, in sag, instead of kinds of cages; a list of: tetskin, xpbd, "
       "xpbd_unfitted, bullet_neo_hookean, bullet_linear, bullet_neo_hookean_implicit, bullet_linear_implicit, all",
       "none");
+  line.addWords(
+      "--orders", orders_,
+      "Compare linear and quadratic tets, in sag (the beam: cantilever), instead of kinds of cages, also at "
+      "rest and by their frequencies; a list of: uncalibrated, calibrated, quadratic, quadratic_calibrated, all",
+      "none");
+  line.addFlag("--filled", o.filled, "With --orders: cages are tets by formula that fill a built-in model");
   line.addCounts("--xpbd-substeps", o.xpbdSubsteps, "a list, for --solvers");
   line.addCounts("--bullet-substeps", o.bulletSubsteps, "a list, for --solvers; of those that explode, rows say so");
   line.addCount("--repetitions", o.repetitions, "How often each variant is timed; the median is printed", 1000);
@@ -142,6 +151,32 @@ void ReportCommandLine::chooseSolvers() {
   }
 }
 
+void ReportCommandLine::chooseOrders() {
+  ReportOptions& o = options_;
+  if (!line_.given("--orders")) {
+    if (o.filled) throw scenes::InputError("--filled needs --orders");
+    return;
+  }
+  o.measuresOrders = true;
+  o.cages = ordersOf(orders_);
+  if (o.cages.empty()) throw scenes::InputError("--orders: name at least one order");
+  for (const char* option : {"--solvers", "--elasticity", "--cages", "--no-calibration", "--modes", "--no-reduction"}) {
+    if (line_.given(option)) throw scenes::InputError(std::string(option) + " cannot be used with --orders");
+  }
+  const bool isBeam = o.model.mesh.empty() && o.model.builtIn == scenes::BuiltIn::Beam;
+  if (!line_.given("--scenes")) o.scenes = {isBeam ? "cantilever" : "sag"};
+  if (o.scenes != std::vector<std::string>{"sag"} && o.scenes != std::vector<std::string>{"cantilever"})
+    throw scenes::InputError("--orders: orders are compared in one scene that comes to rest: sag or cantilever");
+  if (o.filled && (!o.model.mesh.empty() || scenes::fewestConformingTets(o.model.builtIn) == 0))
+    throw scenes::InputError("--filled: only beam, slotted_beam and hand have tets by formula");
+  if (!line_.given("--tets")) o.tets = {1000, 3000, 10000};
+  if (!line_.given("--substeps")) o.substeps = {4};
+  if (!line_.given("--reference-substeps")) o.referenceSubsteps = kSubstepsOfOrders;
+  if (!line_.given("--frames")) o.frames = kFramesOfOrders;
+  o.modes.clear();
+  if (o.surfaces.size() > 1) o.surfaces = {SurfaceKind::Quadratic};
+}
+
 void ReportCommandLine::chooseSubsteps() {
   ReportOptions& o = options_;
   if (o.bullet && (line_.given("--substeps") || line_.given("--reference-substeps"))) {
@@ -188,6 +223,7 @@ const ReportOptions& ReportCommandLine::finish() {
     throw scenes::InputError("--view: none of the scenes in --scenes is simulated; add sag, for example");
   sortUniquely(o.modes);
   chooseSolvers();
+  chooseOrders();
   o.bullet = force_ == "bullet";
   if (o.implicit && !o.bullet) throw scenes::InputError("--implicit needs --elasticity bullet");
   chooseSubsteps();

@@ -29,6 +29,9 @@ struct ReportOptions {
   std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; empty: no reduced bodies
   /// Not empty: these solvers in the recommended kind of cage, instead of kinds of cages. `substeps` are tetskin's.
   std::vector<Solver> solvers;
+  /// Cages of both orders of tets, in sag or cantilever, also at rest and by their frequencies; `cages` says which.
+  bool measuresOrders = false;
+  bool filled = false;  ///< cages are tets by formula that fill a built-in model, instead of built ones
   std::vector<std::size_t> xpbdSubsteps = {4, 10, 20, 50};
   std::vector<std::size_t> bulletSubsteps = {1, 2, 4, 8};
   std::size_t repetitions = 3;   ///< of each run of a solver that is timed
@@ -64,9 +67,10 @@ class ReportCommandLine {
   scenes::CommandLine& line_;
   void chooseCages();
   void chooseSolvers();
+  void chooseOrders();
   void chooseSubsteps();
 
-  std::vector<std::string> cages_, solvers_;
+  std::vector<std::string> cages_, solvers_, orders_;
   std::string interpolation_ = "all", force_ = "tetskin";
   bool quick_ = false, full_ = false, noCalibration_ = false, noReduction_ = false;
 };

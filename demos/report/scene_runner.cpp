@@ -11,17 +11,13 @@
 
 #include "report/build_id.h"
 #include "report/coloured_mesh.h"
+#include "scenes/statistics.h"
 
 namespace tetskin::report {
 namespace {
 
 /// Version of the stored results: raise it when older rows are no longer comparable.
-constexpr int kVersion = 6;
-/// For the estimate of the reference's own error, the finest compared cage has the reference's number of tets divided
-/// by this.
-constexpr std::size_t kCoarserLevel = 3;
-/// A cage with a number of tets this close to that serves as well.
-constexpr double kNearEnough = 0.7;
+constexpr int kVersion = 7;
 /// Bullet tests all pairs of vertices and tets, and takes minutes if there are more than this.
 constexpr double kMaxBulletPairs = 1e9;
 
@@ -51,11 +47,8 @@ void appendOthers(const std::vector<std::size_t>& all, std::vector<int>& substep
 
 std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool tetskin) {
   std::vector<Job> jobs;
-  const std::size_t level = options.referenceTets / kCoarserLevel;
   std::vector<std::size_t> sizes = options.tets;
   if (exact) sizes.push_back(options.referenceTets);
-  const bool levelIsNear = static_cast<double>(sizes.back()) >= kNearEnough * static_cast<double>(level);
-  if (!exact && isBuilt(model.reference) && !levelIsNear) sizes.push_back(level);
   const auto distance = [&](std::size_t tets) {
     return std::abs(std::log(static_cast<double>(tets) / static_cast<double>(options.shownTets)));
   };
@@ -63,8 +56,8 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
                                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
   const int usual = tetskin ? usualSubsteps(options) : 0;
   if (!exact) jobs.push_back({options.referenceTets, CageKind::Same, {}, {usual}});
-  const bool bullets =
-      options.solvers.empty() || std::any_of(options.solvers.begin(), options.solvers.end(), isBullets);
+  const bool bullets = options.solvers.empty() ? !options.measuresOrders
+                                               : std::any_of(options.solvers.begin(), options.solvers.end(), isBullets);
   if (!exact && tetskin && bullets) jobs.push_back({options.referenceTets, CageKind::Same, {}, {0}, false, true});
   if (!options.solvers.empty()) {
     for (const std::size_t tets : options.tets)
@@ -73,19 +66,13 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   }
   // Where nothing is simulated, the material does not matter.
   const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
-  // The kind of the reference, if such cages are compared at all.
-  const bool likeReference = std::count(kinds.begin(), kinds.end(), CageKind::Calibrated) > 0;
-  const CageKind levelKind = likeReference ? CageKind::Calibrated : CageKind::Same;
   for (const std::size_t tets : sizes) {
-    const bool asked = std::count(options.tets.begin(), options.tets.end(), tets) > 0;
     const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMaxBulletPairs;
     for (const CageKind kind : kinds) {
       const bool coloured = tets == shown && kind == kinds.front();
-      if (asked || kind == levelKind) {
-        const bool isRecommended = asked && kind == kinds.back();
-        jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), {usual}, coloured});
-        if (tetskin && !exact && isRecommended) appendOthers(options.substeps, jobs.back().substeps);
-      }
+      jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), {usual}, coloured});
+      const bool isRecommended = kind == kinds.back() || options.measuresOrders;
+      if (tetskin && !exact && isRecommended) appendOthers(options.substeps, jobs.back().substeps);
     }
   }
   return jobs;
@@ -109,29 +96,6 @@ void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
   }
 }
 
-/// What the solver may leave of the residual in the reference's substeps, and the limit of its iterations. With its
-/// defaults, what it leaves is more than what so many substeps gain where bodies touch.
-constexpr double kConvergedTolerance = 1e-6;
-constexpr int kConvergedIterations = 1000;
-
-/// substeps  0: the options' own
-scenes::SceneOptions withSubsteps(scenes::SceneOptions options, int substeps) {
-  if (substeps > 0) options.substeps = substeps;
-  return options;
-}
-
-scenes::SceneOptions converged(scenes::SceneOptions options) {
-  options.body.solverTolerance = kConvergedTolerance;
-  options.body.maxIterations = kConvergedIterations;
-  return options;
-}
-
-double rms(const std::vector<double>& values) {
-  double squared = 0.0;
-  for (const double value : values) squared += value * value;
-  return std::sqrt(squared / static_cast<double>(values.size()));
-}
-
 void addFindings(const Job& job, const Simulation& simulation, const scenes::Reduction& reduction, Row& row) {
   row.modes = simulation.modes;
   row.modesLeftOut = job.modes - simulation.modes;
@@ -141,10 +105,12 @@ void addFindings(const Job& job, const Simulation& simulation, const scenes::Red
 
 }  // namespace
 
-SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store,
-                         const ReportOptions& options, const std::string& scene, Elasticity elasticity)
+SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, ReferenceShelf& references,
+                         const ResultStore& store, const ReportOptions& options, const std::string& scene,
+                         Elasticity elasticity)
     : model_(model),
       cages_(cages),
+      references_(references),
       store_(store),
       options_(options),
       entry_(scenes::sceneNamed(scene)),
@@ -170,11 +136,13 @@ double SceneRunner::costOf(const Job& job) const {
                       : elasticity_ == Elasticity::BulletImplicit ? kImplicit
                       : elasticity_ == Elasticity::Tetskin        ? kTetskin
                                                                   : 1.0;
+  constexpr double kLevels = 1.5;  // of coarser references
   if (job.solvers)
     return frames_ * (tets * kSolvers.size() * kImplicit * static_cast<double>(options_.repetitions + 1));
   int substeps = referenceSubsteps(job);
   for (const int one : job.substeps) substeps += one;
-  const double frames = std::max(1.0, static_cast<double>(substeps) / scenes::SceneOptions().substeps);
+  double frames = std::max(1.0, static_cast<double>(substeps) / scenes::SceneOptions().substeps);
+  if (isReference(job)) frames *= kLevels;
   const auto comparisons = isReference(job) ? 0.0 : static_cast<double>(job.substeps.size());
   return frames_ * (tets * step * frames + kCompareOneFrame * comparisons);
 }
@@ -202,6 +170,8 @@ nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
   json["coloured"] = job.coloured;
   json["bullets"] = job.bullets;
   json["modes"] = job.modes;
+  json["filled"] = options_.filled;
+  json["still"] = options_.measuresOrders;
   if (job.solvers) {
     for (const Solver solver : options_.solvers) json["solvers"].push_back(nameOf(solver));
     for (const auto& counts : {options_.substeps, options_.xpbdSubsteps, options_.bulletSubsteps})
@@ -234,7 +204,7 @@ ShownMotion SceneRunner::shownMotion() {
   const Cage& cage = cages_.at(job.tets, job.kind).cage;
   Simulation simulation = simulate(entry_, cage, optionsOf(job, cage, job.substeps.front()), model_.mesh, {}, [] {});
   (void)reference();
-  return {cage, std::move(simulation.trajectory), cages_.reference().cage, right_[false].trajectory,
+  return {cage, std::move(simulation.trajectory), referenceCage(), right_[false].trajectory,
           std::move(simulation.obstacles)};
 }
 
@@ -247,7 +217,8 @@ const Job* SceneRunner::referenceJob(bool bullets) const {
 const scenes::SceneOptions& SceneRunner::material(bool bullets) {
   std::optional<scenes::SceneOptions>& made = right_[bullets].material;
   if (!made) {
-    made = materialOf(entry_, cages_.reference().cage, options_.stiffness,
+    // What lands is as stiff as Bullet's forces can be, in all references.
+    made = materialOf(entry_, referenceCage(bullets || entry_.lands), options_.stiffness,
                       bullets ? Elasticity::BulletExplicit : elasticity_);
     made->frames = frames_;
     made->box = boundingBox(model_.mesh.positions);
@@ -272,67 +243,6 @@ Row SceneRunner::rowOf(const Job& job, const ShelvedCage& shelved) const {
   return row;
 }
 
-Row SceneRunner::referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done,
-                              Trajectory& trajectory) {
-  const ShelvedCage& shelved = cages_.reference();
-  Simulation simulation = simulate(entry_, shelved.cage, options, model_.mesh, {}, done);
-  Row row = rowOf(job, shelved);
-  row.interpolation = "reference";
-  if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
-  row.substeps = options.substeps;
-  row.simulationMs = row.totalMs = simulation.milliseconds;
-  row.memoryBytes = static_cast<double>(simulation.bytes);
-  row.frames = static_cast<double>(simulation.trajectory.size() - 1);
-  row.finite = simulation.finite;
-  row.speedup = 1.0;
-  trajectory = std::move(simulation.trajectory);
-  return row;
-}
-
-std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& progress) {
-  const scenes::SceneOptions usual = withSubsteps(material(job.bullets), job.substeps.front());
-  const int finest = referenceSubsteps(job);
-  int done = 0;
-  const auto count = [&](const scenes::SceneOptions& options) {
-    return [&, substeps = options.substeps] {
-      progress(static_cast<double>(done += substeps) / (frames_ * (finest + usual.substeps)));
-    };
-  };
-  Trajectory& right = right_[job.bullets].trajectory;
-  const scenes::SceneOptions own = finest > 0 ? converged(withSubsteps(usual, finest)) : usual;
-  std::vector<Row> rows = {referenceRow(job, own, count(own), right)};
-  store_.keep(settings(job), right);
-  if (own.substeps != usual.substeps) {
-    Trajectory nodes;
-    Row row = referenceRow(job, usual, count(usual), nodes);
-    row.errorTimeRms = surfaceDistance(model_.mesh, cages_.reference().cage, SurfaceKind::Quadratic, nodes, right);
-    row.errorTotalRms = row.errorTimeRms;
-    rows.insert(rows.begin(), row);
-  }
-  store_.keep(settings(job), rows);
-  return rows;
-}
-
-Reference& SceneRunner::reference(bool bullets) {
-  Right& right = right_[bullets];
-  if (right.reference) return *right.reference;
-  if (isExact()) {
-    right.reference =
-        std::make_unique<ExactReference>(model_.mesh, scenes::smoothTwistOf(boundingBox(model_.mesh.positions)));
-    return *right.reference;
-  }
-  const Job& job = *referenceJob(bullets);
-  if (right.trajectory.empty()) {
-    if (std::optional<Trajectory> kept = store_.trajectory(settings(job))) {
-      right.trajectory = std::move(*kept);
-    } else {
-      (void)referenceRows(job, [](double) {});
-    }
-  }
-  right.reference = std::make_unique<SimulatedReference>(model_.mesh, cages_.reference().cage, right.trajectory);
-  return *right.reference;
-}
-
 void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame) {
   const Points& positions = reference().surfaceAt(frame).positions;
   store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, maxOf(errors.rmsByVertex)));
@@ -342,7 +252,7 @@ scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage, in
   scenes::SceneOptions options = withSubsteps(material(), substeps);
   if (job.modes == 0) return options;
   options.force = scenes::Force::Reduced;
-  options.reduction = modes_.reductionOf(model_.mesh, cages_.reference().cage, cage);
+  options.reduction = modes_.reductionOf(model_.mesh, references_.at(ReferenceTets::Linear).cage, cage);
   options.modes = job.modes;
   return options;
 }
@@ -392,6 +302,8 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
   const Trajectory fine = convergedMotion(job, cage, motions.front().nodes);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
+    Row still;
+    if (options_.measuresOrders) compareStill(cage, kind, still);
     const double space = surfaceErrors(reference(), model_.mesh, cage, kind, fine).rms;
     const double embedding = surfaceErrors(reference(), model_.mesh, cage, kind, driven).rms;
     for (const Motion& motion : motions) {
@@ -400,6 +312,9 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
       row.errorSpaceRms = space;
       row.errorTimeRms = surfaceDistance(model_.mesh, cage, kind, motion.nodes, fine);
       row.errorEmbeddingRms = embedding;
+      row.errorAtRest = still.errorAtRest;
+      row.sagExcess = still.sagExcess;
+      row.frequencyError = still.frequencyError;
     }
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.substeps < b.substeps; });
@@ -423,7 +338,7 @@ Row SceneRunner::compared(const Job& job, const Cage& cage, SurfaceKind kind, co
   row.interpolation = nameOf(kind);
   row.errorTotalRms = total.rms;
   row.errorTotalMax = total.max;
-  row.errorOfMotion = total.rms / rms(total.amplitudeByFrame);
+  row.errorOfMotion = total.rms / scenes::rms(total.amplitudeByFrame);
   row.normalErrorMeanDeg = total.normalMeanDeg;
   row.errorByFrame = total.rmsByFrame;
   row.amplitudeByFrame = total.amplitudeByFrame;

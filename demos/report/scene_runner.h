@@ -16,6 +16,7 @@
 #include "report/report_row.h"
 #include "report/result_store.h"
 #include "report/solver.h"
+#include "report/still_body.h"
 #include "report/surface_errors.h"
 #include "report/xpbd_fit.h"
 #include "scenes/table.h"
@@ -41,7 +42,8 @@ struct ReportModel {
   double diagonal = 0.0;       ///< diagonal of the mesh's box
   double modelDiagonal = 0.0;  ///< the same diagonal in the unit of the mesh's file
   std::uint64_t hash = 0;
-  ReferenceCage reference;
+  scenes::Placement placement;  ///< from the space of the mesh's file
+  ReferenceSource reference;
 };
 
 /// How a coarse cage moves, and how the reference does: node positions by frame.
@@ -60,8 +62,8 @@ constexpr const char* kExact = "exact";
 class SceneRunner {
  public:
   /// All arguments must outlive this object.
-  SceneRunner(const ReportModel& model, CageShelf& cages, const ResultStore& store, const ReportOptions& options,
-              const std::string& scene, Elasticity elasticity);
+  SceneRunner(const ReportModel& model, CageShelf& cages, ReferenceShelf& references, const ResultStore& store,
+              const ReportOptions& options, const std::string& scene, Elasticity elasticity);
 
   const std::string& scene() const { return entry_.name; }
   std::string integrator() const;
@@ -127,11 +129,20 @@ class SceneRunner {
   Row referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done, Trajectory& trajectory);
   /// The reference's own row, behind one of the same cage in the usual substeps if these are fewer.
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& progress);
+  /// Adds what the reference itself is wrong by, as far as coarser cages of its kind tell.
+  void estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const FrameDone& done, Row& row);
+  ReferenceTets referenceTets(bool bullets) const;
+  const Cage& referenceCage(bool bullets = false) { return references_.at(referenceTets(bullets)).cage; }
+  /// The reference at rest under the scene's loads, and its frequencies.
+  const StillBody& stillReference();
+  /// A body's errors at rest and of its frequencies, of the surface of this kind.
+  void compareStill(const Cage& cage, SurfaceKind kind, Row& row);
   Row rowOf(const Job& job, const ShelvedCage& shelved) const;
   void colour(const Job& job, const SurfaceErrors& errors, int frame);
 
   const ReportModel& model_;
   CageShelf& cages_;
+  ReferenceShelf& references_;
   const ResultStore& store_;
   const ReportOptions& options_;
   const scenes::SceneEntry& entry_;
@@ -139,6 +150,7 @@ class SceneRunner {
   ModeShelf modes_;
   Elasticity elasticity_;
   std::vector<Job> jobs_;
+  std::optional<StillBody> still_;
   Right right_[2];  ///< with the elasticity of the cages; with Bullet's, if that is a different one
 };
 

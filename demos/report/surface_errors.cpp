@@ -65,25 +65,30 @@ SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, cons
   CarriedSurface surface(cage, mesh, kind);
   SurfaceErrors errors;
   std::vector<double> squaredByVertex(count, 0.0);
-  double squared = 0.0, degrees = 0.0;
+  double squared = 0.0, degrees = 0.0, along = 0.0, all = 0.0;
   for (std::size_t frame = 1; frame < nodes.size(); ++frame) {
     const ReferenceSurface& right = reference.surfaceAt(static_cast<int>(frame));
     surface.update(nodes[frame]);
     double squaredInFrame = 0.0, moved = 0.0;
     for (std::size_t v = 0; v < count; ++v) {
-      const double distance = (surface.position(v) - right.positions[v]).norm() / diagonal;
+      const Eigen::Vector3d off = (surface.position(v) - right.positions[v]) / diagonal;
+      const Eigen::Vector3d way = (right.positions[v] - mesh.positions[v]) / diagonal;
+      const double distance = off.norm();
       squaredInFrame += distance * distance;
       squaredByVertex[v] += distance * distance;
-      moved += (right.positions[v] - mesh.positions[v]).squaredNorm() / (diagonal * diagonal);
+      moved += way.squaredNorm();
+      along += off.dot(way);
       errors.max = std::max(errors.max, distance);
       degrees += angle(surface.normal(v), right.normals[v]);
     }
     squared += squaredInFrame;
+    all += moved;
     errors.amplitudeByFrame.push_back(std::sqrt(moved / static_cast<double>(count)));
     errors.rmsByFrame.push_back(std::sqrt(squaredInFrame / static_cast<double>(count)));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(nodes.size(), 2) - 1);
   errors.rms = std::sqrt(squared / (frames * static_cast<double>(count)));
+  if (all > 0.0) errors.excess = along / all;
   errors.normalMeanDeg = degrees / (frames * static_cast<double>(count));
   for (const double s : squaredByVertex) errors.rmsByVertex.push_back(static_cast<float>(std::sqrt(s / frames)));
   return errors;

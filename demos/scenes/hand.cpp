@@ -90,40 +90,19 @@ ImplicitSolid uprightHand() {
   return hand;
 }
 
-std::size_t countOf(const TriangleMesh& mesh) {
-  return mesh.triangleCount();
-}
-std::size_t countOf(const TetMesh& mesh) {
-  return mesh.tetCount();
-}
-
-/// Makes a mesh with the requested number of triangles or tets, which is roughly proportional to a power of the
-/// spacing.
-template <class Make>
-auto meshOf(std::size_t wish, double power, const Make& make) {
-  constexpr double kFirst = 0.05, kNearEnough = 0.03;
-  constexpr int kTrials = 5;
-  double spacing = kFirst;
-  auto mesh = make(uprightHand(), spacing);
-  for (int trial = 1; trial < kTrials; ++trial) {
-    const double ratio = static_cast<double>(countOf(mesh)) / static_cast<double>(wish);
-    if (std::abs(ratio - 1.0) < kNearEnough) break;
-    spacing = std::min(kMaxSpacing, spacing * std::pow(ratio, 1.0 / power));
-    mesh = make(uprightHand(), spacing);
-  }
-  return mesh;
-}
-
 }  // namespace
 
 TriangleMesh makeHand(std::size_t triangles) {
-  TriangleMesh mesh = meshOf(std::clamp(triangles, kMinHandTriangles, kMaxHandTriangles), 2.0, surfaceOf);
+  TriangleMesh mesh =
+      surfaceOf(uprightHand(), std::clamp(triangles, kMinHandTriangles, kMaxHandTriangles), kMaxSpacing);
   mesh.groups.push_back({"hand", "hand", 0, mesh.triangleCount()});
   return mesh;
 }
 
 TetMesh makeHandTets(std::size_t tets) {
-  return meshOf(std::max(tets, kMinHandTets), 3.0, tetsOf);
+  TetMesh mesh = tetsOf(uprightHand(), std::max(tets, kMinHandTets), kMaxSpacing);
+  matchVolume(mesh, handDistance);
+  return mesh;
 }
 
 Eigen::Hyperplane<double, 3> handPlane() {

@@ -9,7 +9,9 @@
 #include <cstdio>
 
 #include "scenes/bar.h"
+#include "scenes/beam.h"
 #include "scenes/hand.h"
+#include "scenes/hoop_and_star.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
 #include "scenes/slotted_beam.h"
@@ -36,8 +38,11 @@ TriangleMesh makeSerpentOf(std::size_t triangles) {
 const Maker& makerOf(BuiltIn model) {
   static const Maker makers[] = {{"serpent", makeSerpentOf},
                                  {"bar", makeBar},
+                                 {"beam", makeBeam, makeBeamTets, kMinBeamTets},
                                  {"slotted_beam", makeSlottedBeam, makeSlottedBeamTets, kMinSlottedBeamTets},
-                                 {"hand", makeHand, makeHandTets, kMinHandTets}};
+                                 {"hand", makeHand, makeHandTets, kMinHandTets},
+                                 {"hoop", makeHoop},
+                                 {"star", makeStar}};
   return makers[static_cast<std::size_t>(model)];
 }
 
@@ -49,7 +54,8 @@ void warn(const std::string& path, const std::string& what) {
 }  // namespace
 
 const std::vector<BuiltIn>& builtInModels() {
-  static const std::vector<BuiltIn> all = {BuiltIn::Serpent, BuiltIn::Bar, BuiltIn::SlottedBeam, BuiltIn::Hand};
+  static const std::vector<BuiltIn> all = {BuiltIn::Serpent, BuiltIn::Bar,  BuiltIn::Beam, BuiltIn::SlottedBeam,
+                                           BuiltIn::Hand,    BuiltIn::Hoop, BuiltIn::Star};
   return all;
 }
 
@@ -61,6 +67,10 @@ std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets) {
   const Maker& maker = makerOf(model);
   if (!maker.tets || tets < maker.minTets) return {};
   return maker.tets(tets);
+}
+
+std::size_t fewestConformingTets(BuiltIn model) {
+  return makerOf(model).minTets;
 }
 
 Surface loadSurface(const ModelOptions& options) {

@@ -18,15 +18,17 @@
 
 namespace tetskin::scenes {
 
-enum class BuiltIn { Serpent, Bar, SlottedBeam, Hand };
+enum class BuiltIn { Serpent, Bar, Beam, SlottedBeam, Hand, Hoop, Star };
 /// All built-in models, in the order of the enumeration.
 const std::vector<BuiltIn>& builtInModels();
-/// "serpent", "bar", "slotted_beam", "hand".
+/// "serpent", "bar", "beam", "slotted_beam", "hand", "hoop", "star".
 std::string nameOf(BuiltIn model);
 
 /// About this many tets that fill a built-in model, made by formula and not by the cage builder: parts of the model
 /// that are near each other are never fused. Nothing if the model has none, or none with so few tets.
 std::optional<TetMesh> conformingTets(BuiltIn model, std::size_t tets);
+/// The fewest of these that a built-in model has; 0 if it has none.
+std::size_t fewestConformingTets(BuiltIn model);
 
 /// Options that choose the mesh and the cage.
 struct ModelOptions {

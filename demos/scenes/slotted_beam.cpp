@@ -38,7 +38,7 @@ struct Cells {
   explicit Cells(double edge)
       : solid(cellsAlong(kSolid, edge)),
         free(cellsAlong(kLength - kSolid, edge)),
-        prong(std::max(2, cellsAlong(kProng, edge))),
+        prong(cellsAlong(kProng, edge)),
         slot(cellsAlong(kSlot, edge)),
         wide(cellsAlong(kWidth, edge)) {}
 
@@ -72,8 +72,9 @@ struct Cells {
 
 /// The coarsest grid for which a count reaches a minimum.
 Cells cellsWith(std::size_t wish, const std::function<std::size_t(const Cells&)>& count) {
-  constexpr double kCoarsest = 0.3, kStep = 0.995;
-  double edge = kCoarsest;
+  constexpr double kCoarsest = 0.3, kStep = 0.995, kAtMost = 0.9;
+  // From here on by the same steps; coarser grids serve a few tets.
+  double edge = count(Cells(kCoarsest)) < wish ? kCoarsest : kAtMost;
   while (count(Cells(edge)) < wish) edge *= kStep;
   return Cells(edge);
 }

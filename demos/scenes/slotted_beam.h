@@ -20,7 +20,7 @@ constexpr double kSlottedBeamVolume = 3.904;
 TriangleMesh makeSlottedBeam(std::size_t triangles = 60000);
 
 /// The fewest tets that makeSlottedBeamTets makes.
-constexpr std::size_t kMinSlottedBeamTets = 2000;
+constexpr std::size_t kMinSlottedBeamTets = 60;
 
 /// The same body as a conforming mesh of tets that fills it exactly, at least `tets` and only a few more: a reference
 /// that no cage builder has made, and in which the prongs share nothing but the solid end.

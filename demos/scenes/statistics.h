@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace tetskin::scenes {
@@ -13,6 +14,13 @@ inline double median(std::vector<double> values) {
   const auto centroid = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), centroid, values.end());
   return *centroid;
+}
+
+/// Root mean square of at least one number.
+inline double rms(const std::vector<double>& values) {
+  double squared = 0.0;
+  for (const double value : values) squared += value * value;
+  return std::sqrt(squared / static_cast<double>(values.size()));
 }
 
 }  // namespace tetskin::scenes

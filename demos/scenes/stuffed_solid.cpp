@@ -221,6 +221,29 @@ class Stuffing {
   std::vector<bool> onSurface_;  ///< nodeCount of the mesh
 };
 
+std::size_t countOf(const TriangleMesh& mesh) {
+  return mesh.triangleCount();
+}
+std::size_t countOf(const TetMesh& mesh) {
+  return mesh.tetCount();
+}
+
+/// A mesh with the requested number of triangles or tets, which is roughly proportional to a power of the spacing.
+template <class Make>
+auto meshOf(std::size_t wish, double power, double maxSpacing, const Make& make) {
+  constexpr double kFirst = 1.7, kNearEnough = 0.03;
+  constexpr int kTrials = 5;
+  double spacing = maxSpacing / kFirst;
+  auto mesh = make(spacing);
+  for (int trial = 1; trial < kTrials; ++trial) {
+    const double ratio = static_cast<double>(countOf(mesh)) / static_cast<double>(wish);
+    if (std::abs(ratio - 1.0) < kNearEnough) break;
+    spacing = std::min(maxSpacing, spacing * std::pow(ratio, 1.0 / power));
+    mesh = make(spacing);
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TetMesh tetsOf(const ImplicitSolid& solid, double spacing) {
@@ -245,6 +268,33 @@ TriangleMesh surfaceOf(const ImplicitSolid& solid, double spacing) {
     mesh.triangles.push_back(face);
   }
   return mesh;
+}
+
+TetMesh tetsOf(const ImplicitSolid& solid, std::size_t tets, double maxSpacing) {
+  return meshOf(tets, 3.0, maxSpacing, [&](double spacing) { return tetsOf(solid, spacing); });
+}
+
+TriangleMesh surfaceOf(const ImplicitSolid& solid, std::size_t triangles, double maxSpacing) {
+  return meshOf(triangles, 2.0, maxSpacing, [&](double spacing) { return surfaceOf(solid, spacing); });
+}
+
+void matchVolume(TetMesh& mesh, const std::function<double(const Vector3d&)>& distance) {
+  std::vector<Vector3d> normals(mesh.nodeCount(), Vector3d::Zero());
+  std::vector<double> areas(mesh.nodeCount(), 0.0), missing(mesh.nodeCount(), 0.0);
+  for (const auto& face : boundaryFaces(mesh)) {
+    const Vector3d &a = mesh.nodes[face[0]], &b = mesh.nodes[face[1]], &c = mesh.nodes[face[2]];
+    const Vector3d normal = (b - a).cross(c - a);
+    // The middles of the edges are a rule that is exact for the squares of what curves.
+    const double gap = -(distance(0.5 * (a + b)) + distance(0.5 * (b + c)) + distance(0.5 * (c + a))) / 3.0;
+    for (const int n : face) {
+      normals[n] += normal;
+      areas[n] += normal.norm();
+      missing[n] += normal.norm() * gap;
+    }
+  }
+  for (std::size_t n = 0; n < normals.size(); ++n) {
+    if (areas[n] > 0.0) mesh.nodes[n] += missing[n] / areas[n] * normals[n].normalized();
+  }
 }
 
 }  // namespace tetskin::scenes

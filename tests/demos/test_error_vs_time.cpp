@@ -148,8 +148,6 @@ TEST_F(ErrorVsTime, TellsApartWhatSplittingFillAndCalibrationDo) {
   const CommandResult result = run({"--quick", "--scenes", "sag", "--tets", "1000", "--cages", "all", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = folder.json("out/error_vs_time.json");
-  EXPECT_LT(number(json.at("reference"), "stiffness_factor"), 1.0);
-  EXPECT_NE(result.out.find(", calibrated (stiffness scaled by 0."), std::string::npos) << result.out;
   const auto& scene = json.at("scenes").at(0);
   const auto row = [&](const char* kind) {
     const auto rows = usualRowsOf(scene, "linear", kind);

@@ -96,7 +96,7 @@ TEST(SlottedBeam, IsAClosedSurfaceOfExactVolume) {
 
 TEST(SlottedBeam, IsFilledByTetsThatDoNotFuseItsProngs) {
   const TriangleMesh mesh = makeSlottedBeam(kSmall);
-  for (const std::size_t tets : {std::size_t{2000}, std::size_t{10000}, kMany}) {
+  for (const std::size_t tets : {kMinSlottedBeamTets, std::size_t{2000}, std::size_t{10000}, kMany}) {
     const TetMesh filling = makeSlottedBeamTets(tets);
     expectConforming(filling);
     EXPECT_NEAR(totalVolume(filling), kSlottedBeamVolume, 1e-9);
@@ -152,7 +152,7 @@ TEST(Hand, IsFilledByTetsThatDoNotFuseItsFingers) {
     std::size_t tets;
     double volumeError, outside;  // error by the chords of a polygon, coarsest at the tips; a gap is 0.05
   };
-  for (const auto& [tets, error, outside] : {Case{kMinHandTets, 0.045, 0.03}, Case{kMany, kManyVolumeError, 0.01}}) {
+  for (const auto& [tets, error, outside] : {Case{kMinHandTets, 0.01, 0.03}, Case{kMany, kManyVolumeError, 0.01}}) {
     const TetMesh filling = makeHandTets(tets);
     expectConforming(filling);
     EXPECT_NEAR(totalVolume(filling), volume, error * volume);
@@ -171,9 +171,10 @@ TEST(BuiltInModels, HaveNamesSurfacesAndSomeHaveTets) {
     const Surface surface = loadSurface(options);
     EXPECT_EQ(surface.name, nameOf(model));
     EXPECT_NEAR(static_cast<double>(surface.mesh.triangleCount()), static_cast<double>(kSmall), 0.05 * kSmall);
-    const bool byFormula = model == BuiltIn::SlottedBeam || model == BuiltIn::Hand;
-    EXPECT_EQ(conformingTets(model, 15000).has_value(), byFormula) << surface.name;
-    EXPECT_FALSE(conformingTets(model, 1000)) << surface.name;
+    const bool isBeam = model == BuiltIn::SlottedBeam || model == BuiltIn::Beam;
+    EXPECT_EQ(conformingTets(model, 15000).has_value(), isBeam || model == BuiltIn::Hand) << surface.name;
+    EXPECT_EQ(conformingTets(model, 1000).has_value(), isBeam) << surface.name;
+    EXPECT_EQ(fewestConformingTets(model) > 0, conformingTets(model, 15000).has_value());
   }
 }
 

@@ -24,10 +24,10 @@ void buildReference(const CommandFolder& folder, const std::string& model, const
 }
 
 TEST_F(ReportReferences, TakesTheTetsThatABuiltInModelComesWith) {
-  const std::vector<std::string> arguments = {"--model",          "slotted_beam", "--triangles", "2000",
-                                              "--scenes",         "sag",          "--tets",      "300",
-                                              "--no-calibration", "--frames",     "3",           "--interpolation",
-                                              "linear",           "--elasticity", "bullet"};
+  std::vector<std::string> arguments = {"--model",          "slotted_beam", "--triangles", "2000",
+                                        "--scenes",         "sag",          "--tets",      "300",
+                                        "--no-calibration", "--frames",     "3",           "--interpolation",
+                                        "linear",           "--elasticity", "bullet"};
   const auto with = [&](const std::string& tets) {
     std::vector<std::string> all = arguments;
     all.insert(all.end(), {"--reference-tets", tets, "--out", "out"});
@@ -40,11 +40,13 @@ TEST_F(ReportReferences, TakesTheTetsThatABuiltInModelComesWith) {
   EXPECT_EQ(json.at("model"), "slotted_beam");
   EXPECT_EQ(json.at("reference").at("from"), "formula");
   EXPECT_GE(json.at("reference").at("tets"), 2000);
-  EXPECT_EQ(number(rowsOf(json.at("scenes").at(0), "reference").at(0), "tets"), number(json.at("reference"), "tets"));
-  // Fused cages do not converge to it, so none is built to estimate its error.
-  EXPECT_EQ(json.at("scenes").at(0).at("reference_error"), 0.0);
+  // Bullet's forces know no quadratic tets.
+  const double linear = number(rowsOf(json.at("scenes").at(0), "reference").at(0), "tets");
+  EXPECT_NEAR(linear / number(json.at("reference"), "tets"), 1.1, 0.1);
+  EXPECT_GT(number(json.at("scenes").at(0), "reference_error"), 0.0);
   EXPECT_EQ(json.at("scenes").at(0).at("rows").size(), 2u);
 
+  for (std::string& one : arguments) one = one == "slotted_beam" ? "hand" : one;
   const CommandResult few = with("1000");
   ASSERT_EQ(few.status, 0) << few.err;
   EXPECT_NE(few.out.find("a built cage of about 1000 tets"), std::string::npos) << few.out;

@@ -16,4 +16,16 @@ std::unique_ptr<Scene> makeSag(const Cage& cage, const SceneOptions& options) {
   return scene;
 }
 
+/// The body is held by the left side of its box. For beams, whose nodes there are in one plane in any mesh.
+std::unique_ptr<Scene> makeCantilever(const Cage& cage, const SceneOptions& options) {
+  constexpr double kHeldFraction = 1e-4;  // share of the length
+  auto scene = std::make_unique<Scene>(options, kEarth);
+  const Box3 box = layoutBox(options, cage);
+  const double end = box.min().x() + kHeldFraction * box.sizes().x();
+  const auto held = [end](const Eigen::Vector3d& p) { return p.x() <= end; };
+  (void)nodesWhere(cage, held);
+  scene->add(cage, held);
+  return scene;
+}
+
 }  // namespace tetskin::scenes

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include <tetskin/core/cage.h>
+#include <tetskin/core/mesh.h>
+
+namespace tetskin::report {
+
+/// The same cage of quadratic tets, each of them eight tets, with all that the cage knows of its mesh.
+/// cage  valid, its tets positive
+/// mesh  of which the cage knows `vertexTets`; not used if it knows none
+/// Throws InputError
+Cage quadraticCage(const Cage& cage, const TriangleMesh& mesh);
+
+}  // namespace tetskin::report

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The reference of a scene, and how far it can be trusted.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/advice.h"
+#include "report/scene_runner.h"
+#include "scenes/statistics.h"
+
+namespace tetskin::report {
+namespace {
+
+/// Of a reference and its coarser levels.
+constexpr int kAllRuns = ReferenceShelf::kLevels;
+
+}  // namespace
+
+ReferenceTets SceneRunner::referenceTets(bool bullets) const {
+  return bullets || elasticity_ != Elasticity::Tetskin ? ReferenceTets::Linear : ReferenceTets::Quadratic;
+}
+
+Row SceneRunner::referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done,
+                              Trajectory& trajectory) {
+  const ShelvedCage& shelved = references_.at(referenceTets(job.bullets));
+  Simulation simulation = simulate(entry_, shelved.cage, options, model_.mesh, {}, done);
+  Row row = rowOf(job, shelved);
+  row.interpolation = "reference";
+  if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
+  row.substeps = options.substeps;
+  row.simulationMs = row.totalMs = simulation.milliseconds;
+  row.memoryBytes = static_cast<double>(simulation.bytes);
+  row.frames = static_cast<double>(simulation.trajectory.size() - 1);
+  row.finite = simulation.finite;
+  row.speedup = 1.0;
+  trajectory = std::move(simulation.trajectory);
+  return row;
+}
+
+std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<void(double)>& progress) {
+  const scenes::SceneOptions usual = withSubsteps(material(job.bullets), job.substeps.front());
+  const int finest = referenceSubsteps(job);
+  int done = 0;
+  const auto count = [&](const scenes::SceneOptions& options) {
+    return [&, substeps = options.substeps] {
+      const int all = frames_ * (kAllRuns * finest + usual.substeps);
+      progress(std::min(1.0, static_cast<double>(done += substeps) / all));
+    };
+  };
+  Trajectory& right = right_[job.bullets].trajectory;
+  const scenes::SceneOptions own = finest > 0 ? converged(withSubsteps(usual, finest)) : usual;
+  std::vector<Row> rows = {referenceRow(job, own, count(own), right)};
+  store_.keep(settings(job), right);
+  if (!job.bullets) estimateOwnErrors(job, own, count(own), rows.back());
+  if (own.substeps != usual.substeps) {
+    Trajectory nodes;
+    Row row = referenceRow(job, usual, count(usual), nodes);
+    row.errorTimeRms = surfaceDistance(model_.mesh, referenceCage(job.bullets), SurfaceKind::Quadratic, nodes, right);
+    row.errorTotalRms = row.errorTimeRms;
+    rows.insert(rows.begin(), row);
+  }
+  store_.keep(settings(job), rows);
+  return rows;
+}
+
+Reference& SceneRunner::reference(bool bullets) {
+  Right& right = right_[bullets];
+  if (right.reference) return *right.reference;
+  if (isExact()) {
+    right.reference =
+        std::make_unique<ExactReference>(model_.mesh, scenes::smoothTwistOf(boundingBox(model_.mesh.positions)));
+    return *right.reference;
+  }
+  const Job& job = *referenceJob(bullets);
+  if (right.trajectory.empty()) {
+    if (std::optional<Trajectory> kept = store_.trajectory(settings(job))) {
+      right.trajectory = std::move(*kept);
+    } else {
+      (void)referenceRows(job, [](double) {});
+    }
+  }
+  right.reference = std::make_unique<SimulatedReference>(model_.mesh, referenceCage(bullets), right.trajectory);
+  return *right.reference;
+}
+
+void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const FrameDone& done,
+                                    Row& row) {
+  const ReferenceTets kind = referenceTets(job.bullets);
+  std::vector<CoarserLevel> space, rest, frequencies;
+  std::vector<double> amplitudes;
+  for (int level = 1; level < references_.levelCount(kind); ++level) {
+    const Cage& cage = references_.at(kind, level).cage;
+    Trajectory nodes = simulate(entry_, cage, options, model_.mesh, {}, done).trajectory;
+    nodes.resize(std::min(nodes.size(), right_[false].trajectory.size()));
+    const double edge = meanEdge(cage) / model_.diagonal;
+    const SurfaceErrors errors = surfaceErrors(reference(), model_.mesh, cage, SurfaceKind::Quadratic, nodes);
+    space.push_back({edge, errors.rms});
+    amplitudes = errors.amplitudeByFrame;
+    if (!options_.measuresOrders) continue;
+    Row still;
+    compareStill(cage, SurfaceKind::Quadratic, still);
+    rest.push_back({edge, still.errorAtRest});
+    frequencies.push_back({edge, still.frequencyError});
+  }
+  row.errorSpaceRms = ownError(row.edge, space);
+  if (row.errorSpaceRms > 0.0) row.errorOfMotion = row.errorSpaceRms / scenes::rms(amplitudes);
+  row.errorAtRest = ownError(row.edge, rest);
+  row.frequencyError = ownError(row.edge, frequencies);
+}
+
+const StillBody& SceneRunner::stillReference() {
+  if (!still_) still_ = stillBody(entry_, referenceCage(), converged(material()));
+  return *still_;
+}
+
+void SceneRunner::compareStill(const Cage& cage, SurfaceKind kind, Row& row) {
+  const StillBody &right = stillReference(), body = stillBody(entry_, cage, converged(material()));
+  SimulatedReference atRest(model_.mesh, referenceCage(), right.rest);
+  const SurfaceErrors errors = surfaceErrors(atRest, model_.mesh, cage, kind, body.rest);
+  row.errorAtRest = errors.rms / errors.amplitudeByFrame.front();
+  row.sagExcess = errors.excess;
+  row.frequencyError = frequencyError(body.frequencies, right.frequencies);
+}
+
+}  // namespace tetskin::report
