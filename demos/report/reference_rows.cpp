@@ -45,7 +45,7 @@ std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<
   int done = 0;
   const auto count = [&](const scenes::SceneOptions& options) {
     return [&, substeps = options.substeps] {
-      const int all = frames_ * (kAllRuns * finest + usual.substeps);
+      const int all = frames_ * (finest + kAllRuns * usual.substeps);
       progress(std::min(1.0, static_cast<double>(done += substeps) / all));
     };
   };
@@ -53,13 +53,15 @@ std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<
   const scenes::SceneOptions own = finest > 0 ? converged(withSubsteps(usual, finest)) : usual;
   std::vector<Row> rows = {referenceRow(job, own, count(own), right)};
   store_.keep(settings(job), right);
-  if (!job.bullets) estimateOwnErrors(job, own, count(own), rows.back());
   if (own.substeps != usual.substeps) {
     Trajectory nodes;
     Row row = referenceRow(job, usual, count(usual), nodes);
     row.errorTimeRms = surfaceDistance(model_.mesh, referenceCage(job.bullets), SurfaceKind::Quadratic, nodes, right);
     row.errorTotalRms = row.errorTimeRms;
     rows.insert(rows.begin(), row);
+    if (!job.bullets) estimateOwnErrors(job, usual, nodes, count(usual), rows.back());
+  } else if (!job.bullets) {
+    estimateOwnErrors(job, usual, right, count(usual), rows.back());
   }
   store_.keep(settings(job), rows);
   return rows;
@@ -85,17 +87,18 @@ Reference& SceneRunner::reference(bool bullets) {
   return *right.reference;
 }
 
-void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const FrameDone& done,
-                                    Row& row) {
+void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const Trajectory& motion,
+                                    const FrameDone& done, Row& row) {
+  SimulatedReference own(model_.mesh, referenceCage(), motion);
   const ReferenceTets kind = referenceTets(job.bullets);
   std::vector<CoarserLevel> space, rest, frequencies;
   std::vector<double> amplitudes;
   for (int level = 1; level < references_.levelCount(kind); ++level) {
     const Cage& cage = references_.at(kind, level).cage;
     Trajectory nodes = simulate(entry_, cage, options, model_.mesh, {}, done).trajectory;
-    nodes.resize(std::min(nodes.size(), right_[false].trajectory.size()));
+    nodes.resize(std::min(nodes.size(), motion.size()));
     const double edge = meanEdge(cage) / model_.diagonal;
-    const SurfaceErrors errors = surfaceErrors(reference(), model_.mesh, cage, SurfaceKind::Quadratic, nodes);
+    const SurfaceErrors errors = surfaceErrors(own, model_.mesh, cage, SurfaceKind::Quadratic, nodes);
     space.push_back({edge, errors.rms});
     amplitudes = errors.amplitudeByFrame;
     if (!options_.measuresOrders) continue;

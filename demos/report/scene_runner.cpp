@@ -136,13 +136,11 @@ double SceneRunner::costOf(const Job& job) const {
                       : elasticity_ == Elasticity::BulletImplicit ? kImplicit
                       : elasticity_ == Elasticity::Tetskin        ? kTetskin
                                                                   : 1.0;
-  constexpr double kLevels = 1.5;  // of coarser references
   if (job.solvers)
     return frames_ * (tets * kSolvers.size() * kImplicit * static_cast<double>(options_.repetitions + 1));
   int substeps = referenceSubsteps(job);
   for (const int one : job.substeps) substeps += one;
-  double frames = std::max(1.0, static_cast<double>(substeps) / scenes::SceneOptions().substeps);
-  if (isReference(job)) frames *= kLevels;
+  const double frames = std::max(1.0, static_cast<double>(substeps) / scenes::SceneOptions().substeps);
   const auto comparisons = isReference(job) ? 0.0 : static_cast<double>(job.substeps.size());
   return frames_ * (tets * step * frames + kCompareOneFrame * comparisons);
 }

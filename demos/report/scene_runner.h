@@ -129,8 +129,11 @@ class SceneRunner {
   Row referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done, Trajectory& trajectory);
   /// The reference's own row, behind one of the same cage in the usual substeps if these are fewer.
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& progress);
-  /// Adds what the reference itself is wrong by, as far as coarser cages of its kind tell.
-  void estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const FrameDone& done, Row& row);
+  /// Adds what the reference itself is wrong by, as far as coarser cages of its kind tell, all in few substeps: errors
+  /// in time are nearly the same in all of them.
+  /// motion  of the reference with these options
+  void estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const Trajectory& motion,
+                         const FrameDone& done, Row& row);
   ReferenceTets referenceTets(bool bullets) const;
   const Cage& referenceCage(bool bullets = false) { return references_.at(referenceTets(bullets)).cage; }
   /// The reference at rest under the scene's loads, and its frequencies.
