@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where the blocks of a matrix lie, and from which corners of tets each is
-// summed.
+// Where the blocks of a matrix lie, and from which corners of tets each is summed.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -18,8 +17,7 @@ namespace {
 
 using kernels::kGroup;
 
-/// The cages for the tests of the pattern; one of them has nodes that no tet
-/// uses.
+/// The cages for the tests of the pattern; one of them has nodes that no tet uses.
 std::vector<TetMesh> patternCages() {
   std::vector<TetMesh> cages{singleTet(), latticeCage(3, 2, 1), bodyCentredCage(3, 3, 2), latticeCage(12, 12, 12),
                              latticeCage(120, 7, 7)};

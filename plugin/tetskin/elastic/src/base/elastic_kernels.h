@@ -24,6 +24,7 @@ constexpr std::size_t kWideVector = 3 * kGroup, kWideSymmetric = 6 * kGroup, kWi
 /// Eight tets at rest.
 template <class S>
 struct TetPack {
+  /// Points where it is integrated, nodes, and what `kCorners` counts.
   static constexpr std::size_t kPoints = 1, kNodes = 4, kCornersPerNode = 1;
   S gradients[9][kGroup];               ///< of the barycentric weights of nodes 1, 2 and 3, rest space
   S shear[kGroup];                      ///< 2 mu x volume; 0 for padding in the last pack
@@ -34,6 +35,7 @@ struct TetPack {
 /// Eight quadratic tets at rest, which are integrated at four points.
 template <class S>
 struct QuadraticPack {
+  /// Points where it is integrated, nodes, and what `kCorners` counts.
   static constexpr std::size_t kPoints = 4, kNodes = 10, kCornersPerNode = 3;
   S gradients[9][kGroup];               ///< of the barycentric weights of corners 1, 2 and 3, rest space
   S points[3 * kPoints][kGroup];        ///< the same weights at each point
@@ -45,7 +47,7 @@ struct QuadraticPack {
 /// Scalars of a tet's corners, which are points: vectors of its nodes, of a linear tet one each; of a quadratic one,
 /// which has vectors at four points, three, with all their x, y and z.
 template <class Pack>
-constexpr std::size_t kCorners = 4 * Pack::kCornersPerNode * Pack::kNodes;
+constexpr std::size_t kCorners = 4 * Pack::kCornersPerNode* Pack::kNodes;
 
 /// Pack  TetPack or QuadraticPack
 template <class S, class Pack>
@@ -79,8 +81,8 @@ struct RowWork {
   const S* masses = nullptr;                  ///< by chunk; 0: pinned, or no node
 
   // Used by the assembly.
-  const std::uint32_t* sums = nullptr;   ///< by entry, and the end: index of the first of its terms
-  const std::uint32_t* terms = nullptr;  ///< 16 per term: corners of the rows' nodes, corners of the neighbours
+  const std::uint32_t* sums = nullptr;           ///< by entry, and the end: index of the first of its terms
+  const std::uint32_t* terms = nullptr;          ///< 16 per term: corners of the rows' nodes, corners of the neighbours
   const std::uint32_t* quadraticSums = nullptr;  ///< the same for quadratic tets, with the first corners of nodes
   const std::uint32_t* quadraticTerms = nullptr;
   const S* corners = nullptr;  ///< see `TetLoops::rotatedGradients`
