@@ -28,50 +28,46 @@ inline ElasticOptions soft() {
 }
 
 template <class S>
-ElasticBody<S> made(const Cage &cage, const ElasticOptions &options) {
+ElasticBody<S> made(const Cage& cage, const ElasticOptions& options) {
   Result<ElasticBody<S>> body = ElasticBody<S>::create(cage, options);
   EXPECT_TRUE(body.ok()) << body.status().message;
   return std::move(body).value();
 }
 
-template <class S> Points pointsOf(PointView<S> view) {
+template <class S>
+Points pointsOf(PointView<S> view) {
   Points points(view.size());
-  for (std::size_t n = 0; n < view.size(); ++n)
-    points[n] = Eigen::Vector3d(view[n][0], view[n][1], view[n][2]);
+  for (std::size_t n = 0; n < view.size(); ++n) points[n] = Eigen::Vector3d(view[n][0], view[n][1], view[n][2]);
   return points;
 }
 
-template <class S> void fill(PointView<S> view, const Points &points) {
+template <class S>
+void fill(PointView<S> view, const Points& points) {
   for (std::size_t n = 0; n < view.size(); ++n) {
-    for (int k = 0; k < 3; ++k)
-      view[n][k] = static_cast<S>(points[n][k]);
+    for (int k = 0; k < 3; ++k) view[n][k] = static_cast<S>(points[n][k]);
   }
 }
 
 /// Node masses for a density of 1: a quarter of the mass of each tet.
-inline std::vector<double> lumped(const TetMesh &cage) {
+inline std::vector<double> lumped(const TetMesh& cage) {
   std::vector<double> masses(cage.nodeCount(), 0.0);
-  for (const Tet &tet : cage.tets) {
-    for (const int n : tet)
-      masses[static_cast<std::size_t>(n)] +=
-          std::abs(signedVolume(cornersOf(cage, tet))) / 4.0;
+  for (const Tet& tet : cage.tets) {
+    for (const int n : tet) masses[static_cast<std::size_t>(n)] += std::abs(signedVolume(cornersOf(cage, tet))) / 4.0;
   }
   return masses;
 }
 
 /// Quantities that a motion conserves.
 struct Motion {
-  Eigen::Vector3d momentum = Eigen::Vector3d::Zero(),
-                  angular = Eigen::Vector3d::Zero();
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
   double kinetic = 0.0, elastic = 0.0;
 
   double energy() const { return kinetic + elastic; }
 };
 
 template <class S>
-Motion motionOf(ElasticBody<S> &body, const std::vector<double> &masses) {
-  const Points positions = pointsOf(body.positions()),
-               velocities = pointsOf(body.velocities());
+Motion motionOf(ElasticBody<S>& body, const std::vector<double>& masses) {
+  const Points positions = pointsOf(body.positions()), velocities = pointsOf(body.velocities());
   Motion motion;
   for (std::size_t n = 0; n < masses.size(); ++n) {
     motion.momentum += masses[n] * velocities[n];
@@ -82,38 +78,35 @@ Motion motionOf(ElasticBody<S> &body, const std::vector<double> &masses) {
   return motion;
 }
 
-/// The least ratio of a tet's volume to its volume at rest; below 0 if a tet is
-/// inside out.
-inline double smallestVolume(const TetMesh &cage, const Points &nodes) {
+/// The least ratio of a tet's volume to its volume at rest; below 0 if a tet is inside out.
+inline double smallestVolume(const TetMesh& cage, const Points& nodes) {
   const TetMesh now{nodes, cage.tets};
   double minimum = kInfinity;
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
-    const double ratio = signedVolume(cornersOf(now, cage.tets[t])) /
-                         signedVolume(cornersOf(cage, cage.tets[t]));
-    if (std::isnan(ratio))
-      return -kInfinity;
+    const double ratio = signedVolume(cornersOf(now, cage.tets[t])) / signedVolume(cornersOf(cage, cage.tets[t]));
+    if (std::isnan(ratio)) return -kInfinity;
     minimum = std::min(minimum, ratio);
   }
   return minimum;
 }
 
 /// The largest speed of a node; infinite if a velocity is not finite.
-template <class S> double fastest(ElasticBody<S> &body) {
+template <class S>
+double fastest(ElasticBody<S>& body) {
   double maximum = 0.0;
-  for (const Eigen::Vector3d &v : pointsOf(body.velocities())) {
-    if (!v.allFinite())
-      return kInfinity;
+  for (const Eigen::Vector3d& v : pointsOf(body.velocities())) {
+    if (!v.allFinite()) return kInfinity;
     maximum = std::max(maximum, v.norm());
   }
   return maximum;
 }
 
 /// Pins the nodes at x = 0 of a bar along x.
-template <class S> void pinTheEnd(ElasticBody<S> &body, const TetMesh &cage) {
+template <class S>
+void pinTheEnd(ElasticBody<S>& body, const TetMesh& cage) {
   for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    if (cage.nodes[n].x() == 0.0)
-      body.setPinned(n);
+    if (cage.nodes[n].x() == 0.0) body.setPinned(n);
   }
 }
 
-} // namespace tetskin::test
+}  // namespace tetskin::test

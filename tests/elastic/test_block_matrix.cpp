@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The matrix of a body, in products with vectors and in sweeps, compared with
-// the same matrix assembled densely.
+// The matrix of a body, in products with vectors and in sweeps, compared with the same matrix assembled densely.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -73,8 +72,7 @@ TYPED_TEST(BlockMatrixOf, LowerSolvesWithTheRowsBeforeAndReturnsItsNorm) {
   onEachInstructionSet([&] {
     AssembledBody<TypeParam> body(cageForMatrix());
     BlockMatrix<TypeParam>& matrix = body.matrix;
-    // The lower triangle of blocks in the order of slots, in which they are
-    // swept.
+    // The lower triangle of blocks in the order of slots, in which they are swept.
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
     Eigen::MatrixXd dense = body.dense(), lower = Eigen::MatrixXd::Zero(size, size), diagonal = lower;
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {

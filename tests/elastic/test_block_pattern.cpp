@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where the blocks of a matrix lie, and from which corners of tets each is
-// summed.
+// Where the blocks of a matrix lie, and from which corners of tets each is summed.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -18,8 +17,7 @@ namespace {
 
 using kernels::kGroup;
 
-/// The cages for the tests of the pattern; one of them has nodes that no tet
-/// uses.
+/// The cages for the tests of the pattern; one of them has nodes that no tet uses.
 std::vector<TetMesh> patternCages() {
   std::vector<TetMesh> cages{singleTet(), latticeCage(3, 2, 1), bodyCentredCage(3, 3, 2), latticeCage(12, 12, 12),
                              latticeCage(120, 7, 7)};
@@ -153,33 +151,39 @@ TEST(BlockPattern, EveryTetHasATermInEachOfItsBlocks) {
     const RestTets rest = elastic_detail::restTets(cage, quadraticTets(cage).value());
     const BlockPattern pattern = BlockMatrix<double>(cage.mesh.nodeCount(), rest).pattern();
     const std::vector<int> nodes = nodesOf(pattern);
-    // A corner's node, and the number of its tet or, of a quadratic one, its
-    // point.
-    const auto whatIs = [&](std::uint32_t corner) -> std::pair<int, std::size_t> {
-      if (corner < rest.zeroCorner()) return {rest.tets[corner / 4][corner % 4], corner / 4};
-      const std::size_t k = corner - rest.firstQuadraticCorner();
-      return {rest.quadratic[k / 40].nodes[k % 10], rest.count() + k / 10};
+    // A corner's node and tet.
+    const auto linear = [&](std::uint32_t corner) -> std::pair<int, std::size_t> {
+      EXPECT_LT(corner, rest.zeroCorner());
+      return {rest.tets[corner / 4][corner % 4], corner / 4};
     };
-    std::size_t terms = 0;
-    for (std::size_t chunk = 0; chunk < pattern.chunkCount(); ++chunk) {
-      for (std::size_t e = pattern.starts[2 * chunk]; e < pattern.starts[2 * chunk + 2]; ++e) {
-        for (std::size_t term = pattern.sums[e]; term < pattern.sums[e + 1]; ++term) {
-          for (std::size_t lane = 0; lane < kGroup; ++lane) {
-            const std::uint32_t own = pattern.terms[2 * kGroup * term + lane];
-            const std::uint32_t other = pattern.terms[2 * kGroup * term + kGroup + lane];
-            EXPECT_EQ(own == rest.zeroCorner(), other == rest.zeroCorner());
-            if (own == rest.zeroCorner() || other == rest.zeroCorner()) continue;
-            ++terms;
-            ASSERT_LT(std::max(own, other), rest.cornerCount());
-            EXPECT_EQ(whatIs(own).second, whatIs(other).second) << "of one tet, and at one point";
-            EXPECT_EQ(whatIs(own).first, nodes[kGroup * chunk + lane]);
-            EXPECT_EQ(whatIs(other).first, nodes[pattern.neighbours[kGroup * e + lane]]);
+    const auto quadratic = [&](std::uint32_t corner) -> std::pair<int, std::size_t> {
+      const std::size_t k = corner - rest.quadraticCorner(0);
+      EXPECT_LE(corner + 3, rest.cornerCount());
+      EXPECT_EQ(k % 3, 0u);
+      return {rest.quadratic[k / 30].nodes[k / 3 % 10], k / 30};
+    };
+    const auto countTerms = [&](const auto& all, const auto& sums, const auto& whatIs) {
+      std::size_t count = 0;
+      for (std::size_t chunk = 0; chunk < pattern.chunkCount(); ++chunk) {
+        for (std::size_t e = pattern.starts[2 * chunk]; e < pattern.starts[2 * chunk + 2]; ++e) {
+          for (std::size_t term = sums[e]; term < sums[e + 1]; ++term) {
+            for (std::size_t lane = 0; lane < kGroup; ++lane) {
+              const std::uint32_t own = all[2 * kGroup * term + lane], other = all[2 * kGroup * term + kGroup + lane];
+              EXPECT_EQ(own == rest.zeroCorner(), other == rest.zeroCorner());
+              if (own == rest.zeroCorner() || other == rest.zeroCorner()) continue;
+              ++count;
+              EXPECT_EQ(whatIs(own).second, whatIs(other).second) << "of one tet";
+              EXPECT_EQ(whatIs(own).first, nodes[kGroup * chunk + lane]);
+              EXPECT_EQ(whatIs(other).first, nodes[pattern.neighbours[kGroup * e + lane]]);
+            }
           }
         }
       }
-    }
-    // Ordered pairs of nodes, at each point.
-    EXPECT_EQ(terms, 12 * rest.count() + 4 * 90 * rest.quadratic.size());
+      return count;
+    };
+    // Ordered pairs of nodes.
+    EXPECT_EQ(countTerms(pattern.terms, pattern.sums, linear), 12 * rest.count());
+    EXPECT_EQ(countTerms(pattern.quadraticTerms, pattern.quadraticSums, quadratic), 90 * rest.quadratic.size());
   }
 }
 

@@ -167,8 +167,7 @@ TEST(ElasticBars, PressureOnSmallTrianglesSinksCornersOfQuadraticTetsByAThirdOfA
   EXPECT_NEAR(deeper(Cage(cage.mesh), bySmallTriangles), 0.0, 0.04);
 }
 
-/// What a solve leaves is small beside gravity in each step, and must not add
-/// up to a wrong sag, or to a creeping one.
+/// What a solve leaves is small beside gravity in each step, and must not add up to a wrong sag, or to a creeping one.
 TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
   const TetMesh cage = latticeCage(20, 3, 3, 0.1);
   const auto settled = [&](double tolerance) {

@@ -194,8 +194,7 @@ TYPED_TEST(ElasticBodyOf, StoresTheEnergyOfItsStrain) {
     const double density = mu * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace();
     ElasticBody<TypeParam> body = made<TypeParam>(cage, options);
     fill(body.positions(), mapped(cage.nodes, turnBy(50, {1, 2, 3}) * (Matrix3d::Identity() + strain), {1, 2, 3}));
-    // At a Poisson's ratio of 0.49, the rounding of volumes has fifty times the
-    // effect.
+    // At a Poisson's ratio of 0.49, the rounding of volumes has fifty times the effect.
     EXPECT_NEAR(body.energy() / (totalVolume(cage) * density), 1.0, 300.0 * this->kEpsilon);
   }
 }

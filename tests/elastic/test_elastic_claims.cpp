@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The claims about ElasticBody at their limits: stiff and light, spinning,
-// turned at once, pinned and led.
+// The claims about ElasticBody at their limits: stiff and light, spinning, turned at once, pinned and led.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
@@ -92,8 +91,7 @@ TYPED_TEST(ElasticClaimsOf, SpinningFreelyKeepsMomentumAndGainsNoEnergyFromSoftT
   }
 }
 
-/// No rigid motion along straight lines turns so fast: bodies swell, but keep
-/// what they must.
+/// No rigid motion along straight lines turns so fast: bodies swell, but keep what they must.
 TYPED_TEST(ElasticClaimsOf, KeepsAngularMomentumBeyondOneRadianPerStep) {
   const TetMesh cage = block();
   for (const double youngsModulus : {1e3, 1e6, 1e9}) {

@@ -54,7 +54,8 @@ struct ForcedBody {
   const btSoftBodyWorldInfo* worldInfo = nullptr;
 
   /// Computes, or renews, the data derived from the body's tets. Scale factors and quadratic tets are dropped if the
-  /// body has another number of tets now. linear  see `restTetsOf`
+  /// body has another number of tets now.
+  /// linear  see `restTetsOf`
   void build(const elastic_detail::RestTets& linear, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.

@@ -25,7 +25,8 @@ struct QuadraticShape {
 Result<std::vector<QuadraticShape>> quadraticShapes(const Cage& cage, const std::vector<double>& stiffnessScale);
 
 /// A body's tets at rest: eight linear ones become a quadratic one wherever their nodes and rest shapes are those of
-/// the parts of a tet with straight edges, of whatever size and rotation. linear          all tets, by volume
+/// the parts of a tet with straight edges, of whatever size and rotation.
+/// linear          all tets, by volume
 /// stiffnessScale  by tet, above 0, for those that stay linear; empty: 1
 elastic_detail::RestTets withQuadraticTets(const elastic_detail::RestTets& linear,
                                            const std::vector<double>& stiffnessScale,

@@ -24,7 +24,8 @@ constexpr std::size_t kWideVector = 3 * kGroup, kWideSymmetric = 6 * kGroup, kWi
 /// Eight tets at rest.
 template <class S>
 struct TetPack {
-  static constexpr std::size_t kPoints = 1, kNodes = 4;
+  /// Points where it is integrated, nodes, and what `kCorners` counts.
+  static constexpr std::size_t kPoints = 1, kNodes = 4, kCornersPerNode = 1;
   S gradients[9][kGroup];               ///< of the barycentric weights of nodes 1, 2 and 3, rest space
   S shear[kGroup];                      ///< 2 mu x volume; 0 for padding in the last pack
   S bulk[kGroup];                       ///< lambda x volume
@@ -34,7 +35,8 @@ struct TetPack {
 /// Eight quadratic tets at rest, which are integrated at four points.
 template <class S>
 struct QuadraticPack {
-  static constexpr std::size_t kPoints = 4, kNodes = 10;
+  /// Points where it is integrated, nodes, and what `kCorners` counts.
+  static constexpr std::size_t kPoints = 4, kNodes = 10, kCornersPerNode = 3;
   S gradients[9][kGroup];               ///< of the barycentric weights of corners 1, 2 and 3, rest space
   S points[3 * kPoints][kGroup];        ///< the same weights at each point
   S shear[kGroup];                      ///< 2 mu x volume of a point; 0 for padding in the last pack
@@ -42,9 +44,10 @@ struct QuadraticPack {
   std::uint32_t nodes[kNodes][kGroup];  ///< slots of the corners, and of the middles of edges 01, 02, 03, 12, 13, 23
 };
 
-/// Scalars of a tet's corners: a point for each of its nodes, at each point where it is integrated.
+/// Scalars of a tet's corners, which are points: vectors of its nodes, of a linear tet one each; of a quadratic one,
+/// which has vectors at four points, three, with all their x, y and z.
 template <class Pack>
-constexpr std::size_t kCorners = 4 * Pack::kPoints* Pack::kNodes;
+constexpr std::size_t kCorners = 4 * Pack::kCornersPerNode* Pack::kNodes;
 
 /// Pack  TetPack or QuadraticPack
 template <class S, class Pack>
@@ -54,9 +57,9 @@ struct TetWork {
   S* rotations = nullptr;        ///< quaternions w x y z, wide, by pack and point
   const S* assembled = nullptr;  ///< the rotations with which the matrix was assembled
   const S* points = nullptr;     ///< by slot
-  S* corners = nullptr;          ///< by tet, point and node
-  S* sums = nullptr;           ///< by slot: forces are added here; null: they are written to the first point's corners
-  S alpha = 0, flatAlpha = 0;  ///< the second one: where a tet is flat or inverted, at least the first
+  S* corners = nullptr;          ///< by tet and node
+  S* sums = nullptr;             ///< by slot: forces are added here; null: written to a tet's first corners, by node
+  S alpha = 0, flatAlpha = 0;    ///< the second one: where a tet is flat or inverted, at least the first
 };
 
 template <class S>
@@ -78,11 +81,13 @@ struct RowWork {
   const S* masses = nullptr;                  ///< by chunk; 0: pinned, or no node
 
   // Used by the assembly.
-  const std::uint32_t* sums = nullptr;   ///< by entry, and the end: index of the first of its terms
-  const std::uint32_t* terms = nullptr;  ///< 16 per term: corners of the rows' nodes, corners of the neighbours
-  const S* corners = nullptr;            ///< see `TetLoops::rotatedGradients`
-  S ratio = 0;                           ///< lambda / mu
-  S minMass = 0;                         ///< relative to the trace of the stiffness's diagonal block; see `assemble`
+  const std::uint32_t* sums = nullptr;           ///< by entry, and the end: index of the first of its terms
+  const std::uint32_t* terms = nullptr;          ///< 16 per term: corners of the rows' nodes, corners of the neighbours
+  const std::uint32_t* quadraticSums = nullptr;  ///< the same for quadratic tets, with the first corners of nodes
+  const std::uint32_t* quadraticTerms = nullptr;
+  const S* corners = nullptr;  ///< see `TetLoops::rotatedGradients`
+  S ratio = 0;                 ///< lambda / mu
+  S minMass = 0;               ///< relative to the trace of the stiffness's diagonal block; see `assemble`
 
   // Used by products and solves. Wide vectors are by chunk, points by slot.
   S* residual = nullptr;   ///< transformed: (D + L)^-1 r

@@ -208,33 +208,45 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
   return findings.all();
 }
 
+/// The vectors of the nodes at one of the points.
 template <class S, int W>
-void quadraticRotatedGradients(const TetWork<S, QuadraticPack<S>>& work) {
+TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& work, std::size_t p, std::size_t point,
+                                          int lane, WideVector<S, W> nodes[10]) {
   using V = Lanes<S, W>;
   using Pack = QuadraticPack<S>;
+  const Pack& pack = work.packs[p];
+  V weights[4];
+  weightsAt<S, W>(pack, point, lane, weights);
+  const V alpha = alphaOf<S, W>(work, [&] {
+    WideVector<S, W> x[10];
+    nodesFromFirst<S, W>(pack, work.points, lane, x);
+    return deformationGradient<S, W>(pack, lane, x, weights);
+  });
+  const V factor = squareRoots<S, W>(alpha * (S(0.5) * wide<S, W>(pack.shear + lane)));
+  const std::size_t at = 4 * kGroup * (Pack::kPoints * p + point) + static_cast<std::size_t>(lane);
+  const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + at));
+  byShapeGradients<S, W>(
+      pack, lane, weights,
+      [&](const V& gx, const V& gy, const V& gz) { return rotated<S, W>(r, factor * gx, factor * gy, factor * gz); },
+      [&](int a, const WideVector<S, W>& v) { nodes[a] = v; });
+}
+
+template <class S, int W>
+void quadraticRotatedGradients(const TetWork<S, QuadraticPack<S>>& work) {
+  using Pack = QuadraticPack<S>;
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
-    const Pack& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
-      const V mu = S(0.5) * wide<S, W>(pack.shear + lane);
-      for (std::size_t point = 0; point < Pack::kPoints; ++point) {
-        V weights[4];
-        weightsAt<S, W>(pack, point, lane, weights);
-        const V alpha = alphaOf<S, W>(work, [&] {
-          WideVector<S, W> x[10];
-          nodesFromFirst<S, W>(pack, work.points, lane, x);
-          return deformationGradient<S, W>(pack, lane, x, weights);
-        });
-        const V factor = squareRoots<S, W>(alpha * mu);
-        const std::size_t at = 4 * kGroup * (Pack::kPoints * p + point) + static_cast<std::size_t>(lane);
-        const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + at));
-        S* const corners =
-            work.corners + kCorners<Pack> * (kGroup * p + static_cast<std::size_t>(lane)) + 4 * Pack::kNodes * point;
-        byShapeGradients<S, W>(
-            pack, lane, weights,
-            [&](const V& gx, const V& gy, const V& gz) {
-              return rotated<S, W>(r, factor * gx, factor * gy, factor * gz);
-            },
-            [&](int a, const WideVector<S, W>& v) { putPoints<S, W>(v, corners + 4 * a, kCorners<Pack>); });
+      WideVector<S, W> v[4][10];
+      for (std::size_t point = 0; point < 4; ++point) rotatedShapeGradients<S, W>(work, p, point, lane, v[point]);
+      S* to = work.corners + kCorners<Pack> * (kGroup * p + static_cast<std::size_t>(lane));
+      const auto putNext = [&](const WidePoints<S, W>& fourPoints) {
+        putPoints<S, W>(fourPoints, to, kCorners<Pack>);
+        to += 4;
+      };
+      for (std::size_t a = 0; a < Pack::kNodes; ++a) {
+        putNext({v[0][a].x, v[1][a].x, v[2][a].x, v[3][a].x});
+        putNext({v[0][a].y, v[1][a].y, v[2][a].y, v[3][a].y});
+        putNext({v[0][a].z, v[1][a].z, v[2][a].z, v[3][a].z});
       }
     }
   }

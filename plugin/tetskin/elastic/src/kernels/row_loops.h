@@ -60,6 +60,18 @@ TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, 
   put<S, W>((d[0] * d[3] - d[1] * d[1]) * scale, to + 5 * kGroup);
 }
 
+/// Adds products a b^T of the vectors that a quadratic tet has of two nodes at its four points.
+template <class S, int W>
+TETSKIN_INLINE void addQuadraticTerm(const RowWork<S>& work, std::uint32_t term, int lane, Lanes<S, W> sum[9]) {
+  const std::uint32_t* indices = work.quadraticTerms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
+  WidePoints<S, W> a[3];
+  for (std::size_t i = 0; i < 3; ++i) a[i] = pointsAt<S, W>(work.corners + 4 * i, indices);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const WidePoints<S, W> b = pointsAt<S, W>(work.corners + 4 * j, indices + kGroup);
+    for (std::size_t i = 0; i < 3; ++i) sum[3 * i + j] += a[i].x * b.x + a[i].y * b.y + a[i].z * b.z + a[i].w * b.w;
+  }
+}
+
 /// The block of a pair of nodes: the sum, over the tets around their edge and the points of each, of
 ///   lambda / mu  a b^T + b a^T + (a . b) 1
 /// with a and b as `rotatedGradients` made them. All of it follows from the sum of a b^T.
@@ -75,6 +87,9 @@ TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) sum[3 * i + j] += a[i] * b[j];
     }
+  }
+  for (std::uint32_t term = work.quadraticSums[entry]; term < work.quadraticSums[entry + 1]; ++term) {
+    addQuadraticTerm<S, W>(work, term, lane, sum);
   }
   const V trace = sum[0] + sum[4] + sum[8];
   for (int i = 0; i < 3; ++i) {

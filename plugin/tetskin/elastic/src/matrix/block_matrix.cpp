@@ -63,6 +63,8 @@ kernels::RowWork<S> BlockMatrix<S>::work(std::size_t firstChunk, std::size_t las
   work.masses = masses_.data();
   work.sums = pattern_.sums.data();
   work.terms = pattern_.terms.data();
+  work.quadraticSums = pattern_.quadraticSums.data();
+  work.quadraticTerms = pattern_.quadraticTerms.data();
   work.residual = writable(residual_);
   work.direction = writable(direction_);
   work.rest = writable(rest_);

@@ -26,11 +26,12 @@ constexpr bool isDivisible(std::size_t slots) {
 
 /// Which slot each node has, and which rows have common blocks. Slots are numbered by row; some belong to no node.
 struct BlockPattern {
-  std::vector<std::uint32_t> slotOf;      ///< by node
-  std::vector<std::uint32_t> starts;      ///< by chunk, 2 entries each, and the end
-  std::vector<std::uint32_t> neighbours;  ///< by entry, 8 each
-  std::vector<std::uint32_t> sums;        ///< by entry, and the end
-  std::vector<std::uint32_t> terms;       ///< 16 per term
+  std::vector<std::uint32_t> slotOf;                         ///< by node
+  std::vector<std::uint32_t> starts;                         ///< by chunk, 2 entries each, and the end
+  std::vector<std::uint32_t> neighbours;                     ///< by entry, 8 each
+  std::vector<std::uint32_t> sums;                           ///< by entry, and the end
+  std::vector<std::uint32_t> terms;                          ///< 16 per term
+  std::vector<std::uint32_t> quadraticSums, quadraticTerms;  ///< the same of quadratic tets
   std::vector<std::uint32_t>
       rangeChunks;                    ///< by range, and the end: its first chunk; rows of a range are no neighbours
   std::vector<std::uint32_t> tasks;   ///< by task, and the end: its first range; they are swept in this order

@@ -21,15 +21,24 @@ constexpr std::size_t kNodesPerPart = 1800;
 /// Most separators, as a fraction of all nodes.
 constexpr double kMaxSeparated = 0.25;
 
-/// Two corners of a tet that contribute to the block of a pair of nodes.
+/// Two corners of a tet that contribute to the block of a pair of nodes; of quadratic tets, the first ones of two
+/// nodes.
 struct Term {
   std::uint32_t own = 0, other = 0;
+};
+
+/// The terms of a block.
+struct Terms {
+  std::vector<Term> linear, quadratic;
+
+  /// As a quadratic one takes four times as long.
+  std::size_t effort() const { return linear.size() + 4 * quadratic.size(); }
 };
 
 /// A node's neighbours, sorted, and the terms of each block.
 struct Row {
   std::vector<std::uint32_t> neighbours;
-  std::vector<std::vector<Term>> terms;
+  std::vector<Terms> terms;
 };
 
 struct Pair {
@@ -38,13 +47,13 @@ struct Pair {
 };
 
 /// Calls visit(node, pair) for all ordered pairs of nodes of a tet.
-/// corner  that of the first node
-template <std::size_t N, class Visit>
-void visitPairs(const std::array<int, N>& nodes, std::size_t corner, Visit&& visit) {
+/// corner  the number of a node's corner
+template <std::size_t N, class Corner, class Visit>
+void visitPairs(const std::array<int, N>& nodes, Corner&& corner, Visit&& visit) {
   for (std::size_t a = 0; a < N; ++a) {
     for (std::size_t b = 0; b < N; ++b) {
       if (a == b) continue;
-      const Term term{static_cast<std::uint32_t>(corner + a), static_cast<std::uint32_t>(corner + b)};
+      const Term term{static_cast<std::uint32_t>(corner(a)), static_cast<std::uint32_t>(corner(b))};
       visit(static_cast<std::size_t>(nodes[a]), Pair{static_cast<std::uint32_t>(nodes[b]), term});
     }
   }
@@ -53,12 +62,13 @@ void visitPairs(const std::array<int, N>& nodes, std::size_t corner, Visit&& vis
 std::vector<Row> rowsOf(std::size_t nodes, const RestTets& rest) {
   assert(rest.cornerCount() < 0xFFFFFFFFu);
   const Lists<Pair> pairs = packLists<Pair>(nodes, [&](auto&& visit) {
-    for (std::size_t t = 0; t < rest.count(); ++t) visitPairs(rest.tets[t], 4 * t, visit);
-    std::size_t corner = rest.firstQuadraticCorner();
-    for (const RestQuadraticTet& tet : rest.quadratic) {
-      for (std::size_t point = 0; point < kQuadraticPoints; ++point, corner += kQuadraticNodes) {
-        visitPairs(tet.nodes, corner, visit);
-      }
+    for (std::size_t t = 0; t < rest.count(); ++t) {
+      visitPairs(
+          rest.tets[t], [&](std::size_t a) { return 4 * t + a; }, visit);
+    }
+    for (std::size_t t = 0; t < rest.quadratic.size(); ++t) {
+      visitPairs(
+          rest.quadratic[t].nodes, [&](std::size_t a) { return rest.quadraticCorner(t, a); }, visit);
     }
   });
   std::vector<Row> rows(nodes);
@@ -71,7 +81,8 @@ std::vector<Row> rowsOf(std::size_t nodes, const RestTets& rest) {
         rows[n].neighbours.push_back(pair.neighbour);
         rows[n].terms.emplace_back();
       }
-      rows[n].terms.back().push_back(pair.term);
+      Terms& terms = rows[n].terms.back();
+      (pair.term.own < rest.zeroCorner() ? terms.linear : terms.quadratic).push_back(pair.term);
     }
   }
   return rows;
@@ -196,6 +207,7 @@ class PatternMaker {
       : pattern_(pattern), rows_(rows), levels_(levels), none_(static_cast<std::uint32_t>(zeroCorner)) {
     pattern_.starts.push_back(0);
     pattern_.sums.push_back(0);
+    pattern_.quadraticSums.push_back(0);
   }
 
   /// nodes  of the chunk; fewer than eight if no more nodes are on this level
@@ -211,7 +223,7 @@ class PatternMaker {
         }
         // Sums over as many terms are side by side, since the shorter ones are padded.
         std::stable_sort(indices[i].begin(), indices[i].end(),
-                         [&](std::size_t a, std::size_t b) { return row.terms[a].size() > row.terms[b].size(); });
+                         [&](std::size_t a, std::size_t b) { return row.terms[a].effort() > row.terms[b].effort(); });
         longest = std::max(longest, indices[i].size());
       }
       for (std::size_t k = 0; k < longest; ++k) addEntry(nodes, count, firstSlot, indices, k);
@@ -223,24 +235,31 @@ class PatternMaker {
   /// Adds the k-th neighbour of each row; a row without one gets itself, with a block of zeros.
   void addEntry(const std::uint32_t* nodes, std::size_t count, std::uint32_t firstSlot,
                 const std::array<std::vector<std::size_t>, kGroup>& indices, std::size_t k) {
-    std::array<const std::vector<Term>*, kGroup> terms{};
-    std::size_t longest = 0;
+    std::array<const Terms*, kGroup> terms{};
     for (std::size_t i = 0; i < kGroup; ++i) {
       std::uint32_t neighbour = firstSlot + static_cast<std::uint32_t>(i);
       if (i < count && k < indices[i].size()) {
         const Row& row = rows_[nodes[i]];
         neighbour = pattern_.slotOf[row.neighbours[indices[i][k]]];
         terms[i] = &row.terms[indices[i][k]];
-        longest = std::max(longest, terms[i]->size());
       }
       pattern_.neighbours.push_back(neighbour);
     }
+    addTerms(terms, &Terms::linear, pattern_.terms, pattern_.sums);
+    addTerms(terms, &Terms::quadratic, pattern_.quadraticTerms, pattern_.quadraticSums);
+  }
+
+  /// Adds the terms of one kind of the blocks of an entry.
+  void addTerms(const std::array<const Terms*, kGroup>& terms, std::vector<Term> Terms::*kind,
+                std::vector<std::uint32_t>& all, std::vector<std::uint32_t>& sums) {
+    std::size_t longest = 0;
+    for (const Terms* of : terms) longest = std::max(longest, of ? (of->*kind).size() : 0);
     for (std::size_t t = 0; t < longest; ++t) {
-      const auto there = [&](std::size_t i) { return terms[i] && t < terms[i]->size(); };
-      for (std::size_t i = 0; i < kGroup; ++i) pattern_.terms.push_back(there(i) ? (*terms[i])[t].own : none_);
-      for (std::size_t i = 0; i < kGroup; ++i) pattern_.terms.push_back(there(i) ? (*terms[i])[t].other : none_);
+      const auto there = [&](std::size_t i) { return terms[i] && t < (terms[i]->*kind).size(); };
+      for (std::size_t i = 0; i < kGroup; ++i) all.push_back(there(i) ? (terms[i]->*kind)[t].own : none_);
+      for (std::size_t i = 0; i < kGroup; ++i) all.push_back(there(i) ? (terms[i]->*kind)[t].other : none_);
     }
-    pattern_.sums.push_back(static_cast<std::uint32_t>(pattern_.terms.size() / (2 * kGroup)));
+    sums.push_back(static_cast<std::uint32_t>(all.size() / (2 * kGroup)));
   }
 
   BlockPattern& pattern_;

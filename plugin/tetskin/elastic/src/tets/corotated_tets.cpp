@@ -30,7 +30,7 @@ CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>&
     : rest_(std::move(rest)), slots_(slots) {
   assert(!rest_.empty() && rest_.gradients.size() == rest_.count() && rest_.volumes.size() == rest_.count());
   makePacks(rest_.count(), 0, linear_);
-  makePacks(rest_.quadratic.size(), rest_.firstQuadraticCorner(), quadratic_);
+  makePacks(rest_.quadratic.size(), rest_.quadraticCorner(0), quadratic_);
   corners_.assign(4 * rest_.cornerCount(), S(0));
   findings_.resize(linear_.tasks + quadratic_.tasks);
   fillLinear(slotOf);
@@ -89,9 +89,9 @@ void CorotatedTets<S>::listCorners(const std::vector<std::uint32_t>& slotOf) {
       }
     }
     for (std::size_t t = 0; t < rest_.quadratic.size(); ++t) {
-      const std::size_t first = quadratic_.firstCorner + kQuadraticPoints * kQuadraticNodes * t;
       for (std::size_t a = 0; a < kQuadraticNodes; ++a) {
-        visit(slotOf[static_cast<std::size_t>(rest_.quadratic[t].nodes[a])], static_cast<std::uint32_t>(first + a));
+        visit(slotOf[static_cast<std::size_t>(rest_.quadratic[t].nodes[a])],
+              static_cast<std::uint32_t>(rest_.quadraticCorner(t) + a));
       }
     }
   });

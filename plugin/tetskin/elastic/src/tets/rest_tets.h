@@ -22,16 +22,18 @@ struct RestTets {
   std::size_t count() const { return tets.size(); }
   bool empty() const { return tets.empty() && quadratic.empty(); }
 
-  // Corners are points that the matrix is assembled from: one per linear tet and node, then, after one that is 0, one
-  // per quadratic tet, point and node.
+  // Corners are points that the matrix is assembled from, see kernels::kCorners: those of linear tets, then some that
+  // are 0, then those of quadratic tets.
+  static constexpr std::size_t kCornersPerNode = kernels::QuadraticPack<float>::kCornersPerNode;
   static std::size_t padded(std::size_t tets) {
     return (tets + kernels::kGroup - 1) / kernels::kGroup * kernels::kGroup;
   }
   std::size_t zeroCorner() const { return 4 * padded(tets.size()); }
-  std::size_t firstQuadraticCorner() const { return zeroCorner() + 1; }
-  std::size_t cornerCount() const {
-    return firstQuadraticCorner() + kQuadraticPoints * kQuadraticNodes * padded(quadratic.size());
+  /// The first corner of a quadratic tet, or of one of its nodes.
+  std::size_t quadraticCorner(std::size_t tet, std::size_t node = 0) const {
+    return zeroCorner() + kCornersPerNode * (1 + kQuadraticNodes * tet + node);
   }
+  std::size_t cornerCount() const { return quadraticCorner(padded(quadratic.size())); }
 };
 
 /// The tets of a cage without flat ones.
