@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Linear tets are too stiff, the coarser the more: a cage bends and twists less than the body whose shape it has. Most
-// of that is one factor, known before anything is simulated: how much softer the cage becomes when it is refined.
+// of that is one factor, known before anything is simulated: how much softer the cage becomes when it is refined. Where
+// thin parts need another factor than thick ones, there is one by region.
 #pragma once
 
 #include <tetskin/core/cage.h>
@@ -21,15 +22,21 @@ struct CalibrationOptions {
 
 /// Result of a calibration.
 struct TETSKIN_ELASTIC_API CalibrationReport {
-  double stiffnessFactor = 1.0;  ///< found factor of the stiffness, above 0 and at most 1
-  int refinements = 0;           ///< number of uniform refinements; 0: the cage has too many tets, and the factor is 1
-  std::size_t refinedTets = 0;   ///< number of tets in the finest refinement
-  /// refinements + 1 values, from the cage to its finest refinement: displacement by the modes' loads, relative to that
-  /// in the limit of infinite refinement, as a mean; the first, if it is not above 1, is `stiffnessFactor`
+  double stiffnessFactor = 1.0;  ///< factor of the stiffness, above 0 and at most 1: of all tets, or their mean
+  bool byRegion = false;         ///< the factors differ, as one does not fit the whole body
+  double leastFactor = 1.0, greatestFactor = 1.0;  ///< among the tets
+  bool needless = false;        ///< all tets are quadratic and full: the factor is 1, and nothing was compared
+  int refinements = 0;          ///< number of uniform refinements; 0: the cage has too many tets, and the factor is 1
+  std::size_t refinedTets = 0;  ///< number of tets in the finest refinement
+  /// refinements + 1 values, from the cage without a factor to its finest refinement: displacement under the same
+  /// loads, relative to that in the limit of infinite refinement, as a geometric mean
   std::vector<double> responses;
   int skippedModes = 0;  ///< modes that the refinements lack: of regions that are almost unattached
-  /// Estimate of the remaining error: the root mean square error of the modes' responses with the factor, plus half of
-  /// the extrapolation from the refinements. A fraction of the displacement.
+  /// Root mean square errors of the calibrated cage against the limit, as fractions: of the displacement by its modes'
+  /// accelerations, which is twice that of their frequencies; and of that under sags.
+  double modeError = 0.0, sagError = 0.0;
+  /// Estimate of the remaining error: the mean of both errors, plus half of the extrapolation from the refinements. A
+  /// fraction of the displacement.
   double remainingError = 0.0;
   double milliseconds = 0.0;  ///< wall time
 
@@ -37,13 +44,18 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
   std::string describe() const;
 };
 
-/// Sets the cage's `stiffnessFactor` so that its modal compliance matches that of the body with its shape, or, if the
-/// cage stores volume fractions, of the mesh in it. The cage's own softest vibration modes (of the free body, so that
-/// no scene is presumed) serve as loads, each a field of accelerations. The displacement of the cage under these loads
-/// is compared with that of its uniform refinements, each with its own lumped masses, and extrapolated to the limit:
-/// with order 2, which is that of linear tets; with two refinements, with the observed order, but not below 1. A mode
-/// is weighted by the fraction of the body that takes part in it: the softest ones are often those of a thin tail.
-/// Errors from regions that are fused in the cage appear in no refinement, and the factor does not correct them.
+/// Sets the cage's `stiffnessFactor` so that it is as compliant as the body with its shape, or, if the cage stores
+/// volume fractions, as the mesh in it. The cage is compared with the limit of its uniform refinements under two kinds
+/// of loads, of which none presumes a scene's pins: the accelerations of its own softest modes, free, each body with
+/// its own lumped masses; and sags, gravity that grows from the middle to the ends of the body, in three directions,
+/// the same on all bodies. Both kinds count alike. A mode is weighted by the fraction of the body that takes part in
+/// it: the softest ones are often those of a thin tail. The limit is extrapolated from two refinements with order 2,
+/// that of linear tets; of a cage of more than 4,687 tets it is the first refinement, made of quadratic tets.
+///
+/// All tets get one factor, unless factors by region, made for the one kind of loads, predict the other kind clearly
+/// better; then each tet has its own, which varies slowly over the body. Cages may have quadratic tets among linear
+/// ones; the eight tets of a quadratic one have the same factor. Errors from regions that are fused in the cage appear
+/// in no refinement, and no factor corrects them.
 ///
 /// cage     valid (see `validate`), without flat tets; rest space, any unit and size; its stiffness factors are
 ///          replaced

@@ -4,6 +4,7 @@
 // This work is based on:
 //   James Bramble, Joseph Pasciak and Jinchao Xu, "Parallel Multilevel Preconditioners", Math. Comp. 55, 1990
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
+#include <tetskin/elastic/src/calibration/strain_energies.h>
 
 #include <algorithm>
 #include <cassert>
@@ -11,18 +12,12 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Residual relative to the load at which a displacement counts as found. The error of the response is of the square of
-/// this.
-constexpr double kTolerance = 2e-3;
+/// Energy of a displacement's error, relative to that of the displacement, at which it counts as found: the relative
+/// error of the response. It is estimated by the preconditioner.
+constexpr double kTolerance = 3e-4;
 constexpr int kMaxSolveIterations = 200;
 /// Factors of stiffness and mass of empty tets: they must move with the rest without resisting it.
 constexpr double kMinScale = 1e-3, kMinMass = 1e-4;
-
-/// By tet: the stiffness factors of the body.
-std::vector<double> scaleOf(const Cage& cage) {
-  std::vector<double> scale = cage.stiffnessScale();
-  return scale.empty() ? std::vector<double>(cage.mesh.tetCount(), 1.0) : scale;
-}
 
 Eigen::VectorXd massesOf(const Cage& cage) {
   if (cage.masses.empty()) return lumpedVolumes(cage.mesh, std::vector<double>(cage.mesh.tetCount(), 1.0));
@@ -51,6 +46,20 @@ std::vector<double> fillAt(const Cage& cage, int refinement) {
   return fill;
 }
 
+/// The refinement as a cage of quadratic tets, one for each tet before, with the material of the refinement's own tets.
+Cage quadraticCage(const Cage& cage, const TetMesh& refined, const std::vector<double>& fill) {
+  assert(refined.tetCount() == kSubTets * cage.mesh.tetCount());
+  Cage result(refined);
+  for (std::size_t t = 0; t < refined.tetCount(); ++t) result.quadraticTet.push_back(static_cast<int>(t / kSubTets));
+  if (cage.volumeFraction.empty()) return result;
+  result.volumeFraction = fill;
+  // A tet of the refinement has eight of the 64 fractions, each of which fills eight of its own 64 tets.
+  for (const std::uint8_t fraction : cage.fineVolumeFraction) {
+    result.fineVolumeFraction.insert(result.fineVolumeFraction.end(), kFineTets / 8, fraction);
+  }
+  return result;
+}
+
 std::vector<double> atLeast(std::vector<double> values, double minimum) {
   for (double& value : values) value = std::max(value, minimum);
   return values;
@@ -60,13 +69,6 @@ Eigen::VectorXd massesOf(const TetMesh& mesh, const std::vector<double>& fill) {
   Eigen::VectorXd masses = lumpedVolumes(mesh, fill);
   masses.array() += kMinMass * masses.mean();
   return masses;
-}
-
-/// The scalar product of each column of a with that of b.
-Eigen::RowVectorXd products(const Fields& a, const Fields& b) {
-  Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(a.cols());
-  for (Eigen::Index row = 0; row < a.rows(); ++row) sums += a.row(row).cwiseProduct(b.row(row));
-  return sums;
 }
 
 /// The quotients by component; 0 where the divisor is 0.
@@ -80,20 +82,38 @@ Eigen::RowVectorXd quotients(const Eigen::RowVectorXd& a, const Eigen::RowVector
 
 }  // namespace
 
-RefinedBodies::Level::Level(Refinement made, double poissonRatio, const std::vector<double>& fill)
+RefinedBodies::Level::Level(Refinement made, double poissonRatio, std::vector<double> fill, const Cage& quadratic)
     : refinement(std::move(made)),
-      stiffness(refinement.mesh, poissonRatio, atLeast(fill, kMinScale)),
+      scale(atLeast(fill, kMinScale)),
+      stiffness(quadratic.mesh.nodes.empty() ? BlockRows(refinement.mesh, poissonRatio, scale)
+                                             : BlockRows(quadratic, poissonRatio, {})),
       masses(massesOf(refinement.mesh, fill)),
       diagonal(stiffness.diagonal()),
       rigid(refinement.mesh, masses) {}
 
 RefinedBodies::RefinedBodies(Cage cage, double poissonRatio, int refinements)
-    : cage_(std::move(cage)), coarsest_(cage_.mesh, poissonRatio, scaleOf(cage_), massesOf(cage_)), direct_(coarsest_) {
+    : cage_(std::move(cage)),
+      poissonRatio_(poissonRatio),
+      coarsest_(cage_, poissonRatio, {}, massesOf(cage_)),
+      direct_(coarsest_) {
   assert(refinements >= 0 && refinements <= 2);
   for (int k = 1; k <= refinements; ++k) {
-    const TetMesh& before = k == 1 ? cage_.mesh : at(static_cast<std::size_t>(k - 1)).refinement.mesh;
-    levels_.push_back(std::make_unique<Level>(refineUniformly(before), poissonRatio, fillAt(cage_, k)));
+    Refinement made = refineUniformly(k == 1 ? cage_.mesh : at(1).refinement.mesh);
+    std::vector<double> fill = fillAt(cage_, k);
+    const Cage quadratic = refinements == 1 ? quadraticCage(cage_, made.mesh, fill) : Cage();
+    levels_.push_back(std::make_unique<Level>(std::move(made), poissonRatio, std::move(fill), quadratic));
   }
+}
+
+Eigen::MatrixXd RefinedBodies::energies(std::size_t level, const Fields& displacements) const {
+  if (level == 0) return strainEnergies(cage_, poissonRatio_, {}, displacements);
+  assert(levelCount() == 3);
+  const Level& fine = at(level);
+  const Eigen::MatrixXd all = strainEnergies(fine.refinement.mesh, poissonRatio_, fine.scale, displacements);
+  const auto tets = static_cast<Eigen::Index>(cage_.mesh.tetCount()), pieces = all.rows() / tets;
+  Eigen::MatrixXd sums(tets, all.cols());
+  for (Eigen::Index t = 0; t < tets; ++t) sums.row(t) = all.middleRows(pieces * t, pieces).colwise().sum();
+  return sums;
 }
 
 Fields RefinedBodies::refined(std::size_t level, const Fields& displacements) const {
@@ -138,11 +158,10 @@ Fields RefinedBodies::solve(std::size_t level, const Fields& loads, const Fields
   Fields residuals = loads - forces;
   Fields directions = Fields::Zero(loads.rows(), loads.cols());
   Eigen::RowVectorXd before = Eigen::RowVectorXd::Zero(loads.cols());
-  const Eigen::RowVectorXd enough = kTolerance * kTolerance * products(loads, loads);
   for (int k = 0; k < kMaxSolveIterations; ++k) {
-    if ((products(residuals, residuals).array() <= enough.array()).all()) break;
     const Fields steps = precondition(level, residuals);
     const Eigen::RowVectorXd now = products(residuals, steps);
+    if ((now.array() <= kTolerance * products(loads, displacements).array()).all()) break;
     directions.array().rowwise() *= quotients(now, before).array();
     directions += steps;
     before = now;

@@ -15,19 +15,23 @@
 namespace tetskin::elastic_detail {
 
 /// A cage and its uniform refinements: the same shape, with eight times the tets from level to level. Displacements of
-/// a level are also displacements of the next one, once its midpoints are interpolated.
+/// a level are also displacements of the next one, once its midpoints are interpolated. Two refinements are linear:
+/// extrapolated with order two, they are within a per cent of quadratic tets of the second one, at half the time. A
+/// single one is of quadratic tets, as linear ones alone would be too far from the limit.
 class RefinedBodies {
  public:
   /// The coarsest level has the stiffness and mass of the body; the finer levels have the volume fractions of their own
-  /// resolution, from `Cage::fineFill`. Check `ok()`.
+  /// resolution, from `Cage::fineVolumeFraction`. Check `ok()`.
   ///
-  /// cage         every node is used by a tet
+  /// cage         every node is used by a tet; some tets may be quadratic
   /// refinements  at most two
   RefinedBodies(Cage cage, double poissonRatio, int refinements);
 
   bool ok() const { return direct_.ok(); }
   std::size_t levelCount() const { return levels_.size() + 1; }
   /// The cage itself.
+  const Cage& cage() const { return cage_; }
+  double poissonRatio() const { return poissonRatio_; }
   const RestBody& coarsest() const { return coarsest_; }
   const DirectSolver& direct() const { return direct_; }
   const Eigen::VectorXd& masses(std::size_t level) const { return level == 0 ? coarsest_.masses : at(level).masses; }
@@ -43,11 +47,15 @@ class RefinedBodies {
   /// The displacements under balanced loads, starting from a guess: conjugate gradients, preconditioned by all coarser
   /// levels, so that the number of iterations does not grow with the size or slenderness of the body.
   Fields solve(std::size_t level, const Fields& loads, const Fields& guess) const;
+  /// Twice the strain energies, by tet of the cage and displacement. The level is one of linear tets.
+  Eigen::MatrixXd energies(std::size_t level, const Fields& displacements) const;
 
  private:
   struct Level {
-    Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill);
-    Refinement refinement;  ///< of the coarser level
+    /// quadratic  empty: linear tets; otherwise what the cage of quadratic ones is
+    Level(Refinement refinement, double poissonRatio, std::vector<double> fill, const Cage& quadratic);
+    Refinement refinement;      ///< of the coarser level
+    std::vector<double> scale;  ///< by tet
     BlockRows stiffness;
     Eigen::VectorXd masses, diagonal;
     RigidMotions rigid;
@@ -60,6 +68,7 @@ class RefinedBodies {
   Fields precondition(std::size_t level, const Fields& loads) const;
 
   Cage cage_;
+  double poissonRatio_;
   RestBody coarsest_;
   DirectSolver direct_;
   std::vector<std::unique_ptr<Level>> levels_;

@@ -30,11 +30,10 @@ Eigen::SparseMatrix<double> shifted(const RestBody& body) {
 
 }  // namespace
 
-RestBody::RestBody(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale,
-                   Eigen::VectorXd nodeMasses)
-    : stiffness(BlockRows(mesh, poissonRatio, scale).sparse().triangularView<Eigen::Lower>()),
+RestBody::RestBody(const Cage& cage, double poissonRatio, const std::vector<double>& scale, Eigen::VectorXd nodeMasses)
+    : stiffness(BlockRows(cage, poissonRatio, scale).sparse().triangularView<Eigen::Lower>()),
       masses(std::move(nodeMasses)),
-      rigid(mesh, masses) {}
+      rigid(cage.mesh, masses) {}
 
 DirectSolver::DirectSolver(const RestBody& body) : body_(body), factors_(shifted(body)) {}
 

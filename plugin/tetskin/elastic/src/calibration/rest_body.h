@@ -9,11 +9,18 @@
 
 namespace tetskin::elastic_detail {
 
+/// The scalar product of each column of a with that of b.
+inline Eigen::RowVectorXd products(const Fields& a, const Fields& b) {
+  Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(a.cols());
+  for (Eigen::Index row = 0; row < a.rows(); ++row) sums += a.row(row).cwiseProduct(b.row(row));
+  return sums;
+}
+
 /// The linear model of a free body at rest.
 struct RestBody {
-  /// scale       by tet: stiffness factor relative to a Young's modulus of 1
-  /// nodeMasses  see `lumpedVolumes`
-  RestBody(const TetMesh& mesh, double poissonRatio, const std::vector<double>& scale, Eigen::VectorXd nodeMasses);
+  /// cage, scale  see BlockRows
+  /// nodeMasses   see `lumpedVolumes`
+  RestBody(const Cage& cage, double poissonRatio, const std::vector<double>& scale, Eigen::VectorXd nodeMasses);
   RestBody(const RestBody&) = delete;
 
   Eigen::SparseMatrix<double> stiffness;  ///< lower triangle, as the factorisation reads it

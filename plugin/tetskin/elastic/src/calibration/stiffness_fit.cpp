@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// This work is based on:
+//   Lewis Fry Richardson, "The Deferred Approach to the Limit", Phil. Trans. A 226, 1927 (the extrapolation)
+#include <tetskin/elastic/src/calibration/stiffness_fit.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+/// Share of a limit that is less than what the refinements can represent.
+constexpr double kMinResponse = 0.1;
+/// Order of linear tets: each refinement halves the size and leaves a quarter of the error.
+constexpr double kErrorLeft = 0.25;
+/// How often energies spread to the tets around a tet's nodes: those within a tet are too uneven.
+constexpr int kSpreadings = 2;
+/// Most that a region's factor may differ from that of the whole body: what moves by itself and hardly holds anything
+/// would get any factor.
+constexpr double kMaxDifference = 1.4;
+/// Factors by region must predict loads that they have not seen better than one factor by this.
+constexpr double kBetter = 0.9;
+
+/// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
+Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
+  assert(masses.size() == static_cast<Eigen::Index>(3 * nodes.size()));
+  const auto massOf = [&](std::size_t n) { return masses[static_cast<Eigen::Index>(3 * n)]; };
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double mass = 0.0;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    centre += massOf(n) * nodes[n];
+    mass += massOf(n);
+  }
+  centre /= mass;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    covariance += massOf(n) / mass * (nodes[n] - centre) * (nodes[n] - centre).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  Fields accelerations(masses.size(), 6);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Eigen::Vector3d along = axes.eigenvectors().transpose() * (nodes[n] - centre);
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      const double square = along[2 - k / 3] * along[2 - k / 3] / axes.eigenvalues()[2];
+      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = square * axes.eigenvectors().col(k % 3);
+    }
+  }
+  return accelerations;
+}
+
+/// Share of the mass that takes part in a vibration: 1 where all of it moves alike, 1/N where one node of N moves.
+double participation(const Eigen::VectorXd& mode, const Eigen::VectorXd& masses) {
+  assert(mode.size() == masses.size() && mode.size() % 3 == 0);
+  double second = 0.0, fourth = 0.0, mass = 0.0;
+  for (Eigen::Index n = 0; n < mode.size(); n += 3) {
+    const double squared = mode.segment<3>(n).squaredNorm();
+    second += masses[n] * squared;
+    fourth += masses[n] * squared * squared;
+    mass += masses[n];
+  }
+  return second * second / (mass * fourth);
+}
+
+/// The value in the limit, from the last two levels.
+template <class Value>
+Value limitOf(const Value& before, const Value& last) {
+  return last + kErrorLeft / (1.0 - kErrorLeft) * (last - before);
+}
+
+/// Solves for the same loads on all levels.
+LoadSet applied(const RefinedBodies& bodies, const Fields& accelerations) {
+  const std::size_t last = bodies.levelCount() - 1;
+  assert(last >= 1);
+  LoadSet set;
+  set.accelerations = accelerations;
+  Fields finest = accelerations;
+  for (std::size_t level = 0; level < last; ++level) finest = bodies.refined(level, finest);
+  std::vector<Fields> loads(last + 1);
+  loads[last] = bodies.masses(last).asDiagonal() * finest;
+  bodies.balance(last, loads[last]);
+  set.reach = products(loads[last], finest);
+  for (std::size_t level = last; level > 0; --level) loads[level - 1] = bodies.coarsened(level, loads[level]);
+  set.loads = loads[0];
+  Fields displacements;
+  std::vector<Eigen::MatrixXd> energies;
+  for (std::size_t level = 0; level <= last; ++level) {
+    displacements = level == 0 ? bodies.direct().solve(loads[0])
+                               : bodies.solve(level, loads[level], bodies.refined(level - 1, displacements));
+    set.works.push_back(products(loads[level], displacements));
+    if (last == 2) energies.push_back(bodies.energies(level, displacements));
+  }
+  set.limits = last == 2 ? limitOf(set.works[1], set.works[2]) : set.works[1];
+  // What hardly moves does not matter, however wrong it is.
+  set.weights = set.limits.cwiseQuotient(set.reach);
+  // For parts that rotate freely about a node or an edge, rounding alone determines the responses and their signs.
+  for (Eigen::Index k = 0; k < set.limits.size(); ++k) {
+    if (!(set.limits[k] > 0.0 && set.works[0][k] > kMinResponse * kMinResponse * set.limits[k])) set.weights[k] = 0.0;
+  }
+  if (energies.empty()) return set;
+  const Eigen::VectorXd shares = (set.weights.array() > 0.0).select(set.limits.cwiseInverse(), 0.0).transpose();
+  set.energies = energies[0] * shares;
+  set.limitEnergies = limitOf(energies[1], energies[2]).cwiseMax(kMinResponse * energies[2]) * shares;
+  return set;
+}
+
+/// The logarithm's weighted mean, as a factor.
+double geometricMean(const Eigen::RowVectorXd& values, const Eigen::RowVectorXd& weights) {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (weights[k] > 0.0) sum += weights[k] * std::log(values[k]);
+  }
+  return weights.sum() > 0.0 ? std::exp(sum / weights.sum()) : 1.0;
+}
+
+double rootMeanSquare(const Eigen::RowVectorXd& values, const Eigen::RowVectorXd& weights) {
+  if (!(weights.sum() > 0.0)) return 0.0;
+  return std::sqrt((weights.array() > 0.0).select(weights.array() * values.array().square(), 0.0).sum() /
+                   weights.sum());
+}
+
+/// How much of each tet's value goes to the tets around its nodes, evenly, some times.
+Eigen::VectorXd spread(const TetMesh& mesh, Eigen::VectorXd values) {
+  std::vector<double> count(mesh.nodeCount(), 0.0);
+  for (const Tet& tet : mesh.tets) {
+    for (const int n : tet) ++count[n];
+  }
+  for (int k = 0; k < kSpreadings; ++k) {
+    std::vector<double> ofNode(mesh.nodeCount(), 0.0);
+    for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+      for (const int n : mesh.tets[t]) ofNode[n] += 0.25 * values[static_cast<Eigen::Index>(t)] / count[n];
+    }
+    values.setZero();
+    for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
+      for (const int n : mesh.tets[t]) values[static_cast<Eigen::Index>(t)] += ofNode[n];
+    }
+  }
+  return values;
+}
+
+/// Makes the values of the eight tets of each quadratic one equal.
+Eigen::VectorXd shared(const Cage& cage, Eigen::VectorXd values) {
+  const Result<std::vector<QuadraticTet>> tets = quadraticTets(cage);
+  assert(tets.ok());
+  for (const QuadraticTet& tet : tets.value()) {
+    double sum = 0.0;
+    for (const int t : tet.tets) sum += values[t];
+    for (const int t : tet.tets) values[t] = sum / static_cast<double>(kSubTets);
+  }
+  return values;
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value = std::min(value * factor, 1.0);
+  return values;
+}
+
+}  // namespace
+
+StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount) : bodies_(bodies) {
+  const Eigen::VectorXd& masses = bodies.masses(0);
+  modes_ = applied(bodies, softestModes(bodies.coarsest(), bodies.direct(), modeCount));
+  for (Eigen::Index k = 0; k < modes_.weights.size(); ++k) {
+    const bool lacks = !(modes_.ratios(0)[k] > kMinResponse);
+    modes_.weights[k] *= lacks ? 0.0 : participation(modes_.accelerations.col(k), masses);
+  }
+  sags_ = applied(bodies, sagAccelerations(bodies.cage().mesh.nodes, masses));
+
+  const std::vector<double> ones(bodies.cage().mesh.tetCount(), 1.0);
+  Ratios ratios = ratiosWith(ones);
+  factor_ = std::min(meanOf(ratios), 1.0);
+  factors_ = scaled(ones, factor_);
+  byRegion_ = regionsPredict();
+  if (byRegion_) {
+    factors_ = regional(modes_.energies + sags_.energies, modes_.limitEnergies + sags_.limitEnergies);
+    factors_ = scaled(factors_, meanOf(ratiosWith(factors_)));
+  }
+  ratios = ratiosWith(factors_);
+  modeError_ = rootMeanSquare(ratios.modes.array() - 1.0, modes_.weights);
+  sagError_ = rootMeanSquare(ratios.sags.array() - 1.0, sags_.weights);
+}
+
+/// Factors by region, about as large as that of the whole body.
+std::vector<double> StiffnessFit::regional(const Eigen::VectorXd& energies,
+                                           const Eigen::VectorXd& limitEnergies) const {
+  const Cage& cage = bodies_.cage();
+  const Eigen::VectorXd found = shared(cage, spread(cage.mesh, energies));
+  const Eigen::VectorXd limit = shared(cage, spread(cage.mesh, limitEnergies));
+  std::vector<double> factors(cage.mesh.tetCount(), factor_);
+  for (std::size_t t = 0; t < factors.size(); ++t) {
+    const auto k = static_cast<Eigen::Index>(t);
+    if (!(found[k] > 0.0 && limit[k] > 0.0)) continue;
+    factors[t] = std::clamp(found[k] / limit[k], factor_ / kMaxDifference, std::min(factor_ * kMaxDifference, 1.0));
+  }
+  return factors;
+}
+
+/// Factors of the one kind of loads are judged by the other kind.
+bool StiffnessFit::regionsPredict() const {
+  if (modes_.energies.size() == 0 || !(modes_.weights.sum() > 0.0 && sags_.weights.sum() > 0.0)) return false;
+  const double alike = std::hypot(spreadWith({}, sags_), spreadWith({}, modes_));
+  const double regions = std::hypot(spreadWith(regional(modes_.energies, modes_.limitEnergies), sags_),
+                                    spreadWith(regional(sags_.energies, sags_.limitEnergies), modes_));
+  return regions < kBetter * alike;
+}
+
+/// How much the works under different loads differ in how far they are from their limits: what no common factor mends.
+/// factors  by tet; empty: one factor
+double StiffnessFit::spreadWith(const std::vector<double>& factors, const LoadSet& loads) const {
+  Eigen::RowVectorXd ratios = loads.ratios(0);
+  if (!factors.empty()) {
+    Cage cage = bodies_.cage();
+    cage.stiffnessFactor = factors;
+    const RestBody body(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
+    const DirectSolver solver(body);
+    if (!solver.ok()) return HUGE_VAL;
+    ratios = products(loads.loads, solver.solve(loads.loads)).cwiseQuotient(loads.limits);
+  }
+  return rootMeanSquare(ratios.array() / geometricMean(ratios, loads.weights) - 1.0, loads.weights);
+}
+
+StiffnessFit::Ratios StiffnessFit::ratiosWith(const std::vector<double>& factors) const {
+  Cage cage = bodies_.cage();
+  cage.stiffnessFactor = factors;
+  const RestBody body(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
+  const DirectSolver solver(body);
+  Fields own = body.masses.asDiagonal() * modes_.accelerations;
+  body.rigid.balance(own);
+  const Eigen::RowVectorXd response =
+      products(own, solver.solve(own)).cwiseQuotient(products(own, modes_.accelerations));
+  return {response.cwiseQuotient(modes_.limits.cwiseQuotient(modes_.reach)),
+          products(sags_.loads, solver.solve(sags_.loads)).cwiseQuotient(sags_.limits)};
+}
+
+/// Vibrations and sags count alike.
+double StiffnessFit::meanOf(const Ratios& ratios) const {
+  return std::sqrt(geometricMean(ratios.modes, modes_.weights) * geometricMean(ratios.sags, sags_.weights));
+}
+
+int StiffnessFit::skippedModes() const {
+  return static_cast<int>((modes_.weights.array() == 0.0).count());
+}
+
+std::vector<double> StiffnessFit::responses() const {
+  std::vector<double> responses;
+  for (std::size_t level = 0; level < bodies_.levelCount(); ++level) {
+    responses.push_back(std::sqrt(geometricMean(modes_.ratios(level), modes_.weights) *
+                                  geometricMean(sags_.ratios(level), sags_.weights)));
+  }
+  return responses;
+}
+
+}  // namespace tetskin::elastic_detail
