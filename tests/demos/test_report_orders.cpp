@@ -68,9 +68,8 @@ TEST_F(ReportOrders, LinearTetsApproachTheReference) {
   const double coarse = number(rows[0], "sag_excess"), fine = number(rows[1], "sag_excess");
   EXPECT_NEAR(coarse / fine, 4.0, 1.0) << "half the edges";
   const double limit = (4.0 * fine - coarse) / 3.0;
-  EXPECT_LT(std::abs(limit), 0.5 * std::abs(fine));
-  EXPECT_LT(std::abs(limit), 2.0 * number(rowsOf(scene, "reference").back(), "error_at_rest"));
-  EXPECT_LT(std::abs(limit), 0.015);
+  EXPECT_LT(std::abs(limit), 0.25 * std::abs(fine));
+  EXPECT_LT(std::abs(limit), 0.01);
 }
 
 TEST_F(ReportOrders, CagesOfAMeshAreOfQuadraticTetsAsTheReferenceIs) {
@@ -82,7 +81,6 @@ TEST_F(ReportOrders, CagesOfAMeshAreOfQuadraticTetsAsTheReferenceIs) {
     ASSERT_EQ(rows.size(), 1u) << nameOf(kind);
     EXPECT_EQ(number(rows[0], "finite"), 1.0);
     EXPECT_EQ(number(rows[0], "substeps"), 4.0);
-    EXPECT_EQ(isCalibrated(kind), number(rows[0], "stiffness_factor") != 1.0) << nameOf(kind);
     EXPECT_EQ(isQuadratic(kind), std::fmod(number(rows[0], "tets"), 8.0) == 0.0) << nameOf(kind);
     EXPECT_GT(number(rows[0], "error_at_rest"), 0.0) << nameOf(kind);
   }
