@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
+#include <tetskin/elastic/src/calibration/strain_energies.h>
 
 #include <cmath>
 #include <limits>
@@ -71,6 +73,29 @@ TEST(RefinedBodies, SolveAsADirectSolverDoes) {
   const elastic_detail::Fields found = bodies.solve(2, loads, 0.0 * loads);
   const elastic_detail::Fields right = elastic_detail::DirectSolver(finest).solve(loads);
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(loads.col(k).dot(found.col(k)) / loads.col(k).dot(right.col(k)), 1.0, 1e-3);
+}
+
+/// Quadratic tets at one end of a beam, linear ones at the other.
+Cage mixedBeam() {
+  Cage cage = refineQuadratic(beam(1)).value();
+  for (std::size_t t = cage.mesh.tetCount() / 2; t < cage.mesh.tetCount(); ++t) cage.quadraticTet[t] = -1;
+  EXPECT_FALSE(quadraticTets(cage).value().empty());
+  return cage;
+}
+
+TEST(StrainEnergies, AddUpToWhatTheLoadsDo) {
+  const Cage cage = mixedBeam();
+  std::vector<double> scale;
+  for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) scale.push_back(0.5 + static_cast<double>(t % 3));
+  const elastic_detail::BlockRows stiffness(cage, kPoisson, scale);
+  const elastic_detail::Fields moved = elastic_detail::Fields::Random(static_cast<int>(3 * cage.mesh.nodeCount()), 3);
+  elastic_detail::Fields forces = moved;
+  stiffness.multiply(moved, forces);
+  const Eigen::MatrixXd energies = elastic_detail::strainEnergies(cage, kPoisson, scale, moved);
+  ASSERT_EQ(energies.rows(), static_cast<Eigen::Index>(cage.mesh.tetCount()));
+  EXPECT_GT(energies.minCoeff(), 0.0);
+  const Eigen::RowVectorXd works = moved.cwiseProduct(forces).colwise().sum();
+  EXPECT_LT((energies.colwise().sum() - works).norm(), 1e-12 * works.norm());
 }
 
 /// One layer of cubes whose lower half is filled: a beam of half the height bends eight times as far as a full one, but
@@ -191,6 +216,96 @@ TEST(Calibration, GivesACoarseBeamTheSoftnessOfItsLimit) {
     EXPECT_NEAR(report.value().responses[1] / finer, 1.0, 0.05) << cubes;
     EXPECT_LT(report.value().remainingError, 0.3);
   }
+}
+
+TEST(Calibration, OfFullQuadraticTetsIsNeedlessAndSaysSo) {
+  Cage cage = refineQuadratic(beam(1)).value();
+  cage.stiffnessFactor.assign(cage.mesh.tetCount(), 0.3);
+  const CalibrationReport report = calibrate(cage).value();
+  EXPECT_TRUE(report.needless);
+  EXPECT_EQ(report.stiffnessFactor, 1.0);
+  EXPECT_EQ(cage.stiffnessFactor, std::vector<double>(cage.mesh.tetCount(), 1.0));
+  EXPECT_NE(report.describe().find("all tets are quadratic and full"), std::string::npos);
+  cage.volumeFraction.assign(cage.mesh.tetCount(), 1.0);
+  EXPECT_TRUE(calibrate(cage).value().needless);
+  cage.volumeFraction[0] = 0.5;
+  EXPECT_FALSE(calibrate(cage).value().needless);
+}
+
+TEST(Calibration, OfAMixedCageIsBetweenThoseOfLinearAndQuadraticOnes) {
+  Cage mixed = mixedBeam();
+  const double linear = factorOf(mixed.mesh);
+  const CalibrationReport report = calibrate(mixed).value();
+  EXPECT_FALSE(report.needless);
+  EXPECT_GT(report.stiffnessFactor, linear + 0.03);
+  EXPECT_LT(report.stiffnessFactor, 0.99);
+  const std::vector<QuadraticTet> tets = quadraticTets(mixed).value();
+  for (const QuadraticTet& tet : tets) {
+    for (const int t : tet.tets) EXPECT_EQ(mixed.stiffnessFactor[t], mixed.stiffnessFactor[tet.tets[0]]);
+  }
+}
+
+/// Work of gravity along an axis on a body that is held where `held` says so, by stiff springs.
+template <class Held>
+double sagOf(const Cage& cage, int axis, Held&& held) {
+  Eigen::SparseMatrix<double> matrix = elastic_detail::BlockRows(cage, kPoisson, {}).sparse();
+  VectorXd loads = elastic_detail::lumpedVolumes(cage.mesh, ones(cage.mesh));
+  for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) {
+    for (int k = 0; k < 3; ++k) {
+      const auto row = static_cast<Eigen::Index>(3 * n) + k;
+      if (k != axis) loads[row] = 0.0;
+      if (held(cage.mesh.nodes[n])) matrix.coeffRef(row, row) += 1e6;
+      if (matrix.coeff(row, row) == 0.0) matrix.coeffRef(row, row) = 1.0;  // a node that no tet uses
+    }
+  }
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
+  return loads.dot(VectorXd(factors.solve(loads)));
+}
+
+/// The calibration has seen neither where the body is held, nor these loads.
+TEST(Calibration, HoldsForSagsOfABodyThatIsHeldAnywhere) {
+  Cage cage = beam(2);
+  const Cage uncalibrated = cage, fine = refineQuadratic(cage.mesh).value();
+  ASSERT_TRUE(calibrate(cage).ok());
+  for (const int axis : {1, 2}) {
+    for (const double middle : {0.0, 1.0, 2.0}) {
+      const auto held = [&](const Vector3d& p) { return std::abs(p.x() - middle) < 0.01; };
+      const double limit = sagOf(fine, axis, held);
+      EXPECT_LT(sagOf(uncalibrated, axis, held) / limit, 0.8);
+      EXPECT_NEAR(sagOf(cage, axis, held) / limit, 1.0, 0.12) << axis << middle;
+    }
+  }
+}
+
+CalibrationReport reportOf(const ComponentModel& model, Cage& cage) {
+  CageOptions options;
+  options.targetTets = 500;
+  cage = createCage(model.mesh, options).value();
+  return calibrate(cage).value();
+}
+
+TEST(Calibration, IsByRegionWhereThatPredictsOtherLoadsAndOneFactorElsewhere) {
+  Cage cage;
+  const CalibrationReport regions = reportOf(claw(0.1), cage);
+  EXPECT_TRUE(regions.byRegion);
+  EXPECT_LT(std::max(regions.modeError, regions.sagError), 0.1);
+  const auto [least, greatest] = std::minmax_element(cage.stiffnessFactor.begin(), cage.stiffnessFactor.end());
+  EXPECT_EQ(*least, regions.leastFactor);
+  EXPECT_EQ(*greatest, regions.greatestFactor);
+  EXPECT_LT(1.3 * *least, *greatest);
+  EXPECT_NE(regions.describe().find("by region"), std::string::npos);
+  const CalibrationReport one = reportOf(coil(2, 0.1), cage);
+  EXPECT_FALSE(one.byRegion);
+  EXPECT_EQ(cage.stiffnessFactor, std::vector<double>(cage.mesh.tetCount(), one.stiffnessFactor));
+}
+
+TEST(Calibration, SaysBothErrors) {
+  Cage cage = beam(2);
+  const CalibrationReport report = calibrate(cage).value();
+  EXPECT_GT(report.modeError, 0.0);
+  EXPECT_GT(report.sagError, 0.0);
+  EXPECT_LT(std::max(report.modeError, report.sagError), 0.2);
+  EXPECT_NE(report.describe().find("% in sags"), std::string::npos);
 }
 
 TEST(Calibration, FinerCagesNeedLess) {
