@@ -48,7 +48,7 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
     for (const auto& row : rowsOf(scene, "quadratic")) {
       // Both references simulate the same body: their motions differ by far less than those of coarse cages do.
       EXPECT_NEAR(number(row, "error_against_bullet_rms"), number(row, "error_total_rms"),
-                  0.3 * number(row, "error_total_rms") + 1e-3)
+                  0.3 * number(row, "error_total_rms") + number(scene, "reference_error"))
           << name;
       EXPECT_GT(number(row, "speedup_against_bullet"), 4.0 * number(row, "speedup")) << name;
     }
@@ -68,6 +68,8 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
       ASSERT_EQ(rows.size(), 3u);
       for (std::size_t k = 1; k < rows.size(); ++k) {
         for (const char* error : {"error_total_rms", "error_embedding_rms", "error_simulation_rms"}) {
+          // What the small reference does not resolve need not fall.
+          if (error != std::string("error_embedding_rms") && number(rows[k], "resolved") == 0.0) continue;
           EXPECT_LT(number(rows[k], error), number(rows[k - 1], error)) << name << " " << interpolation << " " << error;
         }
       }
