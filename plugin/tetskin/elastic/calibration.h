@@ -24,17 +24,19 @@ struct CalibrationOptions {
 struct TETSKIN_ELASTIC_API CalibrationReport {
   double stiffnessFactor = 1.0;  ///< factor of the stiffness, above 0 and at most 1: of all tets, or their mean
   bool byRegion = false;         ///< the factors differ, as one does not fit the whole body
-  double leastFactor = 1.0, greatestFactor = 1.0;  ///< among the tets
-  bool needless = false;        ///< all tets are quadratic and full: the factor is 1, and nothing was compared
-  int refinements = 0;          ///< number of uniform refinements; 0: the cage has too many tets, and the factor is 1
-  std::size_t refinedTets = 0;  ///< number of tets in the finest refinement
+  double leastFactor = 1.0;      ///< the least among the tets
+  double greatestFactor = 1.0;   ///< the greatest among the tets
+  bool needless = false;         ///< all tets are quadratic and full: the factor is 1, and nothing was compared
+  int refinements = 0;           ///< number of uniform refinements; 0: the cage has too many tets, and the factor is 1
+  std::size_t refinedTets = 0;   ///< number of tets in the finest refinement
   /// refinements + 1 values, from the cage without a factor to its finest refinement: displacement under the same
   /// loads, relative to that in the limit of infinite refinement, as a geometric mean
   std::vector<double> responses;
   int skippedModes = 0;  ///< modes that the refinements lack: of regions that are almost unattached
-  /// Root mean square errors of the calibrated cage against the limit, as fractions: of the displacement by its modes'
-  /// accelerations, which is twice that of their frequencies; and of that under sags.
-  double modeError = 0.0, sagError = 0.0;
+  /// Root mean square error of the calibrated cage against the limit, as a fraction: of the displacement by its modes'
+  /// accelerations, which is twice that of their frequencies.
+  double modeError = 0.0;
+  double sagError = 0.0;  ///< the same of the displacement under sags
   /// Estimate of the remaining error: the mean of both errors, plus half of the extrapolation from the refinements. A
   /// fraction of the displacement.
   double remainingError = 0.0;
