@@ -95,7 +95,7 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
       "Compare linear and quadratic tets, in sag (the beam: cantilever), instead of kinds of cages, also at "
       "rest and by their frequencies; a list of: uncalibrated, calibrated, quadratic, quadratic_calibrated, all",
       "none");
-  line.addFlag("--filled", o.filled, "With --orders: cages are tets by formula that fill a built-in model");
+  line.addFlag("--formula", o.filled, "With --orders: cages are tets by formula that fill a built-in model");
   line.addCounts("--xpbd-substeps", o.xpbdSubsteps, "a list, for --solvers");
   line.addCounts("--bullet-substeps", o.bulletSubsteps, "a list, for --solvers; of those that explode, rows say so");
   line.addCount("--repetitions", o.repetitions, "How often each variant is timed; the median is printed", 1000);
@@ -154,7 +154,7 @@ void ReportCommandLine::chooseSolvers() {
 void ReportCommandLine::chooseOrders() {
   ReportOptions& o = options_;
   if (!line_.given("--orders")) {
-    if (o.filled) throw scenes::InputError("--filled needs --orders");
+    if (o.filled) throw scenes::InputError("--formula needs --orders");
     return;
   }
   o.measuresOrders = true;
@@ -168,7 +168,7 @@ void ReportCommandLine::chooseOrders() {
   if (o.scenes != std::vector<std::string>{"sag"} && o.scenes != std::vector<std::string>{"cantilever"})
     throw scenes::InputError("--orders: orders are compared in one scene that comes to rest: sag or cantilever");
   if (o.filled && (!o.model.mesh.empty() || scenes::fewestConformingTets(o.model.builtIn) == 0))
-    throw scenes::InputError("--filled: only beam, slotted_beam and hand have tets by formula");
+    throw scenes::InputError("--formula: only beam, slotted_beam and hand have tets by formula");
   if (!line_.given("--tets")) o.tets = {1000, 3000, 10000};
   if (!line_.given("--substeps")) o.substeps = {4};
   if (!line_.given("--reference-substeps")) o.referenceSubsteps = kSubstepsOfOrders;

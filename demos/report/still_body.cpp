@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
 #include "scenes/input_error.h"
 #include "scenes/placement.h"
@@ -49,6 +50,12 @@ StillBody stillBody(const scenes::SceneEntry& entry, const Cage& cage, scenes::S
   vibration.modeCount = kFrequencies;
   vibration.poissonRatio = options.body.poissonRatio;
   const Result<VibrationModes> modes = computeVibrationModes(cage, vibration);
+  if (modes.status().code == StatusCode::Degenerate) {
+    throw scenes::InputError(
+        "a cage of " + std::to_string(cage.mesh.tetCount()) +
+        " tets is not connected, and comes neither to rest nor has it frequencies; ask for more by " +
+        "--tets, or by --reference-tets, of which a ninth is simulated, too");
+  }
   scenes::require(modes.status());
   body.frequencies = modes.value().frequencies(1.0, 1.0);
   body.rest = restOf(entry, cage, std::move(options));

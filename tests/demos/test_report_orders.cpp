@@ -34,7 +34,7 @@ class ReportOrders : public test::ErrorVsTimeRun {
 };
 
 TEST_F(ReportOrders, QuadraticTetsBendAsTheBeamDoesAndLinearOnesLess) {
-  const auto scene = sceneWith({"--orders", "uncalibrated,quadratic", "--model", "beam", "--filled", "--tets", "1280",
+  const auto scene = sceneWith({"--orders", "uncalibrated,quadratic", "--model", "beam", "--formula", "--tets", "1280",
                                 "--reference-tets", "10240", "--frames", "20", "--reference-substeps", "16"});
   EXPECT_EQ(scene.at("scene"), "cantilever");
   const auto linear = rowsOf(scene, "quadratic", "uncalibrated"), quadratic = rowsOf(scene, "quadratic", "quadratic");
@@ -61,7 +61,7 @@ TEST_F(ReportOrders, QuadraticTetsBendAsTheBeamDoesAndLinearOnesLess) {
 
 /// An independent check of the reference, which is of quadratic tets: linear ones converge to it, with order 2.
 TEST_F(ReportOrders, LinearTetsApproachTheReference) {
-  const auto scene = sceneWith({"--orders", "uncalibrated", "--model", "beam", "--filled", "--tets", "1280,10240",
+  const auto scene = sceneWith({"--orders", "uncalibrated", "--model", "beam", "--formula", "--tets", "1280,10240",
                                 "--reference-tets", "20000", "--frames", "2", "--reference-substeps", "4"});
   const auto rows = rowsOf(scene, "quadratic", "uncalibrated");
   ASSERT_EQ(rows.size(), 2u);
@@ -91,8 +91,8 @@ TEST_F(ReportOrders, RefusesWhatCannotBeCompared) {
   expectRefused(run({"--orders", "all", "--scenes", "drop"}), "sag or cantilever");
   expectRefused(run({"--orders", "all", "--solvers", "all"}), "--solvers");
   expectRefused(run({"--orders", "all", "--modes", "5"}), "--modes");
-  expectRefused(run({"--orders", "all", "--filled"}), "slotted_beam");
-  expectRefused(run({"--filled", "--model", "beam"}), "--orders");
+  expectRefused(run({"--orders", "all", "--formula"}), "slotted_beam");
+  expectRefused(run({"--formula", "--model", "beam"}), "--orders");
 }
 
 Eigen::Vector3d centreOf(const Cage& cage) {
