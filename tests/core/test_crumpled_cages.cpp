@@ -152,9 +152,9 @@ class Crumpled : public testing::TestWithParam<Case> {
     points.move(GetParam().crumpling.apply(cage.nodes, GetParam().size));
     for (std::size_t e = 0; e < points.stencils.edgeCount(); ++e) {
       using Vector = Eigen::Matrix<Scalar, 3, 1>;
-      const auto rest = static_cast<double>(points.stencils.restLengths()[e]);
+      const auto restLength = static_cast<double>(points.stencils.restLengths()[e]);
       const double length = static_cast<double>(Eigen::Map<const Vector>(points.edges.data() + 4 * e).stableNorm());
-      EXPECT_LE(length, 0.500001 * rest) << "edge " << e;
+      EXPECT_LE(length, 0.500001 * restLength) << "edge " << e;
     }
   }
 
