@@ -35,6 +35,10 @@ def percent(share):
     return f"{100 * share:.3g}"
 
 
+def own_error(share):
+    return percent(share) if share else "unknown"
+
+
 def rows_of(scene):
     return [row for row in scene["rows"] if row["interpolation"] != "reference"]
 
@@ -47,11 +51,12 @@ def reference_of(scene):
 def cells(row, reference, model):
     own = row["interpolation"] == "reference"
     motion = 0 if own or not row["error_total_rms"] else row["error_of_motion"] / row["error_total_rms"]
+    error = own_error if own else percent
     unresolved = [] if own else [name for name, key in MEASURES.items() if row[key] < RESOLVED * reference[key]]
     space, time = ("", "") if own else (percent(motion * row["error_space_rms"]), percent(motion * row["error_time_rms"]))
     return [model, "the reference" if own else NAMES[row["material"]], f"{row['tets']:.0f}", f"{row['nodes']:.0f}",
-            f"{row['substeps']:.0f}", f"{row['simulation_ms']:.3g}", percent(row["error_of_motion"]), space, time,
-            percent(row["error_at_rest"]), "" if own else percent(row["sag_excess"]), percent(row["frequency_error"]),
+            f"{row['substeps']:.0f}", f"{row['simulation_ms']:.3g}", error(row["error_of_motion"]), space, time,
+            error(row["error_at_rest"]), "" if own else percent(row["sag_excess"]), error(row["frequency_error"]),
             f"{row['stiffness_factor']:.3f}", " ".join(unresolved)]
 
 
@@ -95,7 +100,8 @@ def draw_panel(axes, rows, key):
         if points:
             axes.plot(*zip(*points), color=colour, marker=marker, linestyle=style, linewidth=1.4, markersize=5, label=name)
     bottom, top = axes.get_ylim()
-    least = RESOLVED * next(float(row[key]) for row in rows if row["tets are"] == "the reference")
+    own = next(row[key] for row in rows if row["tets are"] == "the reference")
+    least = 0.0 if own == "unknown" else RESOLVED * float(own)
     if least > bottom:
         axes.axhspan(bottom, min(least, top), color="#000000", alpha=0.08, linewidth=0, label="not resolved by the reference")
     axes.set_ylim(bottom, top)
