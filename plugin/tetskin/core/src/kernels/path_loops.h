@@ -67,11 +67,18 @@ void writeUnit(const PathWork<S>& work, std::size_t group, const Lanes<S, 4>& su
   writeToPositions(work, group + K, toFloats<S, 1>(sum * turned<K, K, K, K, S, 1>(inverse)));
 }
 
+/// The same bits for a group as among four: which groups are together depends on the order of the vertices.
 template <class S>
 TETSKIN_NOINLINE void pathNormalsOneByOne(const PathWork<S>& work, std::size_t firstGroup, std::size_t lastGroup) {
   for (std::size_t group = firstGroup; group < lastGroup; ++group) {
-    Lanes<S, 4> normal = areaVector(work, group);
-    if (normaliseScaled<S>(normal)) writeToPositions(work, group, toFloats<S, 1>(normal));
+    Lanes<S, 4> sum = areaVector(work, group);
+    const Lanes<S, 4> four[4] = {sum, sum, sum, sum};
+    const Lanes<S, 4> squared = squaredLengths<S, 1>(four);
+    if (allBetween<S, 1>(squared, S(kOrdinary), S(1 / kOrdinary))) {
+      writeUnit<0>(work, group, sum, inverseSquareRoots<S, 1>(squared));
+    } else if (normaliseScaled<S>(sum)) {
+      writeToPositions(work, group, toFloats<S, 1>(sum));
+    }
   }
 }
 
