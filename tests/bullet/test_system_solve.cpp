@@ -244,7 +244,9 @@ TEST_F(System, OfAStiffBodyThatSlidesOnARigidOneKeepsTheLawAtAllPoints) {
   int sliding = 0;
   for (const ContactRow& row : rows_.rows()) sliding += row.state == ContactRow::State::Slides;
   EXPECT_GT(sliding, 0);
-  expectSolved(a, b, 1e-1);  // where the solve may stop depends on rounding
+  // How near the smallest impulses come to the law depends on where the passes stop: with the nodes elsewhere they are
+  // off by 0.6 to 25 % of themselves.
+  expectSolved(a, b, 1e-1);
 }
 
 TEST_F(System, EndsOnABodyAddTheBlocksOfTheirRows) {
