@@ -4,7 +4,7 @@
 // Builds a cage of tets around any mesh, or makes one of tets that fill it, as a file for Bullet, tetskin or a meshing
 // program.
 #include <tetskin/cage/create_cage.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/io/files.h>
 
 #include <nlohmann/json.hpp>

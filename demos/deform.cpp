@@ -3,7 +3,7 @@
 //
 // Rest mesh + rest cage + deformed cage -> deformed mesh: the skin without Bullet, for cages from any simulator; and a
 // sequence of deformed cages -> an animation.
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/io/animation.h>
 #include <tetskin/io/files.h>
 

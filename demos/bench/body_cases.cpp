@@ -6,7 +6,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <benchmark/benchmark.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/elastic/elastic_body.h>
 #ifdef TETSKIN_BENCH_THREADS
 #include <tetskin/threads/thread_pool.h>

@@ -4,7 +4,7 @@
 
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/cage/create_cage.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 
 #include <algorithm>
 #include <set>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/reference_cage.h"
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/quadratic_tets.h>
 
 #include <algorithm>
 #include <cassert>

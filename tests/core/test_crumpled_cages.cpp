@@ -6,8 +6,8 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <cmath>

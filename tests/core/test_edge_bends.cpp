@@ -9,7 +9,7 @@
 #include "carried_normals.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/skinning/edge_bends.h>

@@ -3,7 +3,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>

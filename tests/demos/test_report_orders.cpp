@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/quadratic_tets.h>
 
 #include <cmath>
 #include <numeric>

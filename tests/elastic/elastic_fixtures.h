@@ -5,7 +5,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>

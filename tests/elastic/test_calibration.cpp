@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/elastic/calibration.h>

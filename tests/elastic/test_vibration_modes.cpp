@@ -7,7 +7,7 @@
 //     J. Appl. Mech. 33, 1966 (10 (1 + nu) / (12 + 11 nu) for a rectangle)
 #include <gtest/gtest.h>
 #include <support/bars.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/elastic/src/matrix/block_rows.h>
 #include <tetskin/elastic/vibration_modes.h>
 

@@ -6,7 +6,7 @@
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/io/files.h>
 
 #include <functional>

@@ -5,7 +5,7 @@
 #include "cage_texts.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "reduced_test.h"
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/reduced/src/modes/cage_modes.h>
 
 #include <numeric>

@@ -4,7 +4,7 @@
 // Points in a cage, and the positions that skinning gives them.
 #pragma once
 
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>

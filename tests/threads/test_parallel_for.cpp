@@ -5,8 +5,8 @@
 #include "support/smooth_maps.h"
 
 #include <gtest/gtest.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <cstring>

@@ -5,7 +5,7 @@
 // of, whose rest shapes may change.
 #pragma once
 
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>

@@ -4,8 +4,8 @@
 // Internal to quadratic skinning: the edges of quadratic tets, along which the map is a known quadratic function.
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/quadratic_tets.h>
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/kernels/skinning_kernels.h>
 #include <tetskin/core/src/skinning/skinning.h>

@@ -125,11 +125,12 @@ TETSKIN_INLINE Lanes<S, W> lostTets(const TurnedPoints<S, W> at[4]) {
 template <class S, int W, class T>
 TETSKIN_INLINE void replace(const Lanes<S, W>& where, const T& from, T& to) {
   using V = Lanes<S, W>;
-  static_assert(sizeof(T) % sizeof(V) == 0);
-  V there[sizeof(T) / sizeof(V)], now[sizeof(T) / sizeof(V)];
+  constexpr std::size_t kBytes = sizeof(V);
+  static_assert(sizeof(T) % kBytes == 0);
+  V there[sizeof(T) / kBytes], now[sizeof(T) / kBytes];
   ::memcpy(there, &from, sizeof from);
   ::memcpy(now, &to, sizeof to);
-  for (std::size_t k = 0; k < sizeof(T) / sizeof(V); ++k) now[k] = where > S(0) ? there[k] : now[k];
+  for (std::size_t k = 0; k < sizeof(T) / kBytes; ++k) now[k] = where > S(0) ? there[k] : now[k];
   ::memcpy(&to, now, sizeof to);
 }
 

@@ -7,7 +7,7 @@
 // without a force.
 #pragma once
 
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 
 #include <array>
 #include <cstddef>

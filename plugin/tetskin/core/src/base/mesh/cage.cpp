@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/cage.h>
-#include <tetskin/core/quadratic_tets.h>
 #include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/base/mesh/face_neighbours.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>

@@ -4,7 +4,7 @@
 // Of a refined tet, four of the eight tets surround an edge: a diagonal of the octahedron between the midpoints. The
 // other four are their neighbours across every second face of the octahedron. So every edge with a ring of four tets,
 // and either half of the faces, is tried; where several attempts claim the same tets, the larger group wins.
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/base/mesh/face_neighbours.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/cage.h>
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/quadratic_tets.h>
 
 #include <array>
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/core/quadratic_tets.h>
+#include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
@@ -38,7 +38,7 @@ Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage) {
   std::vector<std::size_t> counts;
   for (std::size_t t = 0; t < cage.quadraticTet.size(); ++t) {
     const int number = cage.quadraticTet[t];
-    if (number < -1 || static_cast<std::size_t>(number + 1) > cage.mesh.tetCount() / kSubTets) {
+    if (number < -1 || (number >= 0 && static_cast<std::size_t>(number) >= cage.mesh.tetCount() / kSubTets)) {
       return invalid("the cage's quadraticTet[" + std::to_string(t) +
                      "] must be -1, or from 0 to below an eighth of the number of tets");
     }
