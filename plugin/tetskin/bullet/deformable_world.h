@@ -11,6 +11,7 @@
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/parallel_for.h>
 
+#include <cstddef>
 #include <memory>
 
 namespace tetskin {
@@ -153,7 +154,40 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   btDeformableMultiBodyConstraintSolver& constraintSolver();  ///< solver of rigid bodies; owned by this
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
+
+  /// Saves the state of the world, see `saveSnapshot`.
+  Result<std::size_t> save(void* buffer, std::size_t size) const;
+  /// Restores a state in place, see `restoreSnapshot`.
+  Status restore(const void* snapshot, std::size_t size);
 };
+
+/// Saves the state of a world, from which `restoreSnapshot` goes on: what steps change, and the application between
+/// them. What is only prepared (cages, shapes, bindings, which bodies there are) is not part of it. Changes nothing.
+///
+///     std::vector<unsigned char> snapshot(tetskin::saveSnapshot(world, nullptr, 0).value());
+///     tetskin::saveSnapshot(world, snapshot.data(), snapshot.size());
+///     ...
+///     tetskin::restoreSnapshot(world, snapshot.data(), snapshot.size());
+///
+/// world    created with a `DeformableSolver`, and not within a step
+/// buffer   size bytes, not aligned; null: only the size is computed
+/// Returns  the number of bytes of the snapshot
+/// Cost     O(nodes + tets + objects + contacts), some 25 microseconds for 3,000 tets; allocates little
+/// Errors   NotSaved: the world has something that cannot be saved, which the message names; SizeMismatch: the buffer is
+///          too small
+TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
+                                                    std::size_t size);
+
+/// Restores the state of a world in place: pointers, skins, joints and records stay valid. The world then goes on as the
+/// one that was saved, to the last bit, in this process or another one, on any number of threads.
+/// world     with the same bodies, objects and joints as when it was saved, created in the same order or the very same
+///           ones; others may have been added and removed again since
+/// snapshot  size bytes, not aligned, as `saveSnapshot` has written them; only read
+/// Errors    Malformed: the bytes are damaged; UnsupportedFormat: they are of another version, precision or kind of
+///           machine; SnapshotMismatch: the world is another one, the message names what was added, removed or is
+///           different; NotSaved. On any error nothing is changed
+TETSKIN_BULLET_API Status restoreSnapshot(btDeformableMultiBodyDynamicsWorld& world, const void* snapshot,
+                                          std::size_t size);
 
 /// A force, and its torque about the centre of mass of the object that it acts on: for a soft body that of its nodes'
 /// masses, for a rigid body or a link the origin of its frame. World space, in the world's units of mass, length and

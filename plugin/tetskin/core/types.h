@@ -51,6 +51,10 @@ enum class [[nodiscard]] StatusCode{
     NotInWorld,       ///< the body is in no world, or not in this one
     NotAdded,         ///< the body was never added
     Enclosed,         ///< the body lies wholly within another one, and is not pushed out of it
+
+    // Of snapshots.
+    NotSaved,          ///< the world has something that cannot be saved
+    SnapshotMismatch,  ///< the snapshot is of a world with other bodies, objects or joints
 };
 
 /// Name of a status code, for messages and logs: a few words in lower case. Never null; a static string.

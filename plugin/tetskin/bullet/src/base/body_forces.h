@@ -18,6 +18,8 @@
 
 namespace tetskin::bullet_detail {
 
+class WorldStream;
+
 using ForceList = btAlignedObjectArray<btDeformableLagrangianForce*>;
 
 /// A value that is none of Bullet's types: the largest number that their enumeration can hold.
@@ -37,6 +39,9 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
   void addScaledElasticForceDifferential(btScalar, const TVStack&, TVStack&) override {}
   void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
+
+  /// Writes or reads what it remembers from step to step, for snapshots.
+  virtual void visitState(WorldStream& /*stream*/) {}
 
  private:
   OwnObject registered_{OwnObject::Kind::InactiveForce, static_cast<const btDeformableLagrangianForce*>(this)};

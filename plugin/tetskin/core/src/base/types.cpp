@@ -60,6 +60,10 @@ const char* toString(StatusCode code) {
       return "not added";
     case StatusCode::Enclosed:
       return "enclosed by another body";
+    case StatusCode::NotSaved:
+      return "cannot be saved";
+    case StatusCode::SnapshotMismatch:
+      return "snapshot of another world";
   }
   return "unknown status";
 }

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Between the libraries: a StateStream that knows Bullet's types, and names objects by their place in the world.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <LinearMath/btTransform.h>
+#include <tetskin/core/src/base/state/state_stream.h>
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+class WorldStream : public StateStream {
+ public:
+  template <class... Arguments>
+  explicit WorldStream(btDeformableMultiBodyDynamicsWorld& world, Arguments... arguments)
+      : StateStream(arguments...), world_(world) {}
+
+  btDeformableMultiBodyDynamicsWorld& world() const { return world_; }
+
+  using StateStream::operator();
+  /// The first three numbers: the fourth is not always set.
+  void operator()(btVector3& v) {
+    plain(&v[0], 3);
+    if (restoring()) v[3] = 0;
+  }
+  void operator()(btMatrix3x3& m) {
+    for (int k = 0; k < 3; ++k) (*this)(m[k]);
+  }
+  void operator()(btTransform& t) {
+    (*this)(t.getBasis());
+    (*this)(t.getOrigin());
+  }
+  void operator()(btQuaternion& q) { plain(&q[0], 4); }
+
+  /// An object of the world, by its index there; or null. While a snapshot is restored, the world's list of objects has
+  /// the order of the snapshot.
+  template <class Object>
+  void object(Object*& object) {
+    int index = saving() && object ? object->getWorldArrayIndex() : -1;
+    (*this)(index);
+    if (!restoring()) return;
+    const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+    object = nullptr;
+    if (index == -1) return;
+    if (index < 0 || index >= objects.size()) return fail();
+    if constexpr (std::is_same_v<std::remove_const_t<Object>, btSoftBody>) {
+      object = btSoftBody::upcast(objects[index]);
+      if (!object) fail();
+    } else {
+      object = objects[index];
+    }
+  }
+
+  /// A map whose keys are objects of the world: visit(key, value) in the order of the objects, which does not depend on
+  /// addresses. Entries of objects that are not in the world are left out, and lost on restoring.
+  template <class Map, class Visit>
+  void byObject(Map& map, Visit&& visit) {
+    using Key = typename Map::key_type;
+    std::vector<int> indices;
+    if (saving()) {
+      const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+      for (int k = 0; k < objects.size(); ++k) {
+        if (const Key key = keyOf<Key>(*objects[k]); key && map.find(key) != map.end()) indices.push_back(k);
+      }
+    } else {
+      map.clear();
+    }
+    array(indices);
+    for (const int index : indices) {
+      Key key = nullptr;
+      if (index >= 0 && index < world_.getCollisionObjectArray().size()) {
+        key = keyOf<Key>(*world_.getCollisionObjectArray()[index]);
+      }
+      if (!key) return fail();
+      visit(*key, map[key]);
+    }
+  }
+
+  /// What cannot be saved, or does not fit: names it. The first one counts.
+  void refuse(const std::string& message) {
+    if (refusal_.empty()) refusal_ = message;
+    fail();
+  }
+  const std::string& refusal() const { return refusal_; }
+
+ private:
+  template <class Key>
+  static Key keyOf(btCollisionObject& object) {
+    using Object = std::remove_const_t<std::remove_pointer_t<Key>>;
+    if constexpr (std::is_same_v<Object, btSoftBody> || std::is_same_v<Object, btRigidBody>) {
+      return Object::upcast(&object);
+    } else {
+      return &object;
+    }
+  }
+
+  btDeformableMultiBodyDynamicsWorld& world_;
+  std::string refusal_;
+};
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to snapshots: the parts of a world's state, in the order in which they are written and read. Each function
+// serves both directions. What is only prepared, or computed anew in each step, is in none of them.
+#pragma once
+
+#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/base/world_stream.h>
+
+namespace tetskin::bullet_detail {
+
+/// Motion and settings of rigid bodies, links, multibodies and other objects, but not of soft bodies; the world's clock
+/// and gravity, and the seed of its solver. objects_state.cpp, multibodies_state.cpp
+void visitObjects(WorldStream& stream);
+/// Joints of rigid bodies and of multibodies. joints_state.cpp
+void visitJoints(WorldStream& stream);
+/// Boxes, trees and ids of the broadphase. broadphase_state.cpp
+void visitBroadphase(WorldStream& stream);
+/// Overlapping pairs with what their algorithms remember: contact caches with impulses. pairs_state.cpp
+void visitPairs(WorldStream& stream);
+/// Before all others while a snapshot is restored: pairs are found by ids, which change. pairs_state.cpp
+void removePairs(WorldStream& stream);
+/// Nodes of a soft body, and what Bullet remembers of it. soft_bodies_state.cpp
+void visitSoftBodies(WorldStream& stream);
+/// What the solver remembers from step to step. solver_state.cpp
+void visitSolver(WorldStream& stream, DeformableSolver& solver);
+/// The entries of the solver's list of forces: elasticity, soft contacts, joints at surfaces. solver_state.cpp
+void visitForces(WorldStream& stream, DeformableSolver& solver);
+/// What the search for contacts of soft bodies with rigid objects remembers. contact_state.cpp
+void visitContactSearch(WorldStream& stream);
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Between the libraries: what a snapshot is written to and read from. One function per struct, `visitState`, serves
+// both directions, so that they cannot differ.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+namespace tetskin {
+
+/// Counts, writes, or reads bytes. Numbers are written one by one, never structs, whose padding is not set; in the
+/// machine's own byte order, of which the snapshot's header tells.
+///
+/// Reading never leaves the bytes: what is missing reads as 0, and `failed` is true from then on.
+class StateStream {
+ public:
+  enum class Way { Count, Save, Restore };
+
+  /// Counts bytes.
+  StateStream() = default;
+  /// Writes up to so many bytes; beyond, it counts, and `failed` is true.
+  StateStream(unsigned char* to, std::size_t capacity) : way_(Way::Save), to_(to), size_(capacity) {}
+  /// Reads.
+  StateStream(const unsigned char* from, std::size_t size) : way_(Way::Restore), from_(from), size_(size) {}
+
+  /// False: values are to be replaced by what is read. True: nothing may be changed.
+  bool saving() const { return way_ != Way::Restore; }
+  bool restoring() const { return way_ == Way::Restore; }
+  /// Bytes so far.
+  std::size_t count() const { return at_; }
+  bool failed() const { return failed_; }
+  /// Call it when what was read cannot be.
+  void fail() { failed_ = true; }
+
+  /// The one place at which bytes pass.
+  void bytes(void* data, std::size_t count) {
+    const std::size_t end = at_ + count;
+    if (way_ == Way::Count) {
+      at_ = end;
+      return;
+    }
+    if (failed_ || count > size_ - at_) {
+      failed_ = true;
+      if (way_ == Way::Restore) {
+        if (count > 0) std::memset(data, 0, count);
+      } else {
+        at_ = end;
+        size_ = end;
+      }
+      return;
+    }
+    if (count > 0) {
+      if (way_ == Way::Save) {
+        std::memcpy(to_ + at_, data, count);
+      } else {
+        std::memcpy(data, from_ + at_, count);
+      }
+    }
+    at_ = end;
+  }
+
+  /// A number. A bool is read as true or false whatever the byte is.
+  template <class T, std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, int> = 0>
+  void operator()(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      unsigned char byte = value ? 1 : 0;
+      bytes(&byte, 1);
+      if (restoring()) value = byte != 0;
+    } else {
+      bytes(&value, sizeof value);
+    }
+  }
+  /// The length of a list whose elements take at least so many bytes each: a damaged one is not believed.
+  std::size_t length(std::size_t now, std::size_t leastBytes = 1) {
+    assert(now <= 0xFFFFFFFFu);
+    auto n = static_cast<std::uint32_t>(now);
+    (*this)(n);
+    if (restoring() && (failed_ || n > (size_ - at_) / (leastBytes > 0 ? leastBytes : 1))) {
+      failed_ = true;
+      return 0;
+    }
+    return n;
+  }
+  /// A vector of numbers, with its length.
+  template <class Vector>
+  void array(Vector& values) {
+    using T = std::decay_t<decltype(values[0])>;
+    static_assert(std::is_arithmetic_v<T>);
+    const std::size_t n = length(values.size(), sizeof(T));
+    if (restoring()) values.resize(n);
+    if (n > 0) bytes(values.data(), n * sizeof(T));
+  }
+  /// Numbers whose count both sides know.
+  template <class T>
+  void plain(T* values, std::size_t count) {
+    static_assert(std::is_arithmetic_v<T>);
+    bytes(values, count * sizeof(T));
+  }
+  /// A vector of anything, with its length: visit(element) for each.
+  template <class Vector, class Visit>
+  void each(Vector& values, Visit&& visit) {
+    const std::size_t n = length(values.size());
+    if (restoring()) values.resize(n);
+    for (auto& value : values) visit(value);
+  }
+
+ private:
+  Way way_ = Way::Count;
+  unsigned char* to_ = nullptr;
+  const unsigned char* from_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t at_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace tetskin
