@@ -121,6 +121,7 @@ class Drag {
   explicit Drag(const DragOptions& options);
   /// Returns false if the body has exploded.
   bool step(int frame);
+  World& world() { return world_; }
   const World& world() const { return world_; }
   const TriangleMesh& drawn() const { return drawn_; }
   std::vector<Vector3d> surface() const;

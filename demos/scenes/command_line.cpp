@@ -186,6 +186,10 @@ std::string versionOf(const std::string& program) {
 struct CommandLine::Parser {
   CLI::App app;
   std::vector<std::function<void(NamedFiles&)>> files = {};
+  std::vector<std::string> arguments = {};  ///< as given
+
+  /// The arguments as given, but without these options and their values.
+  std::vector<std::string> argumentsWithout(const std::vector<std::string>& names) const;
 
   /// Adds an option that CLI11 reads into `value`; under the shared heading if the option is shared.
   template <class Value>
@@ -229,6 +233,20 @@ struct CommandLine::Parser {
     }
   }
 };
+
+std::vector<std::string> CommandLine::Parser::argumentsWithout(const std::vector<std::string>& names) const {
+  std::vector<std::string> kept;
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string& argument = arguments[k];
+    const std::string name = argument.substr(0, argument.find('='));
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      kept.push_back(argument);
+    } else if (name.size() == argument.size() && app.get_option(name)->get_items_expected_max() > 0) {
+      ++k;  // its value
+    }
+  }
+  return kept;
+}
 
 CommandLine::CommandLine(const std::string& description, const HelpEnd& end)
     : parser_(new Parser{CLI::App(description)}) {
@@ -398,8 +416,13 @@ void CommandLine::addOutputOptions(OutputOptions& options) {
   if (options.viewByDefault) addFlag("--no-view", options.noView);
   addSummaryOption(options.json, inFolder("summary.json"));
   addFlag("--hash", options.hash);
+  addFlag("--check-determinism", options.checkDeterminism);
+  addOutput("--record", options.record);
+  addInput("--replay", options.replay);
   addQuietOption(options.quiet);
-  addFiles([&options](NamedFiles& files) {
+  addFiles([this, &options](NamedFiles& files) {
+    options.program = parser_->app.get_name();
+    options.arguments = parser_->argumentsWithout({"--record", "--replay", "--check-determinism"});
     requireFormats(options);
     if (options.json.empty()) files.writes("--out", summaryPath(options));
     const bool hasView = options.viewByDefault && !options.noView && options.view.empty();
@@ -416,6 +439,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
   parser_->app.name(name);
   try {
     try {
+      parser_->arguments.assign(argv + 1, argv + argc);
       parser_->requirePresentNames(argc, argv);
       parser_->app.parse(argc, argv);
       NamedFiles files;

@@ -31,10 +31,15 @@ struct OutputOptions {
   int frames = 0;
   int every = 1;  ///< write every n-th frame as OBJ and PC2
   bool quiet = false;
-  std::string view = {};       ///< file of a page that plays the run; empty: none, unless there is one by default
-  bool viewByDefault = false;  ///< by default view.html in the folder, where a page can be made
-  bool noView = false;         ///< no page by default either
-  bool hash = false;           ///< print a hash of the nodes of all frames
+  std::string view = {};          ///< file of a page that plays the run; empty: none, unless there is one by default
+  bool viewByDefault = false;     ///< by default view.html in the folder, where a page can be made
+  bool noView = false;            ///< no page by default either
+  bool hash = false;              ///< print a hash of the nodes of all frames
+  bool checkDeterminism = false;  ///< make each step twice from a snapshot, and compare
+  std::string record = {};        ///< file to write the run to
+  std::string replay = {};        ///< file of a run to play
+  std::string program = {};       ///< the demo's name, and its arguments without the files of a run
+  std::vector<std::string> arguments = {};
   std::vector<std::string> formats = {};  ///< "obj", "glb", "pc2"; empty: see `formatsOf`
 };
 
@@ -118,8 +123,8 @@ class CommandLine {
   void addSummaryOption(std::string& path, const std::string& preset = "");
   /// Adds --quiet.
   void addQuietOption(bool& quiet);
-  /// Adds --frames, --out, --format, --every, --view, --json, --hash, --quiet; --no-view where there is a page by
-  /// default. The defaults of `options` are the demo's.
+  /// Adds --frames, --out, --format, --every, --view, --json, --hash, --check-determinism, --record, --replay, --quiet;
+  /// --no-view where there is a page by default. The defaults of `options` are the demo's.
   void addOutputOptions(OutputOptions& options);
 
   /// True if an option was on the parsed command line.

@@ -12,13 +12,15 @@
 
 namespace tetskin::scenes {
 
-Playback playFrames(const char* doing, const OutputOptions& output, const World& world, const FrameStep& step,
+Playback playFrames(const char* doing, const OutputOptions& output, World& world, const FrameStep& step,
                     const OfFrame& measure, const OfFrame& write) {
   Playback run;
+  world.setStepping(steppingBy(output, world.deformableWorld()));
+  const Stepping* stepping = world.stepping();
   Progress progress(doing, output.frames, output.quiet);
   for (int frame = 0; frame < output.frames; ++frame) {
     run.finite = step(frame, run);
-    if (!run.finite) break;
+    if (!run.finite || (stepping && stepping->hasEnded())) break;
     if (output.hash) run.hash = world.hashOfNodes(run.hash);
     measure(frame);
     if (frame % output.every == 0) {
@@ -29,6 +31,10 @@ Playback playFrames(const char* doing, const OutputOptions& output, const World&
     }
     run.frames = frame + 1;
     progress.show(frame + 1);
+  }
+  if (stepping) {
+    run.repeats = stepping->holds();
+    std::printf("%s\n", stepping->finding().c_str());
   }
   if (output.hash) std::printf("nodes of %d frames: %016" PRIx64 "\n", run.frames, run.hash);
   return run;
@@ -47,6 +53,7 @@ int finishRun(const char* program, const OutputOptions& output, const Playback& 
   writeJson(json, summaryPath(output));
   if (!output.quiet) print(json);
   recording.writePage();
+  if (!run.repeats) return kRunFailed;
   if (run.finite) return kDone;
   std::fprintf(stderr, "%s: the simulation exploded after frame %d\n", program, run.frames - 1);
   return kRunFailed;

@@ -19,6 +19,7 @@ struct Playback {
   double simulationMs = 0.0, writeMs = 0.0;  ///< totals of all frames
   bool finite = true;            ///< finite and not exploded; the run ends before the first frame that is not
   bool aboveFloor = true;        ///< true in all frames
+  bool repeats = true;           ///< false: it was to be another run's repetition, and is not
   std::uint64_t hash = kNoHash;  ///< hash of the nodes in all frames, if requested
 
   int steps() const { return frames > 1 ? frames - 1 : 1; }
@@ -29,10 +30,11 @@ using OfFrame = std::function<void(int frame)>;
 /// Makes a frame; number 0 already exists. Adds to the simulation's time; returns false if the body has exploded.
 using FrameStep = std::function<bool(int frame, Playback& run)>;
 
-/// Simulates the frames that the options request, and prints the progress, and the hash if it is requested.
+/// Simulates the frames that the options request, and prints the progress, and the hash if it is requested. The world
+/// makes its steps as the options request, see Stepping.
 /// world  the one that `step` steps; measure  called after every frame; write  called after those that are to be
 /// written
-Playback playFrames(const char* doing, const OutputOptions& output, const World& world, const FrameStep& step,
+Playback playFrames(const char* doing, const OutputOptions& output, World& world, const FrameStep& step,
                     const OfFrame& measure, const OfFrame& write);
 
 /// Ends a run: writes what is left of its frames, its GLB, its summary and its page. Returns the exit status, and says

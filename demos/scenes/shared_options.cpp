@@ -51,6 +51,10 @@ const std::vector<SharedOption>& sharedOptions() {
       {"--json", "Output", "Write the results to this JSON file"},
       {"--markdown", "Output", "Write the results to this Markdown file, as tables"},
       {"--hash", "Output", "Print a hash of the node positions in all frames; identical runs print the same one"},
+      {"--check-determinism", "Output",
+       "Make each step twice, from a snapshot, and compare every bit; takes twice the time"},
+      {"--record", "Output", "Write the run to this file, which tetskin_replay plays again"},
+      {"--replay", "Simulation", "Play the run of this file, compare every step, and stop where one differs"},
       {"--quiet", "Output", "Print errors only"}};
   return options;
 }

@@ -93,6 +93,7 @@ void World::makeDeformable() {
 }
 
 World::~World() {
+  stepping_.reset();
   softContacts_.reset();
   contacts_.clear();
   deformableBodies_.clear();
@@ -187,7 +188,7 @@ int World::iterations() const {
 
 int World::step(double seconds) {
   const WallTimer timer;
-  const int steps = world_->stepSimulation(static_cast<btScalar>(seconds), 0);
+  const int steps = stepping_ ? stepping_->step(seconds) : world_->stepSimulation(static_cast<btScalar>(seconds), 0);
   stageTimes_.simulation += timer.seconds();
   if (force_ == Force::Elastic && steps > 0) countSolve(static_cast<const DeformableSolver&>(*bodySolver_));
   return steps;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scenes/stage_times.h"
+#include "scenes/stepping.h"
 
 class btBroadphaseInterface;
 class btCollisionConfiguration;
@@ -124,6 +125,11 @@ class World {
   /// Deletes a body. May be called between steps, or from an action.
   void remove(btRigidBody& body);
 
+  /// From now on, steps are made by this; null: as they come.
+  void setStepping(std::unique_ptr<Stepping> stepping) { stepping_ = std::move(stepping); }
+  const Stepping* stepping() const { return stepping_.get(); }
+  /// The world, if it is a deformable one; or null.
+  btDeformableMultiBodyDynamicsWorld* deformableWorld() { return deformable_; }
   /// Makes one step of this many seconds; returns the number of Bullet's steps: 0 if no time passes.
   int step(double seconds);
   /// Iterations of the library's solver in the last step; 0 with other solvers.
@@ -174,6 +180,7 @@ class World {
   std::unique_ptr<SoftContacts> softContacts_;
   SolveTotals solveTotals_;
   StageTimes stageTimes_;
+  std::unique_ptr<Stepping> stepping_;
 };
 
 /// The stiffness that the library gives a body of this cage by default with Bullet's forces, under earth's gravity.

@@ -24,6 +24,7 @@
 #ifdef TETSKIN_HAS_BULLET
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/recorder.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #endif

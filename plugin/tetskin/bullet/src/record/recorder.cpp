@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/recorder.h>
+#include <tetskin/bullet/src/record/object_motion.h>
+#include <tetskin/bullet/src/record/record_file.h>
+#include <tetskin/bullet/src/state/snapshot_bytes.h>
+
+namespace tetskin {
+
+using namespace bullet_detail;
+
+struct Recorder::Impl {
+  Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, const RecorderOptions& options)
+      : world(ofWorld), snapshotEvery(static_cast<std::size_t>(options.snapshotEvery)) {}
+
+  void before(StepChunk& step);
+  void after(StepChunk& step);
+  void write(ChunkKind kind, const Bytes& bytes) { status = file.write(kind, bytes); }
+
+  btDeformableMultiBodyDynamicsWorld& world;
+  std::size_t snapshotEvery;
+  RecordWriter file;
+  Bytes ended, now;  ///< the states after the last step, and at present
+  Bytes targets;     ///< of kinematic bodies, before the last step
+  Status status;
+  std::size_t steps = 0;
+};
+
+/// What has changed since the last step; or the whole state, where it is time for that.
+void Recorder::Impl::before(StepChunk& step) {
+  status = saveInto(world, now);
+  if (!status.ok()) return;
+  if (!areOfOneWorld(ended, now)) {
+    write(ChunkKind::Change, now);
+  } else {
+    step.change = differenceOf(ended, now);
+    if (steps % snapshotEvery == 0) write(ChunkKind::Snapshot, ended);
+  }
+  step.kinematic = kinematicTargets(world);
+}
+
+void Recorder::Impl::after(StepChunk& step) {
+  step.motion = hashesOfMotion(world);
+  write(ChunkKind::Step, step.toBytes());
+  ++steps;
+  if (status.ok()) status = saveInto(world, ended);
+}
+
+Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Recorder::~Recorder() = default;
+
+Result<std::unique_ptr<Recorder>> Recorder::start(btDeformableMultiBodyDynamicsWorld& world, const std::string& path,
+                                                  const RecorderOptions& options) {
+  if (options.snapshotEvery < 1) {
+    return Status{StatusCode::InvalidOption, "RecorderOptions::snapshotEvery must be at least 1"};
+  }
+  auto impl = std::make_unique<Impl>(world, options);
+  if (Status saved = saveInto(world, impl->ended); !saved.ok()) return saved;
+  if (Status opened = impl->file.open(path); !opened.ok()) return opened;
+  impl->write(ChunkKind::Description, Bytes(options.description.begin(), options.description.end()));
+  if (!impl->status.ok()) return impl->status;
+  return std::unique_ptr<Recorder>(new Recorder(std::move(impl)));
+}
+
+int Recorder::step(btScalar seconds, int maxSubSteps, btScalar fixedTimeStep) {
+  StepChunk step;
+  step.seconds = static_cast<double>(seconds);
+  step.maxSubSteps = maxSubSteps;
+  step.fixedTimeStep = static_cast<double>(fixedTimeStep);
+  if (impl_->status.ok()) impl_->before(step);
+  const int made = impl_->world.stepSimulation(seconds, maxSubSteps, fixedTimeStep);
+  if (impl_->status.ok()) impl_->after(step);
+  return made;
+}
+
+const Status& Recorder::status() const {
+  return impl_->status;
+}
+
+std::size_t Recorder::steps() const {
+  return impl_->steps;
+}
+
+}  // namespace tetskin

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to recorded runs: snapshots as vectors, and whether two are of one world.
+#pragma once
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/core/types.h>
+
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+/// Saves a snapshot, and keeps the vector's memory. Errors: those of `saveSnapshot`.
+Status saveInto(btDeformableMultiBodyDynamicsWorld& world, std::vector<unsigned char>& snapshot);
+
+/// True if both snapshots are of the same bodies, objects and joints: one may be restored where the other was saved.
+bool areOfOneWorld(const std::vector<unsigned char>& a, const std::vector<unsigned char>& b);
+
+}  // namespace tetskin::bullet_detail
