@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "replay_scenes.h"
+
+#include "replay_models.h"
+
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/contact/soft_contacts.h>
+#include <tetskin/contact/surface_contact.h>
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace tetskin::test {
+namespace {
+
+btVector3 at(double x, double y, double z) {
+  return {btScalar(x), btScalar(y), btScalar(z)};
+}
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+/// A rigid body that is in a world as long as it exists; without mass: fixed.
+class Rigid {
+ public:
+  Rigid(tetskin::DeformableWorld& world, btCollisionShape& shape, double mass, const btVector3& origin)
+      : world_(world), body_(construction(shape, mass)) {
+    const btTransform where(btMatrix3x3::getIdentity(), origin);
+    body_.setWorldTransform(where);
+    body_.setInterpolationWorldTransform(where);
+    world_.addRigidBody(&body_);
+  }
+  ~Rigid() { world_.removeRigidBody(&body_); }
+  Rigid(const Rigid&) = delete;
+  Rigid& operator=(const Rigid&) = delete;
+  btRigidBody& body() { return body_; }
+
+ private:
+  static btRigidBody::btRigidBodyConstructionInfo construction(btCollisionShape& shape, double mass) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) shape.calculateLocalInertia(btScalar(mass), inertia);
+    return {btScalar(mass), nullptr, &shape, inertia};
+  }
+  tetskin::DeformableWorld& world_;
+  btRigidBody body_;
+};
+
+/// A soft body of a model, which meets rigid bodies at its surface.
+struct Soft {
+  Soft(tetskin::DeformableWorld& world, const ReplayModel& model, const Eigen::Vector3d& offset,
+       const SoftBodyOptions& options)
+      : owner(DeformableBody::add(world, movedBy(model.cage, offset), options).value()),
+        contact(SurfaceContact::add(world, owner->body(), *model.binding, model.mesh).value()) {}
+  btSoftBody& body() { return owner->body(); }
+
+  std::unique_ptr<DeformableBody> owner;
+  std::unique_ptr<SurfaceContact> contact;
+};
+
+SoftBodyOptions firmness(double relativeStiffness) {
+  SoftBodyOptions options;
+  options.relativeStiffness = relativeStiffness;
+  options.faceTree = false;
+  return options;
+}
+
+/// A scene that stands on a floor at y = 0.
+class OnFloor : public ReplayScene {
+ protected:
+  explicit OnFloor(const DeformableWorldOptions& options) : ReplayScene(options) {}
+
+ private:
+  btStaticPlaneShape plane_{btVector3(0, 1, 0), 0};
+  Rigid floor_{world(), plane_, 0, at(0, 0, 0)};
+};
+
+/// Four walls around a square, at this distance from its centre.
+class Walls {
+ public:
+  Walls(tetskin::DeformableWorld& world, double distance) {
+    for (const btVector3& inward : {at(1, 0, 0), at(-1, 0, 0), at(0, 0, 1), at(0, 0, -1)}) {
+      shapes_.push_back(std::make_unique<btStaticPlaneShape>(inward, btScalar(-distance)));
+      walls_.push_back(std::make_unique<Rigid>(world, *shapes_.back(), 0, at(0, 0, 0)));
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<btStaticPlaneShape>> shapes_;
+  std::vector<std::unique_ptr<Rigid>> walls_;
+};
+
+class Drop : public OnFloor {
+ public:
+  explicit Drop(const DeformableWorldOptions& options) : OnFloor(options) {}
+
+ private:
+  ReplayModel model_ = ballModel(6, 12);
+  btSphereShape stoneShape_{btScalar(0.25)}, ballShape_{btScalar(0.25)};
+  Rigid stone_{world(), stoneShape_, 0, at(0.375, 0.125, 0.125)};
+  Rigid ball_{world(), ballShape_, 5, at(-0.375, 0.25, -0.0625)};
+  Soft body_{world(), model_, {0, 1.25, 0}, firmness(60)};
+};
+
+class Heap : public OnFloor {
+ public:
+  explicit Heap(const DeformableWorldOptions& options) : OnFloor(options) {
+    for (int n = 0; n < kToys; ++n) {
+      const int i = n % 3, j = n / 9, k = n / 3 % 3;
+      const Eigen::Vector3d shift(((5 * n) % 7 - 3) / 32.0, 0, ((3 * n) % 11 - 5) / 64.0);
+      toys_.push_back(std::make_unique<Soft>(
+          world(), model_, Eigen::Vector3d(0.875 * (i - 1), 0.75 + 1.25 * j, 0.875 * (k - 1)) + shift, firmness(60)));
+      require(contacts_->add(toys_.back()->body(), model_.shape()).ok());
+    }
+  }
+
+ private:
+  static constexpr int kToys = 26;
+  ReplayModel model_ = ballModel(3, 6);
+  Walls walls_{world(), 1.5};
+  std::vector<std::unique_ptr<Soft>> toys_;
+  std::unique_ptr<SoftContacts> contacts_ = SoftContacts::add(world()).value();
+};
+
+class Drag : public OnFloor {
+ public:
+  explicit Drag(const DeformableWorldOptions& options) : OnFloor(options) {}
+
+ private:
+  /// Along a zigzag, up and down, and left to fall for the last quarter.
+  void act(int frame) override {
+    if (frame == 180) require(spring_->setMaxForce(1.0 / 1024) == StatusCode::Ok);
+    const int leg = frame / 40, within = frame % 40;
+    const int across = leg % 2 == 0 ? within - 20 : 20 - within;
+    const int up = within < 20 ? within : 40 - within;
+    require(spring_->setTarget(at(across / 32.0, 1 + up / 32.0, frame / 128.0)) == StatusCode::Ok);
+  }
+
+  ReplayModel model_ = ballModel(5, 10);
+  btBoxShape hatShape_{at(0.25, 0.0625, 0.25)}, stepShape_{at(2, 0.25, 0.25)};
+  Rigid hat_{world(), hatShape_, 1, at(0, 1.125, 0)};
+  Rigid step_{world(), stepShape_, 0, at(0, 0.25, 1.25)};
+  Soft body_{world(), model_, {0, 0.5, 0}, firmness(50)};
+  SurfaceTree tree_ = SurfaceTree::create(model_.binding, model_.mesh).value();
+  std::unique_ptr<SurfaceWeld> weld_ =
+      SurfaceWeld::add(world(), tree_.pointAtRest(body_.body(), {0, 0.5, 0}).value(), hat_.body()).value();
+  std::unique_ptr<SurfaceSpring> spring_ =
+      SurfaceSpring::add(world(), tree_.pointAtRest(body_.body(), {0, 0, 0.5}).value()).value();
+};
+
+class Twist : public OnFloor {
+ public:
+  explicit Twist(const DeformableWorldOptions& options) : OnFloor(options) {}
+
+ private:
+  static constexpr int kCubes = 12, kReleased = 160;
+  static Eigen::Vector3d offset() { return {0, 0.625, 0}; }
+  static SoftBodyOptions options() {
+    SoftBodyOptions made = firmness(200);
+    made.pinned = [](const Eigen::Vector3d& p) { return p.x() == -1.5 || p.x() == 1.5; };
+    return made;
+  }
+  /// The end at x > 0 turns by (1, 1/32) / |(1, 1/32)| in each frame; the square root is exactly rounded everywhere.
+  void act(int frame) override {
+    if (frame > kReleased) return;
+    double c = 1, s = 0;
+    const double length = std::sqrt(1 + 1.0 / 1024);
+    for (int k = 0; k < frame; ++k) {
+      const double turned = (c - s / 32) / length;
+      s = (s + c / 32) / length;
+      c = turned;
+    }
+    for (int n = 0; n < static_cast<int>(model_.cage.nodes.size()); ++n) {
+      const Eigen::Vector3d& p = model_.cage.nodes[n];
+      if (p.x() != 1.5) continue;
+      const btVector3 there = at(p.x(), offset().y() + (c * p.y() - s * p.z()), s * p.y() + c * p.z());
+      const Status done =
+          frame == kReleased ? body_.owner->setPinned(n, false) : body_.owner->setPinnedPosition(n, there);
+      require(done.ok());
+    }
+  }
+
+  ReplayModel model_ = barModel(kCubes, 3, 0.25);
+  Soft body_{world(), model_, offset(), options()};
+};
+
+class Pit : public OnFloor {
+ public:
+  explicit Pit(const DeformableWorldOptions& options) : OnFloor(options) {
+    for (int n = 0; n < kBalls; ++n) {
+      const double shift = ((7 * n) % 13 - 6) / 512.0;
+      const btVector3 where =
+          at(0.34375 * (n % 4 - 1.5) + shift, 0.25 + 0.375 * (n / 16), 0.34375 * (n / 4 % 4 - 1.5) - shift);
+      balls_.push_back(std::make_unique<Rigid>(world(), ballShape_, 0.25, where));
+    }
+  }
+
+ private:
+  static constexpr int kBalls = 48;
+  ReplayModel model_ = ballModel(4, 8);
+  btSphereShape ballShape_{btScalar(0.15625)};
+  Walls walls_{world(), 0.75};
+  std::vector<std::unique_ptr<Rigid>> balls_;
+  Soft body_{world(), model_, {0.0625, 2, 0.125}, firmness(50)};
+};
+
+/// FNV-1a.
+class Hash {
+ public:
+  void add(const btVector3& v) {
+    for (int k = 0; k < 3; ++k) {
+      const btScalar x = v[k];
+      unsigned char bytes[sizeof x];
+      std::memcpy(bytes, &x, sizeof x);
+      for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 1099511628211u;
+    }
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 1469598103934665603u;
+};
+
+template <class Scene>
+std::unique_ptr<ReplayScene> make(const DeformableWorldOptions& options) {
+  return std::make_unique<Scene>(options);
+}
+
+}  // namespace
+
+std::unique_ptr<ReplayScene> ReplayScene::create(const std::string& name, const DeformableWorldOptions& options) {
+  if (name == "drop") return make<Drop>(options);
+  if (name == "heap") return make<Heap>(options);
+  if (name == "drag") return make<Drag>(options);
+  if (name == "twist") return make<Twist>(options);
+  if (name == "pit") return make<Pit>(options);
+  return nullptr;
+}
+
+const std::vector<std::string>& replaySceneNames() {
+  static const std::vector<std::string> names = {"drop", "heap", "drag", "twist", "pit"};
+  return names;
+}
+
+void ReplayScene::step(int frame) {
+  act(frame);
+  world_.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+}
+
+std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
+  Hash hash;
+  for (int i = 0; i < world.getNumCollisionObjects(); ++i) {
+    const btCollisionObject* object = world.getCollisionObjectArray()[i];
+    if (const btSoftBody* soft = btSoftBody::upcast(object)) {
+      for (int n = 0; n < soft->m_nodes.size(); ++n) {
+        hash.add(soft->m_nodes[n].m_x);
+        hash.add(soft->m_nodes[n].m_v);
+      }
+      continue;
+    }
+    for (int row = 0; row < 3; ++row) hash.add(object->getWorldTransform().getBasis()[row]);
+    hash.add(object->getWorldTransform().getOrigin());
+    if (const btRigidBody* rigid = btRigidBody::upcast(object)) {
+      hash.add(rigid->getLinearVelocity());
+      hash.add(rigid->getAngularVelocity());
+    }
+  }
+  return hash.value();
+}
+
+}  // namespace tetskin::test

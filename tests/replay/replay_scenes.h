@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Scenes that are the same on every machine: without files, random numbers or functions of the C library, whose last
+// bits differ between platforms. What a scene does in a frame depends on the world and the frame's number alone, so
+// that a world restored from a snapshot goes on as the one that was saved.
+#pragma once
+
+#include <tetskin/bullet/deformable_world.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tetskin::test {
+
+inline constexpr int kReplayFrames = 240;  ///< of 1/60 s, each in 4 substeps
+
+/// A world with everything in it.
+class ReplayScene {
+ public:
+  virtual ~ReplayScene() = default;
+  ReplayScene(const ReplayScene&) = delete;
+  ReplayScene& operator=(const ReplayScene&) = delete;
+
+  /// One of `replaySceneNames()`; null for any other name. Two scenes of one name have the same objects in the same
+  /// order.
+  static std::unique_ptr<ReplayScene> create(const std::string& name, const DeformableWorldOptions& options = {});
+
+  tetskin::DeformableWorld& world() { return world_; }
+  /// Makes one frame: what the application does before it, then four substeps.
+  void step(int frame);
+
+ protected:
+  explicit ReplayScene(const DeformableWorldOptions& options) : world_(options) {}
+
+ private:
+  virtual void act(int /*frame*/) {}
+  tetskin::DeformableWorld world_;
+};
+
+/// drop: a ball onto a dynamic ball, a fixed one and the floor; heap: 26 soft toys; drag: a ball with a hat, drawn by a
+/// spring; twist: a bar, wrung and released; pit: a ball falls among 48 rigid ones.
+const std::vector<std::string>& replaySceneNames();
+
+/// Hash of positions and velocities of all nodes, and of transforms and velocities of all rigid bodies, to the last
+/// bit.
+std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world);
+
+}  // namespace tetskin::test
