@@ -131,7 +131,6 @@ class Drag : public OnFloor {
  public:
   explicit Drag(const DeformableWorldOptions& options) : OnFloor(options) {}
 
- private:
   /// Along a zigzag, up and down, and left to fall for the last quarter.
   void act(int frame) override {
     if (frame == 180) require(spring_->setMaxForce(1.0 / 1024) == StatusCode::Ok);
@@ -141,6 +140,7 @@ class Drag : public OnFloor {
     require(spring_->setTarget(at(across / 32.0, 1 + up / 32.0, frame / 128.0)) == StatusCode::Ok);
   }
 
+ private:
   ReplayModel model_ = ballModel(5, 10);
   btBoxShape hatShape_{at(0.25, 0.0625, 0.25)}, stepShape_{at(2, 0.25, 0.25)};
   Rigid hat_{world(), hatShape_, 1, at(0, 1.125, 0)};
@@ -157,14 +157,6 @@ class Twist : public OnFloor {
  public:
   explicit Twist(const DeformableWorldOptions& options) : OnFloor(options) {}
 
- private:
-  static constexpr int kCubes = 12, kReleased = 160;
-  static Eigen::Vector3d offset() { return {0, 0.625, 0}; }
-  static SoftBodyOptions options() {
-    SoftBodyOptions made = firmness(200);
-    made.pinned = [](const Eigen::Vector3d& p) { return p.x() == -1.5 || p.x() == 1.5; };
-    return made;
-  }
   /// The end at x > 0 turns by (1, 1/32) / |(1, 1/32)| in each frame; the square root is exactly rounded everywhere.
   void act(int frame) override {
     if (frame > kReleased) return;
@@ -185,6 +177,14 @@ class Twist : public OnFloor {
     }
   }
 
+ private:
+  static constexpr int kCubes = 12, kReleased = 160;
+  static Eigen::Vector3d offset() { return {0, 0.625, 0}; }
+  static SoftBodyOptions options() {
+    SoftBodyOptions made = firmness(200);
+    made.pinned = [](const Eigen::Vector3d& p) { return p.x() == -1.5 || p.x() == 1.5; };
+    return made;
+  }
   ReplayModel model_ = barModel(kCubes, 3, 0.25);
   Soft body_{world(), model_, offset(), options()};
 };

@@ -29,14 +29,15 @@ class ReplayScene {
   static std::unique_ptr<ReplayScene> create(const std::string& name, const DeformableWorldOptions& options = {});
 
   tetskin::DeformableWorld& world() { return world_; }
-  /// Makes one frame: what the application does before it, then four substeps.
+  /// What the application does before a frame.
+  virtual void act(int /*frame*/) {}
+  /// Makes one frame: `act`, then four substeps.
   void step(int frame);
 
  protected:
   explicit ReplayScene(const DeformableWorldOptions& options) : world_(options) {}
 
  private:
-  virtual void act(int /*frame*/) {}
   tetskin::DeformableWorld world_;
 };
 
