@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/bullet/recorder.h>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "replay/replay_scenes.h"
+
+namespace tetskin::test {
+namespace {
+
+constexpr btScalar kFrame = btScalar(1) / 60;
+
+/// A file that is removed with this object.
+struct TemporaryFile {
+  explicit TemporaryFile(const std::string& name)
+      : path(testing::TempDir() + name + std::to_string(std::random_device()()) + ".replay") {}
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  std::string path;
+};
+
+std::unique_ptr<Recorder> started(ReplayScene& scene, const std::string& path, int snapshotEvery = 25) {
+  RecorderOptions options;
+  options.snapshotEvery = snapshotEvery;
+  options.description = "made by a test";
+  return Recorder::start(scene.world(), path, options).value();
+}
+
+/// Records so many frames, and returns the hash of each.
+std::vector<std::uint64_t> record(const std::string& name, const std::string& path, int frames) {
+  const auto scene = ReplayScene::create(name);
+  const auto recorder = started(*scene, path);
+  std::vector<std::uint64_t> hashes;
+  for (int frame = 0; frame < frames; ++frame) {
+    scene->act(frame);
+    EXPECT_EQ(recorder->step(kFrame, 4, kFrame / 4), 4);
+    hashes.push_back(stateHash(scene->world()));
+  }
+  EXPECT_TRUE(recorder->status().ok()) << recorder->status().message;
+  EXPECT_EQ(recorder->steps(), hashes.size());
+  return hashes;
+}
+
+class RecordedScenes : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Of, RecordedScenes, testing::Values("drag", "twist", "drop"));
+
+TEST_P(RecordedScenes, ArePlayedToTheLastBitByAWorldToWhichNobodyDoesAnything) {
+  const TemporaryFile file(GetParam());
+  const std::vector<std::uint64_t> hashes = record(GetParam(), file.path, 60);
+  const auto scene = ReplayScene::create(GetParam());
+  const auto replay = Replay::open(scene->world(), file.path).value();
+  for (const std::uint64_t hash : hashes) {
+    ASSERT_TRUE(replay->step()) << replay->status().message << replay->report().object;
+    ASSERT_EQ(stateHash(scene->world()), hash) << replay->report().steps;
+  }
+  EXPECT_FALSE(replay->step());
+  EXPECT_TRUE(replay->status().ok()) << replay->status().message;
+  EXPECT_FALSE(replay->report().differs) << replay->report().object;
+  EXPECT_FALSE(replay->report().cutShort);
+  EXPECT_EQ(replay->report().steps, hashes.size());
+  EXPECT_EQ(Replay::descriptionOf(file.path).value(), "made by a test");
+}
+
+TEST(Recorder, WritesOnlyWhatHasChanged) {
+  const TemporaryFile file("size");
+  record("drag", file.path, 10);
+  const auto first = std::filesystem::file_size(file.path);
+  record("drag", file.path, 20);
+  const auto more = std::filesystem::file_size(file.path) - first;
+  EXPECT_LT(more, 10u * 1000u);
+}
+
+TEST(Recorder, StepsAsTheWorldDoes) {
+  const TemporaryFile file("steps");
+  const std::vector<std::uint64_t> hashes = record("drag", file.path, 20);
+  const auto scene = ReplayScene::create("drag");
+  for (int frame = 0; frame < 20; ++frame) scene->step(frame);
+  EXPECT_EQ(stateHash(scene->world()), hashes.back());
+}
+
+/// Pushes an object within a step, which no recorder sees.
+struct Push {
+  int step = 0, at = 0;
+  btRigidBody* body = nullptr;
+};
+void pushWithinStep(btDynamicsWorld* world, btScalar /*seconds*/) {
+  auto& push = *static_cast<Push*>(world->getWorldUserInfo());
+  if (push.step++ == push.at) push.body->setLinearVelocity(push.body->getLinearVelocity() + btVector3(0, 1, 0));
+}
+
+TEST(Replay, NamesTheFirstStepThatDiffersAndTheObject) {
+  const TemporaryFile file("differs");
+  record("drop", file.path, 30);
+  const auto scene = ReplayScene::create("drop");
+  Push push;
+  push.at = 17 * 4 + 2;
+  for (int k = 0; k < scene->world().getNumCollisionObjects(); ++k) {
+    btRigidBody* rigid = btRigidBody::upcast(scene->world().getCollisionObjectArray()[k]);
+    if (rigid && !rigid->isStaticOrKinematicObject()) push.body = rigid;
+  }
+  ASSERT_TRUE(push.body);
+  scene->world().setInternalTickCallback(pushWithinStep, &push);
+  const auto replay = Replay::open(scene->world(), file.path).value();
+  while (replay->step()) {
+  }
+  EXPECT_TRUE(replay->status().ok()) << replay->status().message;
+  EXPECT_TRUE(replay->report().differs);
+  EXPECT_EQ(replay->report().steps, 18u);
+  const std::string name = "object " + std::to_string(push.body->getWorldArrayIndex()) + " of the world, a rigid body";
+  EXPECT_EQ(replay->report().object, name);
+}
+
+TEST(Replay, OfAFileThatWasCutShortPlaysItsWholeSteps) {
+  const TemporaryFile file("cut");
+  record("drag", file.path, 12);
+  std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 5);
+  const auto scene = ReplayScene::create("drag");
+  const auto replay = Replay::open(scene->world(), file.path).value();
+  while (replay->step()) {
+  }
+  EXPECT_TRUE(replay->status().ok());
+  EXPECT_TRUE(replay->report().cutShort);
+  EXPECT_FALSE(replay->report().differs);
+  EXPECT_EQ(replay->report().steps, 11u);
+}
+
+TEST(Replay, OfDamagedFilesIsRefusedOrStops) {
+  const TemporaryFile file("damaged");
+  record("drag", file.path, 4);
+  std::vector<char> whole(std::filesystem::file_size(file.path));
+  std::ifstream(file.path, std::ios::binary).read(whole.data(), static_cast<std::streamsize>(whole.size()));
+  const auto scene = ReplayScene::create("drag");
+  std::mt19937 random(5);
+  for (int k = 0; k < 60; ++k) {
+    std::vector<char> damaged = whole;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    std::ofstream(file.path, std::ios::binary).write(damaged.data(), static_cast<std::streamsize>(damaged.size()));
+    auto opened = Replay::open(scene->world(), file.path);
+    if (!opened.ok()) continue;
+    while (opened.value()->step()) {
+    }
+    EXPECT_TRUE(!opened.value()->status().ok() || opened.value()->report().cutShort) << k;
+  }
+}
+
+TEST(Replay, OfAnotherWorldIsRefused) {
+  const TemporaryFile file("other");
+  record("drag", file.path, 2);
+  const auto scene = ReplayScene::create("drop");
+  const std::uint64_t before = stateHash(scene->world());
+  const Status refused = Replay::open(scene->world(), file.path).status();
+  EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
+  EXPECT_EQ(stateHash(scene->world()), before);
+  EXPECT_EQ(Replay::open(scene->world(), file.path + "x").status().code, StatusCode::FileNotFound);
+  std::ofstream(file.path) << "something else";
+  EXPECT_EQ(Replay::open(scene->world(), file.path).status().code, StatusCode::Malformed);
+  EXPECT_EQ(Replay::descriptionOf(file.path).status().code, StatusCode::Malformed);
+}
+
+/// A ball that comes in the middle of a run.
+struct Newcomer {
+  explicit Newcomer(btDynamicsWorld& to) : world(to), body(btScalar(0.5), nullptr, &shape, btVector3(1, 1, 1)) {
+    body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 3, 0)));
+    world.addRigidBody(&body);
+  }
+  ~Newcomer() { world.removeRigidBody(&body); }
+  btDynamicsWorld& world;
+  btSphereShape shape{btScalar(0.2)};
+  btRigidBody body;
+};
+
+TEST(Replay, AsksForWhatTheApplicationAddedInTheMiddle) {
+  const TemporaryFile file("change");
+  {
+    const auto scene = ReplayScene::create("drop");
+    const auto recorder = started(*scene, file.path);
+    for (int frame = 0; frame < 10; ++frame) recorder->step(kFrame, 4, kFrame / 4);
+    const Newcomer ball(scene->world());
+    for (int frame = 0; frame < 20; ++frame) recorder->step(kFrame, 4, kFrame / 4);
+    ASSERT_TRUE(recorder->status().ok());
+  }
+  const auto scene = ReplayScene::create("drop");
+  std::unique_ptr<Newcomer> ball;
+  {
+    const auto replay = Replay::open(scene->world(), file.path).value();
+    while (replay->step()) {
+    }
+    EXPECT_EQ(replay->report().steps, 10u);
+    EXPECT_EQ(replay->status().code, StatusCode::SnapshotMismatch) << replay->status().message;
+  }
+  const auto replay = Replay::open(scene->world(), file.path).value();
+  replay->onChange([&](std::size_t step) {
+    EXPECT_EQ(step, 10u);
+    ball = std::make_unique<Newcomer>(scene->world());
+  });
+  while (replay->step()) {
+  }
+  EXPECT_TRUE(replay->status().ok()) << replay->status().message;
+  EXPECT_FALSE(replay->report().differs) << replay->report().object;
+  EXPECT_EQ(replay->report().steps, 30u);
+}
+
+TEST(Recorder, RefusesOptionsAndPlacesThatItCannotUse) {
+  const auto scene = ReplayScene::create("drag");
+  const TemporaryFile file("refused");
+  RecorderOptions options;
+  options.snapshotEvery = 0;
+  EXPECT_EQ(Recorder::start(scene->world(), file.path, options).status().code, StatusCode::InvalidOption);
+  EXPECT_FALSE(std::filesystem::exists(file.path));
+  const Status refused = Recorder::start(scene->world(), testing::TempDir() + "no/such/folder/a.replay").status();
+  EXPECT_EQ(refused.code, StatusCode::FileNotWritable);
+}
+
+#ifdef __linux__
+TEST(Recorder, ThatCannotWriteSaysSoAndStepsOn) {
+  const auto scene = ReplayScene::create("drag");
+  const Status refused = Recorder::start(scene->world(), "/dev/full").status();
+  EXPECT_EQ(refused.code, StatusCode::FileNotWritable) << refused.message;
+}
+#endif
+
+TEST(Replay, MovesKinematicBodiesAsTheirMotionStatesWere) {
+  const TemporaryFile file("kinematic");
+  struct Moved {
+    explicit Moved(btDynamicsWorld& to) : world(to), body(btScalar(0), &state, &shape) {
+      body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+      body.setActivationState(DISABLE_DEACTIVATION);
+      world.addRigidBody(&body);
+    }
+    ~Moved() { world.removeRigidBody(&body); }
+    btDynamicsWorld& world;
+    btBoxShape shape{btVector3(btScalar(0.3), btScalar(0.3), btScalar(0.3))};
+    btDefaultMotionState state{btTransform(btQuaternion::getIdentity(), btVector3(2, btScalar(0.4), 0))};
+    btRigidBody body;
+  };
+  std::uint64_t last = 0;
+  {
+    const auto scene = ReplayScene::create("drop");
+    Moved box(scene->world());
+    const auto recorder = started(*scene, file.path);
+    for (int frame = 0; frame < 40; ++frame) {
+      box.state.m_graphicsWorldTrans.setOrigin(btVector3(btScalar(2 - frame / 16.0), btScalar(0.4), 0));
+      recorder->step(kFrame, 4, kFrame / 4);
+    }
+    last = stateHash(scene->world());
+  }
+  const auto scene = ReplayScene::create("drop");
+  Moved box(scene->world());
+  const auto replay = Replay::open(scene->world(), file.path).value();
+  while (replay->step()) {
+  }
+  EXPECT_TRUE(replay->status().ok()) << replay->status().message;
+  EXPECT_FALSE(replay->report().differs) << replay->report().object;
+  EXPECT_EQ(replay->report().steps, 40u);
+  EXPECT_EQ(stateHash(scene->world()), last);
+}
+
+}  // namespace
+}  // namespace tetskin::test
