@@ -6,10 +6,13 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/state/saved_worlds.h>
+#include <tetskin/bullet/src/state/snapshot_bytes.h>
 #include <tetskin/bullet/src/state/world_directory.h>
 #include <tetskin/bullet/src/state/world_state.h>
 #include <tetskin/core/src/base/hash.h>
 
+#include <algorithm>
+#include <cassert>
 #include <string>
 
 namespace tetskin {
@@ -183,6 +186,32 @@ Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
   }
   return {};
 }
+
+namespace bullet_detail {
+
+Status saveInto(World& world, std::vector<unsigned char>& snapshot) {
+  Result<std::size_t> size = saveSnapshot(world, snapshot.data(), snapshot.size());
+  if (!size.ok() && size.status().code != StatusCode::SizeMismatch) return size.status();
+  if (size.ok() && snapshot.size() == size.value()) return {};
+  size = saveSnapshot(world, nullptr, 0);
+  if (!size.ok()) return size.status();
+  snapshot.resize(size.value());
+  return saveSnapshot(world, snapshot.data(), snapshot.size()).status();
+}
+
+bool areOfOneWorld(const std::vector<unsigned char>& a, const std::vector<unsigned char>& b) {
+  const auto directoryEnd = [](const std::vector<unsigned char>& snapshot) {
+    Header header;
+    StateStream stream(snapshot.data(), snapshot.size());
+    header.visit(stream);
+    assert(!stream.failed());
+    return static_cast<std::ptrdiff_t>(Header::bytes() + header.ends[0]);
+  };
+  return std::equal(a.begin() + static_cast<std::ptrdiff_t>(Header::bytes()), a.begin() + directoryEnd(a),
+                    b.begin() + static_cast<std::ptrdiff_t>(Header::bytes()), b.begin() + directoryEnd(b));
+}
+
+}  // namespace bullet_detail
 
 Result<std::size_t> DeformableWorld::save(void* buffer, std::size_t size) const {
   return saveSnapshot(*this, buffer, size);
