@@ -8,7 +8,7 @@ namespace tetskin::bullet_detail {
 namespace {
 
 /// 0 and -0 are different: they are other bits.
-void add(Hash& hash, const btVector3& v) {
+void addBits(Hash& hash, const btVector3& v) {
   for (int k = 0; k < 3; ++k) {
     const auto x = static_cast<double>(v[k]);
     std::uint64_t bits;
@@ -17,9 +17,9 @@ void add(Hash& hash, const btVector3& v) {
   }
 }
 
-void add(Hash& hash, const btTransform& t) {
-  add(hash, t.getOrigin());
-  for (int k = 0; k < 3; ++k) add(hash, t.getBasis()[k]);
+void addBits(Hash& hash, const btTransform& t) {
+  addBits(hash, t.getOrigin());
+  for (int k = 0; k < 3; ++k) addBits(hash, t.getBasis()[k]);
 }
 
 std::uint32_t hashOfMotion(const btCollisionObject& object) {
@@ -27,15 +27,15 @@ std::uint32_t hashOfMotion(const btCollisionObject& object) {
   hash.add(static_cast<std::uint64_t>(object.getActivationState()));
   if (const btSoftBody* soft = btSoftBody::upcast(&object)) {
     for (int n = 0; n < soft->m_nodes.size(); ++n) {
-      add(hash, soft->m_nodes[n].m_x);
-      add(hash, soft->m_nodes[n].m_v);
+      addBits(hash, soft->m_nodes[n].m_x);
+      addBits(hash, soft->m_nodes[n].m_v);
     }
     return hash.mixed();
   }
-  add(hash, object.getWorldTransform());
+  addBits(hash, object.getWorldTransform());
   if (const btRigidBody* rigid = btRigidBody::upcast(&object)) {
-    add(hash, rigid->getLinearVelocity());
-    add(hash, rigid->getAngularVelocity());
+    addBits(hash, rigid->getLinearVelocity());
+    addBits(hash, rigid->getAngularVelocity());
   }
   return hash.mixed();
 }
