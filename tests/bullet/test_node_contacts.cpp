@@ -35,7 +35,7 @@ class NodeContacts : public testing::Test {
       body_.m_nodes[n].m_im = 1;
       body_.m_nodes[n].m_v = motions[static_cast<std::size_t>(n)];
     }
-    contacts_ = makeNodeContacts(body_);
+    contacts_ = makeNodeContacts(body_, sizeOfNodes(body_));
     object_.setCollisionFlags(0);
     object_.setWorldTransform(btTransform(btQuaternion(btVector3(1, 2, 3), btScalar(0.7)), {btScalar(0.3), 0, 0}));
     btTransform predicted = object_.getWorldTransform();
@@ -156,7 +156,7 @@ TEST_F(NodeContacts, FollowTheMarginThatTheApplicationSets) {
   body_.getCollisionShape()->setMargin(4 * kMargin);
   const std::set<int> wider = find(sphere);
   EXPECT_GT(wider.size(), before);
-  contacts_ = makeNodeContacts(body_);
+  contacts_ = makeNodeContacts(body_, sizeOfNodes(body_));
   EXPECT_EQ(find(sphere), wider);
 }
 

@@ -61,7 +61,14 @@ class BodyWithTrees : public btSoftBody {
   void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
   /// What finds the contacts of the nodes, or null.
   const std::shared_ptr<BodyContacts>& nodeContacts() const { return nodeContacts_; }
-  void setNodeContacts(std::shared_ptr<BodyContacts> contacts) { nodeContacts_ = std::move(contacts); }
+  /// size  of the body, when they were made
+  void setNodeContacts(std::shared_ptr<BodyContacts> contacts, btScalar size) {
+    nodeContacts_ = std::move(contacts);
+    contactSize_ = size;
+  }
+  btScalar contactSize() const { return contactSize_; }
+  /// The nodes' positions with which the body was created.
+  const std::vector<btVector3>& createdAt() const { return createdAt_; }
   /// The solver that reads the contacts of the nodes; null if Bullet searches for them. Whether the body is still in
   /// its world, another solver's name in the body tells.
   const btSoftBodySolver* nodesSolver() const { return nodesSolver_; }
@@ -117,6 +124,8 @@ class BodyWithTrees : public btSoftBody {
   PointContacts pointContacts_;
   std::weak_ptr<BodyContacts> surfaceContacts_;
   std::shared_ptr<BodyContacts> nodeContacts_;
+  btScalar contactSize_ = 0;
+  std::vector<btVector3> createdAt_;
   const btSoftBodySolver* nodesSolver_ = nullptr;
 };
 

@@ -4,6 +4,7 @@
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/contact_filter.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 
@@ -231,7 +232,9 @@ KnownShape& BodyContacts::knownShape(const btCollisionShape& shape, std::uint64_
                                      const btCollisionObject& object) {
   KnownObject& all = known_[&object];
   KnownShape& known = all.shapes[number];
-  if (const ShapeKey key = ShapeKey::of(shape); known.key != key) {
+  const ShapeKey key = ShapeKey::of(shape);
+  if (!known.key.shape) known.key.shape = &shape;
+  if (known.key != key) {
     known.key = key;
     known.memory = {};
     known.hull = nullptr;
@@ -267,15 +270,49 @@ ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape, KnownShape& kno
   return &mesh_;
 }
 
-std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body) {
-  std::vector<LoosePatch> patches(static_cast<std::size_t>(body.m_nodes.size()));
-  for (int n = 0; n < body.m_nodes.size(); ++n) {
-    LoosePatch& patch = patches[static_cast<std::size_t>(n)];
-    patch.nodes = {n};
-    patch.weights = {1};
-    patch.centroid = toEigen(body.m_nodes[n].m_x);
+/// The numbers of shapes are sorted, as they are in no order that another run would have.
+void BodyContacts::visitState(WorldStream& stream) {
+  if (stream.restoring()) {
+    waiting_.clear();
+    remembered_ = 0;
+    nodesRead_ = 0;
   }
-  const auto size = static_cast<btScalar>(boundingBox(nodePositions(body)).sizes().maxCoeff());
+  stream(margin_);
+  stream.byObject(known_, [&](const btCollisionObject&, KnownObject& object) {
+    stream(object.step);
+    std::vector<std::uint64_t> numbers;
+    for (const auto& [number, shape] : object.shapes) numbers.push_back(number);
+    std::sort(numbers.begin(), numbers.end());
+    stream.array(numbers);
+    for (const std::uint64_t number : numbers) visitShape(stream, object.shapes[number]);
+  });
+}
+
+void BodyContacts::visitShape(WorldStream& stream, KnownShape& shape) {
+  stream(shape.key.low);
+  stream(shape.key.high);
+  stream(shape.lastStep);
+  stream(shape.isRemembered);
+  stream.array(shape.memory.touched);
+  if (!stream.restoring()) return;
+  remembered_ += shape.isRemembered;
+  std::sort(shape.memory.touched.begin(), shape.memory.touched.end());
+}
+
+btScalar sizeOfNodes(const BodyWithTrees& body) {
+  return static_cast<btScalar>(boundingBox(nodePositions(body)).sizes().maxCoeff());
+}
+
+std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body, btScalar size) {
+  const auto count = static_cast<std::size_t>(body.m_nodes.size());
+  std::vector<LoosePatch> patches(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    LoosePatch& patch = patches[n];
+    patch.nodes = {static_cast<int>(n)};
+    patch.weights = {1};
+    const bool isNew = body.createdAt().size() != count;
+    patch.centroid = toEigen(isNew ? body.m_nodes[static_cast<int>(n)].m_x : body.createdAt()[n]);
+  }
   return std::make_shared<BodyContacts>(nullptr, body, PointCollider(clustered(patches), kNodesSlack * size),
                                         kMeshThickness * size);
 }

@@ -23,7 +23,7 @@ namespace tetskin::bullet_detail {
 
 /// What is stored about one shape of one object.
 struct KnownShape {
-  ShapeKey key;
+  ShapeKey key;                           ///< without a shape: the next one with this box is meant
   std::shared_ptr<const HullFaces> hull;  ///< of a convex hull: its faces, kept for the probe
   unsigned lastStep = 0;                  ///< last step in which it was near
   bool isRemembered = false;              ///< it has an entry in `memory`
@@ -57,6 +57,9 @@ class BodyContacts {
   /// Forgets an object that is not met any more, or not at present.
   void forget(const btCollisionObject& object);
 
+  /// Writes or reads which points have touched. What was found to be clear is searched again, with the same result.
+  void visitState(WorldStream& stream);
+
   BodyWithTrees& body() const { return body_; }
   const PointCollider& search() const { return search_; }
 
@@ -79,6 +82,7 @@ class BodyContacts {
   ShapeMemory& memoryOf(KnownShape& known);
   ShapeProbe* probeOf(const btCollisionShape& shape, KnownShape& known);
   void forgetUnused(KnownObject& object);
+  void visitShape(WorldStream& stream, KnownShape& shape);
 
   const btDispatcher* dispatcher_;
   BodyWithTrees& body_;
@@ -98,8 +102,12 @@ class BodyContacts {
   ShapeMemory overflow_;                        ///< used for shapes beyond the limit, of which nothing is kept
 };
 
-/// What finds the contacts of the body's nodes.
-std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body);
+/// What finds the contacts of the body's nodes. Its order of points is that of the positions with which the body was
+/// created, so that a body that is created again has the same.
+/// size  of the body
+std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body, btScalar size);
+/// The longest side of the box around its nodes.
+btScalar sizeOfNodes(const BodyWithTrees& body);
 
 /// What finds the body's contacts in a world with this dispatcher; null if Bullet does.
 /// nodes  whether it finds those of nodes

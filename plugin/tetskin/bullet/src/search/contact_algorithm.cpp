@@ -62,7 +62,9 @@ class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
         maker_(maker),
         soft_(btSoftBody::upcast((softIsSecond ? second : first)->getCollisionObject())),
         rigid_((softIsSecond ? first : second)->getCollisionObject()),
-        softIsSecond_(softIsSecond) {}
+        softIsSecond_(softIsSecond) {
+    contacts_ = maker_.contactsOf(*soft_, *m_dispatcher);  // they may know the object from a snapshot
+  }
   ~ContactAlgorithm() override {
     if (const auto contacts = contacts_.lock()) contacts->forget(*rigid_);
     if (!other_) return;

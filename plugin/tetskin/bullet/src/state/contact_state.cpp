@@ -1,9 +1,40 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/state/world_state.h>
 
-namespace tetskin::bullet_detail {
+#include <memory>
 
-void visitContactSearch(WorldStream& /*stream*/) {}
+namespace tetskin::bullet_detail {
+namespace {
+
+/// A body has none before its first step, as in a world that was newly built.
+void visitNodeContacts(WorldStream& stream, BodyWithTrees& body) {
+  btScalar size = body.nodeContacts() ? body.contactSize() : btScalar(0);
+  const btScalar now = size;
+  stream(size);
+  if (stream.restoring() && size != now) {
+    body.setNodeContacts(size > 0 ? makeNodeContacts(body, size) : nullptr, size);
+  }
+  if (size > 0) body.nodeContacts()->visitState(stream);
+}
+
+void visitSurfaceContacts(WorldStream& stream, const std::shared_ptr<BodyContacts>& contacts) {
+  stream.same(contacts != nullptr, "a body has contacts at its surface, or has none");
+  if (contacts) contacts->visitState(stream);
+}
+
+}  // namespace
+
+void visitContactSearch(WorldStream& stream) {
+  btAlignedObjectArray<btSoftBody*>& bodies = stream.world().getSoftBodyArray();
+  for (int b = 0; b < bodies.size(); ++b) {
+    BodyWithTrees* body = bodyWithTrees(*bodies[b]);
+    if (!body) continue;
+    visitNodeContacts(stream, *body);
+    visitSurfaceContacts(stream, body->surfaceContacts().lock());
+    if (stream.failed()) return;
+  }
+}
 
 }  // namespace tetskin::bullet_detail

@@ -25,7 +25,10 @@ void DeformableSolver::Impl::prepareSearch(SolvedBody& body) const {
   if (body.byBullet) return;
   const auto& contacts = own->nodeContacts();
   const auto count = static_cast<std::size_t>(body.body->m_nodes.size());
-  if (!contacts || contacts->search().patches().nodes.size() != count) own->setNodeContacts(makeNodeContacts(*own));
+  if (!contacts || contacts->search().patches().nodes.size() != count) {
+    const btScalar size = sizeOfNodes(*own);
+    own->setNodeContacts(makeNodeContacts(*own, size), size);
+  }
   if (own->surfaceContacts().expired()) own->setReach(own->margin());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/joints/joint.h>
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/src/points/point_data.h>
@@ -189,6 +190,29 @@ void Joint::finish(btScalar seconds, const PointJoint* joints) {
     torque_ += (joints[k].anchor - joints[0].anchor).cross(joints[k].impulse) / seconds;
   }
   added_ = 0;
+}
+
+void Joint::visitState(WorldStream& stream) {
+  stream(anchor_.frame);
+  stream(anchorBefore_);
+  stream(settings_.stiffness);
+  stream(settings_.damping);
+  stream(settings_.maxForce);
+  stream(nodeMass_);
+  stream(force_);
+  stream(torque_);
+}
+
+/// The nodes that carry the point, which is where it was attached.
+void Joint::checkState(WorldStream& stream) {
+  const char* const kOthers = "other springs or welds";
+  stream.same(settings_.turns, kOthers);
+  stream.same(anchor_.object != nullptr, kOthers);
+  stream.same(carried_.count, kOthers);
+  for (std::uint32_t k = 0; k < carried_.count && !stream.failed(); ++k) {
+    stream.same(carried_.nodes[k], kOthers);
+    stream.same(carried_.weights[k], kOthers);
+  }
 }
 
 }  // namespace tetskin::touch_detail

@@ -54,6 +54,8 @@ class Joint : public ActiveJoint {
   bool spent() const override { return !body(); }
   void addJoints(btScalar seconds, std::vector<PointJoint>& joints) override;
   void finish(btScalar seconds, const PointJoint* joints) override;
+  void visitState(WorldStream& stream) override;
+  void checkState(WorldStream& stream) override;
 
  private:
   CarriedPoint carriedPoint() const;

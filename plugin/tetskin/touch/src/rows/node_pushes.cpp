@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/rows/node_pushes.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
@@ -36,6 +37,14 @@ class Load : public ActiveJoint {
       load.at.add(push.node, 1);
       load.impulse = toBullet(static_cast<double>(seconds) * push.push);
     }
+  }
+  void visitState(WorldStream& stream) override {
+    stream(left_);
+    for (NodePush& push : forces_) stream.plain(push.push.data(), 3);
+  }
+  void checkState(WorldStream& stream) override {
+    stream.same(forces_.size(), "other loads");
+    for (const NodePush& push : forces_) stream.same(push.node, "other loads");
   }
 
  private:

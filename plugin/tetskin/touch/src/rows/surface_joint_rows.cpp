@@ -3,6 +3,7 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <algorithm>
@@ -74,6 +75,20 @@ void SurfaceJointRows::finish(btScalar seconds) {
   assert(firsts_.size() <= active_.size());
   for (std::size_t k = 0; k < firsts_.size(); ++k) active_[k]->finish(seconds, joints_.data() + firsts_[k]);
   firsts_.clear();
+}
+
+void SurfaceJointRows::visitState(WorldStream& stream) {
+  for (const auto& joint : active_) {
+    if (!joint->spent()) joint->visitState(stream);
+  }
+}
+
+void SurfaceJointRows::checkState(WorldStream& stream) {
+  const auto count = std::count_if(active_.begin(), active_.end(), [](const auto& joint) { return !joint->spent(); });
+  stream.same(count, "other springs, welds or loads");
+  for (const auto& joint : active_) {
+    if (!joint->spent() && !stream.failed()) joint->checkState(stream);
+  }
 }
 
 }  // namespace tetskin::touch_detail

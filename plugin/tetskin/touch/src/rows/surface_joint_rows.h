@@ -33,6 +33,11 @@ class ActiveJoint {
   virtual void addJoints(btScalar /*seconds*/, std::vector<PointJoint>& /*joints*/) {}
   /// joints  those that addJoints has added, with their impulses
   virtual void finish(btScalar /*seconds*/, const PointJoint* /*joints*/) {}
+
+  /// Writes or reads what changes, for snapshots.
+  virtual void visitState(WorldStream& stream) = 0;
+  /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
+  virtual void checkState(WorldStream& stream) = 0;
 };
 
 class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<SurfaceJointRows> {
@@ -54,6 +59,8 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
   std::vector<PointJoint>* joints(btScalar seconds) override;
   void finish(btScalar seconds) override;
   void removeSoftBody(btSoftBody* body) override;
+  void visitState(WorldStream& stream) override;
+  void checkState(WorldStream& stream) override;
 
  private:
   void eraseSpent();
