@@ -18,7 +18,7 @@ struct ChunkHead {
 };
 
 std::uint64_t hashOfChunk(std::uint32_t kind, const Bytes& bytes) {
-  return hashOf(bytes.data(), bytes.size()) ^ kind;
+  return tetskin::hashOf(bytes.data(), bytes.size()) ^ kind;
 }
 
 template <class T>

@@ -76,8 +76,8 @@ template struct Visited<HingeJoint, &HingeJoint::m_rbAFrame, &HingeJoint::m_rbBF
 #ifdef _BT_USE_CENTER_LIMIT_
                         &HingeJoint::m_limit,
 #else
-                         &HingeJoint::m_lowerLimit, &HingeJoint::m_upperLimit, &HingeJoint::m_limitSoftness,
-                         &HingeJoint::m_biasFactor, &HingeJoint::m_relaxationFactor,
+                        &HingeJoint::m_lowerLimit, &HingeJoint::m_upperLimit, &HingeJoint::m_limitSoftness,
+                        &HingeJoint::m_biasFactor, &HingeJoint::m_relaxationFactor,
 #endif
                         &HingeJoint::m_referenceSign, &HingeJoint::m_angularOnly, &HingeJoint::m_enableAngularMotor,
                         &HingeJoint::m_useSolveConstraintObsolete, &HingeJoint::m_useOffsetForConstraintFrame,
@@ -274,15 +274,16 @@ void visitFeedback(WorldStream& stream, btTypedConstraint& joint) {
   visitAll(stream, f.m_appliedForceBodyA, f.m_appliedTorqueBodyA, f.m_appliedForceBodyB, f.m_appliedTorqueBodyB);
 }
 
+/// It has no memory for them before its first step.
 void visitImpulses(WorldStream& stream, btMultiBodyConstraint& joint) {
   auto& data = joint.*memberOf(JointData());
-  const int rows = joint.getNumRows();
-  bool allocated = data.size() >= rows && rows > 0;
-  stream(allocated);
-  if (!allocated) return;
-  if (data.size() < rows) joint.finalizeMultiDof();
-  if (data.size() < rows) return stream.fail();
-  stream.plain(&data[0], static_cast<std::size_t>(rows));
+  for (int row = 0; row < joint.getNumRows(); ++row) {
+    btScalar impulse = row < data.size() ? data[row] : 0;
+    stream(impulse);
+    if (!stream.restoring()) continue;
+    if (impulse != 0 && row >= data.size()) joint.finalizeMultiDof();
+    if (row < data.size()) data[row] = impulse;
+  }
 }
 
 }  // namespace

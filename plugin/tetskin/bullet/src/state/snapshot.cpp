@@ -6,10 +6,13 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/state/saved_worlds.h>
+<<<<<<< HEAD
 #include <tetskin/bullet/src/state/snapshot_bytes.h>
+=======
+#include <tetskin/bullet/src/state/snapshot_hash.h>
+>>>>>>> bullet-state
 #include <tetskin/bullet/src/state/world_directory.h>
 #include <tetskin/bullet/src/state/world_state.h>
-#include <tetskin/core/src/base/hash.h>
 
 #include <algorithm>
 #include <cassert>
@@ -44,7 +47,8 @@ struct Header {
   std::uint64_t magic = kMagic;
   std::uint32_t layout = kByteLayout, library = TETSKIN_VERSION_NUMBER;
   std::uint32_t scalarBytes = sizeof(btScalar), byteOrder = 0x01020304u;
-  std::uint64_t length = 0, hash = 0;       ///< of the payload
+  std::uint64_t length = 0;                 ///< of the payload
+  std::uint64_t hash = 0;                   ///< at kHashAt
   std::uint64_t ends[kPartCount + 1] = {};  ///< of the directory and of each part, from the payload's beginning
 
   void visit(StateStream& stream) {
@@ -63,39 +67,6 @@ struct Header {
     return stream.count();
   }
 };
-
-/// Lanes that do not wait for each other; a step is one-to-one in each word, as in `Hash`.
-std::uint64_t fastHash(const unsigned char* bytes, std::size_t count) {
-  constexpr std::size_t kLanes = 8;
-  std::uint64_t lanes[kLanes] = {};
-  const auto mix = [&](std::size_t lane, std::uint64_t word) {
-    const std::uint64_t product = (lanes[lane] ^ word) * 0x9E3779B97F4A7C15u;
-    lanes[lane] = product ^ product >> 32;
-  };
-  std::size_t at = 0;
-  for (; at + 8 * kLanes <= count; at += 8 * kLanes) {
-    std::uint64_t words[kLanes];
-    std::memcpy(words, bytes + at, sizeof words);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) mix(lane, words[lane]);
-  }
-  for (std::size_t lane = 0; at < count; at += 8, ++lane) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes + at, count - at < 8 ? count - at : 8);
-    mix(lane, word);
-  }
-  Hash hash;
-  hash.add(std::uint64_t{count});
-  for (const std::uint64_t lane : lanes) hash.add(lane);
-  return hash.value();
-}
-
-/// What is in the header beside the hash is protected by it, too.
-std::uint64_t hashOf(const Header& header, const unsigned char* payload) {
-  Hash hash;
-  for (const std::uint64_t end : header.ends) hash.add(end);
-  hash.add(fastHash(payload, header.length));
-  return hash.value();
-}
 
 Status malformed(const std::string& what) {
   return {StatusCode::Malformed, "the snapshot is damaged: " + what};
@@ -123,7 +94,8 @@ Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) 
     return malformed("it has " + std::to_string(size) + " bytes, not the " +
                      std::to_string(header.length + Header::bytes()) + " that were written");
   }
-  if (header.hash != hashOf(header, bytes + Header::bytes())) return malformed("bytes have changed since it was saved");
+  if (header.hash != snapshotHash(bytes + kHashedFrom, size - kHashedFrom))
+    return malformed("bytes have changed since it was saved");
   return {};
 }
 
@@ -153,9 +125,10 @@ Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t s
     return Status{StatusCode::SizeMismatch,
                   "the buffer has " + std::to_string(size) + " bytes, and the snapshot " + std::to_string(needed)};
   }
-  header.hash = hashOf(header, bytes + begin);
   StateStream front(bytes, begin);
   header.visit(front);
+  header.hash = snapshotHash(bytes + kHashedFrom, needed - kHashedFrom);
+  std::memcpy(bytes + kHashAt, &header.hash, sizeof header.hash);
   return needed;
 }
 
