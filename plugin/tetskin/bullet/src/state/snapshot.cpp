@@ -6,11 +6,8 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/state/saved_worlds.h>
-<<<<<<< HEAD
 #include <tetskin/bullet/src/state/snapshot_bytes.h>
-=======
 #include <tetskin/bullet/src/state/snapshot_hash.h>
->>>>>>> bullet-state
 #include <tetskin/bullet/src/state/world_directory.h>
 #include <tetskin/bullet/src/state/world_state.h>
 
