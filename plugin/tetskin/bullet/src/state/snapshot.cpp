@@ -38,6 +38,7 @@ constexpr VisitPart kParts[] = {
     [](WorldStream& s, DeformableSolver&) { visitContactSearch(s); },
     [](WorldStream& s, DeformableSolver& solver) { visitForces(s, solver); },
 };
+/// Of these parts.
 constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
 
 struct Header {

@@ -10,8 +10,9 @@
 
 namespace tetskin::bullet_detail {
 
-/// Motion and settings of rigid bodies, links, multibodies and other objects, but not of soft bodies; the world's clock
-/// and gravity, and the seed of its solver. objects_state.cpp, multibodies_state.cpp
+/// Motion and settings of rigid bodies, links, multibodies and other objects; of soft bodies, what they have as a
+/// btCollisionObject; the world's clock, gravity and settings, and the seed of its solver. objects_state.cpp,
+/// multibodies_state.cpp
 void visitObjects(WorldStream& stream);
 void visitMultiBodies(WorldStream& stream);
 /// Joints of rigid bodies and of multibodies. joints_state.cpp
