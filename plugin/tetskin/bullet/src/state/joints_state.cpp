@@ -76,8 +76,8 @@ template struct Visited<HingeJoint, &HingeJoint::m_rbAFrame, &HingeJoint::m_rbBF
 #ifdef _BT_USE_CENTER_LIMIT_
                         &HingeJoint::m_limit,
 #else
-                         &HingeJoint::m_lowerLimit, &HingeJoint::m_upperLimit, &HingeJoint::m_limitSoftness,
-                         &HingeJoint::m_biasFactor, &HingeJoint::m_relaxationFactor,
+                        &HingeJoint::m_lowerLimit, &HingeJoint::m_upperLimit, &HingeJoint::m_limitSoftness,
+                        &HingeJoint::m_biasFactor, &HingeJoint::m_relaxationFactor,
 #endif
                         &HingeJoint::m_referenceSign, &HingeJoint::m_angularOnly, &HingeJoint::m_enableAngularMotor,
                         &HingeJoint::m_useSolveConstraintObsolete, &HingeJoint::m_useOffsetForConstraintFrame,
