@@ -186,8 +186,9 @@ TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyD
                                                     std::size_t size);
 
 /// Restores the state of a world in place: pointers, skins, joints and records stay valid. The world then goes on as
-/// the one that was saved, to the last bit, in this process or another one, on any number of threads. world     with
-/// the same bodies, objects and joints as when it was saved, created in the same order or the very same
+/// the one that was saved, to the last bit, in this process or another one, on any number of threads.
+///
+/// world     with the same bodies, objects and joints as when it was saved, created in the same order or the very same
 ///           ones; others may have been added and removed again since
 /// snapshot  size bytes, not aligned, as `saveSnapshot` has written them; only read
 /// Errors    Malformed: the bytes are damaged; UnsupportedFormat: they are of another version, precision or kind of
