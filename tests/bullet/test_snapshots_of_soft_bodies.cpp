@@ -70,5 +70,127 @@ TEST(SnapshotsOfSoftBodies, OfAStiffBarThatSwings) {
   expectReplays([&] { return withBar(kFarUp, true, stiff); }, 60, {0, 7, 30});
 }
 
+TEST(SnapshotsOfSoftBodies, OfPinsThatAreLed) {
+  const auto make = [] {
+    auto scene = withBar(kFarUp, true);
+    scene->before = [own = scene.get()](int frame) {
+      const btScalar y = btScalar(0.1) * std::sin(btScalar(0.3) * static_cast<btScalar>(frame));
+      for (int n = 0; n < own->soft().m_nodes.size(); ++n) {
+        if (!own->bodies[0]->isPinned(n)) continue;
+        btVector3 place = own->soft().m_nodes[n].m_x;
+        place.setX(y);
+        EXPECT_TRUE(own->bodies[0]->setPinnedPosition(n, place).ok());
+      }
+    };
+    return scene;
+  };
+  expectReplays(make, 30, {0, 5, 17});
+}
+
+TEST(SnapshotsOfSoftBodies, OfABodyThatLandsAndFallsAsleep) {
+  expectReplays([] { return withBar(0.1, false); }, 240, {0, 10, 60, 150, 230});
+}
+
+TEST(SnapshotsOfSoftBodies, OfABodyThatIsWoken) {
+  const auto make = [] {
+    auto scene = withBar(0.1, false);
+    scene->before = [own = scene.get()](int frame) {
+      if (frame == 230) own->soft().translate(btVector3(0, btScalar(0.1), 0));
+    };
+    return scene;
+  };
+  expectReplays(make, 250, {200, 229});
+}
+
+TEST(SnapshotsOfSoftBodies, OfQuadraticTets) {
+  const auto make = [] {
+    auto scene = std::make_unique<Scene>();
+    TetMesh mesh = latticeCage(6, 1, 1, 0.5);
+    for (Eigen::Vector3d& p : mesh.nodes) p.y() += 0.5;
+    scene->bodies.push_back(
+        DeformableBody::add(scene->world(), refineQuadratic(mesh).value(), oneKilogram(SoftBodyOptions())).value());
+    return scene;
+  };
+  expectReplays(make, 40, {0, 9, 30});
+}
+
+TEST(SnapshotsOfSoftBodies, OfBulletsOwnForces) {
+  for (const ForceModel model : {ForceModel::NeoHookean, ForceModel::LinearElasticity}) {
+    const auto make = [model] {
+      SoftBodyOptions options;
+      options.forceModel = model;
+      return withBar(kFarUp, true, options);
+    };
+    expectReplays(make, 30, {0, 9, 20});
+  }
+}
+
+TEST(SnapshotsOfSoftBodies, OfSettingsThatTheApplicationChanges) {
+  const auto make = [] {
+    auto scene = withBar(kFarUp, true);
+    scene->before = [own = scene.get()](int frame) {
+      DeformableBody& body = *own->bodies[0];
+      if (frame == 10) {
+        EXPECT_TRUE(body.setYoungsModulus(2 * body.youngsModulus()).ok());
+        EXPECT_TRUE(body.setGravity(btVector3(3, 0, 0)).ok());
+        body.body().m_cfg.drag = btScalar(0.01);
+        EXPECT_TRUE(body.setPinned(body.body().m_nodes.size() - 1, true).ok());
+      }
+      if (frame == 20) EXPECT_TRUE(body.setPinned(body.body().m_nodes.size() - 1, false).ok());
+    };
+    return scene;
+  };
+  expectReplays(make, 30, {5, 15, 25});
+}
+
+TEST(SnapshotsOfSoftBodies, OfAKinematicBoxThatIsMovedOncePerFrame) {
+  struct Moved : Scene {
+    Moved() {
+      box.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+      box.setActivationState(DISABLE_DEACTIVATION);
+      place(0);
+      world().addRigidBody(&box);
+      before = [this](int frame) { place(frame); };
+    }
+    ~Moved() override { world().removeRigidBody(&box); }
+    void place(int frame) {
+      const auto x = btScalar(0.01) * static_cast<btScalar>(frame);
+      box.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(-0.55) + x, btScalar(0.5), 0)));
+    }
+    btBoxShape shape{btVector3(btScalar(0.5), btScalar(0.5), 1)};
+    btRigidBody box{0, nullptr, &shape};
+  };
+  const auto make = [] {
+    auto scene = std::make_unique<Moved>();
+    TetMesh bar = makeBox({8, 2, 2}, {2.0, 0.5, 0.5});
+    for (Eigen::Vector3d& p : bar.nodes) p.y() += 0.05;
+    scene->bodies.push_back(added(scene->worldOf, bar));
+    return scene;
+  };
+  expectReplays(make, 60, {0, 20, 45});
+}
+
+TEST(SnapshotsOfSoftBodies, OfRecordedForces) {
+  const auto run = [](Scene& scene, ForceRecord& record, int from, std::vector<btVector3>& forces) {
+    forces.clear();
+    for (int f = from; f < 40; ++f) {
+      scene.frame(f);
+      forces.push_back(record.forcesOn(scene.soft()).contact.force);
+    }
+  };
+  auto scene = withBar(0.05, false);
+  const auto record = ForceRecord::add(scene->world()).value();
+  std::vector<btVector3> first, again;
+  for (int f = 0; f < 25; ++f) scene->frame(f);
+  const Bytes snapshot = saved(*scene);
+  const btVector3 then = record->forcesOn(scene->soft()).contact.force;
+  run(*scene, *record, 25, first);
+  restore(*scene, snapshot);
+  EXPECT_EQ(record->forcesOn(scene->soft()).contact.force, then);
+  run(*scene, *record, 25, again);
+  EXPECT_GT(then.y(), 0);
+  EXPECT_EQ(first, again);
+}
+
 }  // namespace
 }  // namespace tetskin::test

@@ -77,7 +77,8 @@ inline void expectFollows(ReplayedScene& scene, const std::vector<Frame>& frames
   EXPECT_EQ(saved(scene), frames[static_cast<std::size_t>(from)].snapshot) << "snapshot of frame " << from;
   for (int f = from + 1; f < static_cast<int>(frames.size()); ++f) {
     const Frame again = run(scene, f);
-    ASSERT_TRUE(haveSameBits(again.seen, frames[static_cast<std::size_t>(f)].seen)) << "frame " << f << " from " << from;
+    ASSERT_TRUE(haveSameBits(again.seen, frames[static_cast<std::size_t>(f)].seen))
+        << "frame " << f << " from " << from;
     ASSERT_EQ(again.snapshot, frames[static_cast<std::size_t>(f)].snapshot) << "frame " << f << " from " << from;
   }
 }

@@ -16,6 +16,10 @@ btDeformableLagrangianForce* noForce() {
 
 }  // namespace
 
+bool isPlaceholder(const btDeformableLagrangianForce* force) {
+  return force == noForce();
+}
+
 bool needsDeformation(btDeformableLagrangianForce& force) {
   if (isSilent(force)) return false;
   if (OwnObject::is(OwnObject::Kind::BodyGravity, &force)) return false;

@@ -58,6 +58,9 @@ inline bool isSilent(const btDeformableLagrangianForce& force) {
   return OwnObject::is(OwnObject::Kind::InactiveForce, &force);
 }
 
+/// True if a force has left the list, and something that does nothing is in its place.
+bool isPlaceholder(const btDeformableLagrangianForce* force);
+
 /// True if a force needs the deformation gradients that Bullet updates for each tet in every step.
 bool needsDeformation(btDeformableLagrangianForce& force);
 

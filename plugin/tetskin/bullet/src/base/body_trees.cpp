@@ -169,8 +169,7 @@ class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
 };
 
 BodyWithTrees::BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes)
-    : btSoftBody(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr),
-      createdAt_(nodes) {
+    : btSoftBody(&worldInfo, static_cast<int>(nodes.size()), nodes.data(), nullptr), createdAt_(nodes) {
   m_sst.sdt = 0;            // Bullet leaves it unset until the first step
   delete m_collisionShape;  // as btSoftBody's destructor does
   m_collisionShape = new Shape(*this);

@@ -105,7 +105,8 @@ class WorldStream : public StateStream {
   int indexOf(const btCollisionObject& object) {
     const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
     if (last_ < objects.size() && objects[last_] == &object) return last_;
-    const int found = objects.findLinearSearch(const_cast<btCollisionObject*>(&object));  // NOLINT: pointers are compared
+    const int found =
+        objects.findLinearSearch(const_cast<btCollisionObject*>(&object));  // NOLINT: pointers are compared
     if (found == objects.size()) return -1;
     return last_ = found;
   }

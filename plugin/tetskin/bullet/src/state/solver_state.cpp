@@ -3,27 +3,19 @@
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/state/world_state.h>
 #include <tetskin/bullet/src/step/step.h>
-#include <tetskin/core/src/base/hash.h>
 
 #include <cstdint>
 #include <memory>
-#include <typeinfo>
 #include <vector>
 
 namespace tetskin::bullet_detail {
 namespace {
 
-/// One that has left the list, and acts on nothing.
-bool isNothing(btDeformableLagrangianForce* force) {
-  const InactiveForce* own = inactiveForce(force);
-  return own && typeid(*own) == typeid(InactiveForce);
-}
-
 std::vector<btDeformableLagrangianForce*> forcesOf(DeformableSolver& solver) {
   std::vector<btDeformableLagrangianForce*> forces;
   const ForceList& list = *solver.getLagrangianForceArray();
   for (int k = 0; k < list.size(); ++k) {
-    if (!isNothing(list[k])) forces.push_back(list[k]);
+    if (!isPlaceholder(list[k])) forces.push_back(list[k]);
   }
   return forces;
 }
@@ -32,16 +24,10 @@ BodyGravity* gravityOf(btDeformableLagrangianForce* force) {
   return asOwn<BodyGravity>(OwnObject::Kind::BodyGravity, force);
 }
 
-std::uint64_t hashOf(const char* text) {
-  Hash hash;
-  for (; *text; ++text) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(*text)));
-  return hash.value();
-}
-
-/// Tells classes apart, the application's by the type that they have for Bullet.
-std::uint64_t kindOf(btDeformableLagrangianForce* force) {
-  if (const InactiveForce* own = inactiveForce(force)) return hashOf(typeid(*own).name());
-  return gravityOf(force) ? hashOf("gravity") : static_cast<std::uint64_t>(force->getForceType());
+/// Tells classes apart: the application's by the type that they have for Bullet, the library's by what they write.
+std::int64_t kindOf(btDeformableLagrangianForce* force) {
+  if (inactiveForce(force)) return -1;
+  return gravityOf(force) ? -2 : static_cast<std::int64_t>(force->getForceType());
 }
 
 }  // namespace

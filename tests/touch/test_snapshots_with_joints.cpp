@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "support/replays.h"
+#include "touch_test.h"
+
+namespace tetskin::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A body that hangs on a spring, the target of which moves; a box is welded to it, and a load pulls it now and then.
+class Hanging : public ReplayedScene {
+ public:
+  explicit Hanging(bool welded) {
+    const SurfacePoint top = body_.vertex(body_.furthest(Vector3d::UnitY()));
+    target_ = *top.position();
+    spring_ = SurfaceSpring::add(world(), top).value();
+    if (welded) weld_ = SurfaceWeld::add(world(), low_, *box_).value();
+  }
+  btDeformableMultiBodyDynamicsWorld& world() override { return world_->deformable(); }
+  void frame(int number) override {
+    const auto time = btScalar(0.2) * static_cast<btScalar>(number);
+    EXPECT_EQ(spring_->setTarget(target_ + btScalar(0.1) * btVector3(std::sin(time), 0, std::cos(time))),
+              StatusCode::Ok);
+    if (number == 10) EXPECT_EQ(spring_->setStiffness(30), StatusCode::Ok);
+    if (!weld_ && number % 5 == 0) EXPECT_EQ(low_.applyForce(btVector3(3, 0, 0), 16), StatusCode::Ok);
+    step(*world_, 1);
+  }
+
+ private:
+  std::unique_ptr<TetskinWorld> world_ = deformableWorld(10);
+  TouchedBody body_{*world_, TouchModel(0.38, 3.0)};
+  SurfacePoint low_ = body_.vertex(body_.furthest(-Vector3d::UnitY()));
+  RigidBox box_{*world_, 0.2, *low_.position() - btVector3(0, btScalar(0.2), 0)};
+  std::unique_ptr<SurfaceSpring> spring_;
+  std::unique_ptr<SurfaceWeld> weld_;
+  btVector3 target_{0, 0, 0};
+};
+
+TEST(SnapshotsWithJoints, OfASpringAndAWeld) {
+  expectReplays([] { return std::make_unique<Hanging>(true); }, 40, {0, 9, 10, 25});
+}
+
+TEST(SnapshotsWithJoints, OfALoadThatActsOn) {
+  Hanging first(false), second(false);
+  for (int f = 0; f < 11; ++f) {
+    first.frame(f);
+    second.frame(f);
+  }
+  restore(second, saved(first));
+  for (int f = 11; f < 20; ++f) {
+    first.frame(f);
+    second.frame(f);
+    ASSERT_TRUE(haveSameBits(seen(first), seen(second))) << f;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test
