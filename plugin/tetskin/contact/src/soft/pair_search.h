@@ -6,6 +6,7 @@
 
 #include <tetskin/contact/src/soft/contact_sides.h>
 #include <tetskin/contact/src/soft/pair_candidates.h>
+#include <tetskin/contact/src/soft/pair_motion.h>
 
 #include <cstdint>
 #include <vector>
@@ -44,7 +45,8 @@ struct TouchedSample {
 
 /// What a pair of bodies stores from step to step about the first one's samples in the second one.
 struct PairMemory {
-  PairCandidates candidates;
+  PairCandidates candidates;  ///< nothing depends on them but the time that a search takes
+  PairMotion motion;
   ContactSides sides;
   Overlap overlap;       ///< when the touches were searched for
   bool follows = false;  ///< they may be followed: that search had no direction in which the body was to leave
@@ -74,6 +76,7 @@ class PairSearch {
     btScalar weights[4] = {};
     btVector3 rest{0, 0, 0};
     GridDistance nearest;
+    btScalar reach = 0;  ///< distance from which on it cannot touch the surface within the step
   };
   struct Search {
     ContactBody* first;
@@ -104,6 +107,8 @@ class PairSearch {
   void touchRun();
   void makeTouch(int k, const SamplePosition& position);
   void accumulateOverlap(const btVector3& own, const Touch& touch);
+  btScalar reachOf(int sample, const SamplePosition& position) const;
+  btVector3 velocityOf(int sample, const SamplePosition& position) const;
   btVector3 restMotion(int sample, const SamplePosition& position);
   btVector3 ownNormal(int sample) const;
   bool chooseNormal(const btVector3& own, bool onFace, Touch& touch) const;

@@ -32,6 +32,9 @@ class SoftContactRows : public RowSource {
   const PointContacts& lastContacts() const { return contacts_; }
   const PointContacts& sleepingContacts() const { return sleeping_; }
 
+  /// Nothing depends on candidates but the time that a search takes.
+  void dropCandidates();
+
   PointContacts* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
 
