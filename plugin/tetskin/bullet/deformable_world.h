@@ -16,9 +16,13 @@
 
 namespace tetskin {
 
+class DeformableSolver;
+
 namespace bullet_detail {
 class RecordedForces;
-}
+class WorldStream;
+void visitSolver(WorldStream& stream, DeformableSolver& solver);
+}  // namespace bullet_detail
 
 class ForceRecord;
 
@@ -111,6 +115,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  private:
   struct Impl;
   friend class ForceRecord;
+  friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -7,6 +7,7 @@
 #include <tetskin/bullet/src/base/body_elements.h>
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
 #include <tetskin/core/src/base/median.h>
@@ -170,6 +171,7 @@ struct DeformableBody::Impl {
     if (status.ok()) apply(now);
     return status;
   }
+  void visitState(WorldStream& stream);
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
@@ -231,6 +233,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   impl->material = material;
   impl->weightPressure = pressure;
   impl->makeElasticity(options, rest.value(), std::move(quadratic).value());
+  impl->gravity.setOwnersState([own = impl.get()](WorldStream& stream) { own->visitState(stream); });
   for (btDeformableLagrangianForce* force :
        {static_cast<btDeformableLagrangianForce*>(&impl->gravity), impl->elasticity.get()}) {
     force->setIndices(solver.getIndices());
@@ -261,6 +264,20 @@ void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const 
       makeElasticity<ElasticForce>(world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
                                    SolverSettings{options.solverTolerance, options.maxIterations});
   }
+}
+
+/// Masses of pinned nodes, and the material.
+void DeformableBody::Impl::visitState(WorldStream& stream) {
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    if (static_cast<int>(n) < body->m_nodes.size() && body->m_nodes[static_cast<int>(n)].m_im == 0) stream(masses[n]);
+  }
+  ElasticMaterial now = material;
+  stream(now.youngsModulus);
+  stream(now.poissonRatio);
+  stream(now.damping);
+  if (now == material) return;
+  material = now;
+  applyMaterial(now);
 }
 
 ForceModel DeformableBody::forceModel() const {

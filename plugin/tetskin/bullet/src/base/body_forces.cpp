@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 
 #include <cassert>
 
@@ -73,6 +74,16 @@ void BodyGravity::reinitialize(bool) {
     updateConstants(*m_softBodies[i]);
     if (m_gravity != before) m_softBodies[i]->activate();
   }
+}
+
+/// A body wakes as its gravity changes: not so by being restored.
+void BodyGravity::visitState(WorldStream& stream) {
+  bool isSet = own_.has_value();
+  stream(isSet);
+  if (stream.restoring()) own_ = isSet ? std::optional<btVector3>(m_gravity) : std::nullopt;
+  if (isSet) stream(*own_);
+  stream(m_gravity);
+  if (visitOwners_) visitOwners_(stream);
 }
 
 /// Explicit worlds do not ask for gravity.

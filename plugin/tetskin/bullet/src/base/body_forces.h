@@ -13,6 +13,7 @@
 #include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/export.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -42,6 +43,8 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
 
   /// Writes or reads what it remembers from step to step, for snapshots.
   virtual void visitState(WorldStream& /*stream*/) {}
+  /// Writes what a snapshot takes for granted; refuses, while reading, where it is not so.
+  virtual void checkState(WorldStream& /*stream*/) {}
 
  private:
   OwnObject registered_{OwnObject::Kind::InactiveForce, static_cast<const btDeformableLagrangianForce*>(this)};
@@ -92,6 +95,10 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   /// gravity  world units per second squared; empty: the world's
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
 
+  /// Writes or reads the gravity, and what else its owner has of the body.
+  void visitState(WorldStream& stream);
+  void setOwnersState(std::function<void(WorldStream&)> visit) { visitOwners_ = std::move(visit); }
+
   btDeformableLagrangianForceType getForceType() override;
   /// Called for any body: forces are told before it leaves the world.
   void removeSoftBody(btSoftBody* body) override;
@@ -116,6 +123,7 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   std::optional<btVector3> own_;
   const btSoftBody* removed_ = nullptr;  ///< until the next call of `reinitialize`
   bool inCallback_ = false;
+  std::function<void(WorldStream&)> visitOwners_;
 };
 
 /// Adds forces for a body to the list: gravity before all others, elasticity after them.

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyInternals.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/core/src/base/bvh/bvh.h>
 
 #include <cassert>
@@ -220,6 +221,14 @@ void BodyWithTrees::transform(const btTransform& transform) {
 
 void BodyWithTrees::scale(const btVector3& factors) {
   btSoftBody::scale(factors);
+  if (!hasNoFaceTree()) updateFaceTree(false, false);
+}
+
+void BodyWithTrees::visitState(WorldStream& stream) {
+  stream(reach_);
+  if (!stream.restoring()) return;
+  setSpeculation(0);
+  pointContacts_.clear();
   if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 

@@ -21,6 +21,7 @@
 namespace tetskin::bullet_detail {
 
 class BodyContacts;
+class WorldStream;
 
 /// Builds all three trees by median splits, for any number of components, with boxes that fit the nodes' current
 /// positions. Existing trees are deleted; the new ones belong to the body. Cost O(n log n) for n faces and nodes.
@@ -93,6 +94,9 @@ class BodyWithTrees : public btSoftBody {
   /// Grows from step to step: while it stays the same, and the speculation is above 0, nodes and their paths do, too.
   unsigned predictions() const { return predictions_; }
   btScalar speculation() const { return speculation_; }
+
+  /// Writes or reads what the last step has left; what was found in it is dropped.
+  void visitState(WorldStream& stream);
 
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;

@@ -40,10 +40,10 @@ class WorldStream : public StateStream {
   void operator()(btQuaternion& q) { plain(&q[0], 4); }
 
   /// An object of the world, by its index there; or null. While a snapshot is restored, the world's list of objects has
-  /// the order of the snapshot.
+  /// the order of the snapshot. An object that is no longer in the world may have been destroyed: it is read as null.
   template <class Object>
   void object(Object*& object) {
-    int index = saving() && object ? object->getWorldArrayIndex() : -1;
+    int index = saving() && object ? indexOf(*object) : -1;
     (*this)(index);
     if (!restoring()) return;
     const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
@@ -57,6 +57,9 @@ class WorldStream : public StateStream {
       object = objects[index];
     }
   }
+
+  /// True if an object, which may have been destroyed, is in the world.
+  bool has(const btCollisionObject* object) { return object && indexOf(*object) >= 0; }
 
   /// A map whose keys are objects of the world: visit(key, value) in the order of the objects, which does not depend on
   /// addresses. Entries of objects that are not in the world are left out, and lost on restoring.
@@ -89,8 +92,24 @@ class WorldStream : public StateStream {
     fail();
   }
   const std::string& refusal() const { return refusal_; }
+  /// A number that must be the same in the world that is saved and the one that is restored.
+  template <class T>
+  void same(T now, const char* otherwise) {
+    T saved = now;
+    (*this)(saved);
+    if (saved != now) refuse(otherwise);
+  }
 
  private:
+  /// -1: it is not in the world. The same one is asked for many times in succession.
+  int indexOf(const btCollisionObject& object) {
+    const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+    if (last_ < objects.size() && objects[last_] == &object) return last_;
+    const int found = objects.findLinearSearch(const_cast<btCollisionObject*>(&object));  // NOLINT: pointers are compared
+    if (found == objects.size()) return -1;
+    return last_ = found;
+  }
+
   template <class Key>
   static Key keyOf(btCollisionObject& object) {
     using Object = std::remove_const_t<std::remove_pointer_t<Key>>;
@@ -103,6 +122,7 @@ class WorldStream : public StateStream {
 
   btDeformableMultiBodyDynamicsWorld& world_;
   std::string refusal_;
+  int last_ = 0;  ///< index found last
 };
 
 }  // namespace tetskin::bullet_detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 
@@ -44,6 +45,18 @@ double ElasticForce::totalElasticEnergy(btScalar) {
   assert(body_.dynamics->nodeCount() == static_cast<std::size_t>(nodes.size()));
   for (int n = 0; n < nodes.size(); ++n) toPoint(nodes[n].m_q, body_.dynamics->probe(static_cast<std::size_t>(n)));
   return body_.dynamics->probeEnergy(nullptr);
+}
+
+void ElasticForce::visitState(WorldStream& stream) {
+  body_.visitState(stream);
+}
+
+void ElasticForce::checkState(WorldStream& stream) {
+  stream.same(body_.body->m_nodes.size(), "a soft body has another number of nodes");
+  stream.same(body_.body->m_tetras.size(), "a soft body has another number of tets");
+  stream.same(body_.quadratic.size(), "a soft body has another number of quadratic tets");
+  stream.same(body_.dynamics->componentCount(), "a soft body has another number of parts");
+  stream.same(body_.restMeasureNow(), "a soft body has another shape at rest, or was scaled");
 }
 
 }  // namespace tetskin::bullet_detail

@@ -33,6 +33,9 @@ class ElasticForce : public InactiveForce {
   void reinitialize(bool nodeUpdated) override;
   double totalElasticEnergy(btScalar dt) override;
 
+  void visitState(WorldStream& stream) override;
+  void checkState(WorldStream& stream) override;
+
  private:
   ElasticMaterial material_;
   SolverSettings settings_;

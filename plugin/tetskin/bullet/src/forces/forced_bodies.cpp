@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 
@@ -10,6 +11,11 @@
 
 namespace tetskin::bullet_detail {
 namespace {
+
+/// 0: it is pinned.
+btScalar massOf(const btSoftBody::Node& node) {
+  return node.m_im > 0 ? 1 / node.m_im : btScalar(0);
+}
 
 Status badTet(std::size_t tet, const char* fault) {
   return {StatusCode::Degenerate, "tet " + std::to_string(tet) + fault};
@@ -43,7 +49,7 @@ void readNodes(const btSoftBody& body, Dynamics& dynamics) {
     const auto at = static_cast<std::size_t>(n);
     toPoint(node.m_x, dynamics.point(at));
     toPoint(node.m_v, dynamics.velocity(at));
-    dynamics.setMass(at, node.m_im > 0 ? 1 / node.m_im : btScalar(0));
+    dynamics.setMass(at, massOf(node));
   }
 }
 
@@ -123,6 +129,41 @@ bool ForcedBody::hasOwnCounts() const {
 
 bool ForcedBody::hasItsRestShapes() const {
   return hasOwnCounts() && restMeasureOf(*body) == restMeasure;
+}
+
+btScalar ForcedBody::restMeasureNow() const {
+  return restMeasureOf(*body);
+}
+
+/// A body that has been scaled, or has got nodes, since the last step gets new dynamics as the next one begins.
+void ForcedBody::visitState(WorldStream& stream) {
+  bool isCurrent = hasItsRestShapes();
+  stream(isCurrent);
+  if (!isCurrent) {
+    double seconds = dynamics->lastSeconds();
+    stream(seconds);
+    dynamics->setLastSeconds(seconds);
+    if (stream.restoring()) restMeasure = -1;
+    return;
+  }
+  bool outdated = false, continues = true;
+  for (int n = 0; n < body->m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body->m_nodes[n];
+    const auto at = static_cast<std::size_t>(n);
+    const btScalar mass = massOf(node);
+    if (stream.restoring()) {
+      dynamics->setMass(at, mass);
+    } else {
+      outdated |= dynamics->matrix().mass(at) != mass;
+      continues &= dynamics->continues(at, node.m_x, node.m_vn);
+    }
+  }
+  dynamics->visitState(stream, outdated, continues);
+  if (!stream.restoring() || !dynamics->remembers()) return;
+  for (int n = 0; n < body->m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = body->m_nodes[n];
+    dynamics->arrive(static_cast<std::size_t>(n), node.m_x, node.m_vn);
+  }
 }
 
 }  // namespace tetskin::bullet_detail

@@ -14,11 +14,17 @@
 
 namespace tetskin::bullet_detail {
 
+class WorldStream;
+
 /// The material of a body.
 struct ElasticMaterial {
   double youngsModulus = 0.0;  ///< in pressure units, above 0
   double poissonRatio = 0.3;   ///< 0 to below 0.5
   double damping = 0.02;       ///< seconds: damping forces are this times the rate of the elastic ones
+
+  bool operator==(const ElasticMaterial& other) const {
+    return youngsModulus == other.youngsModulus && poissonRatio == other.poissonRatio && damping == other.damping;
+  }
 };
 
 /// The tolerances to which the velocities of a step are solved.
@@ -61,6 +67,12 @@ struct ForcedBody {
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.
   bool hasOwnCounts() const;
   bool hasItsRestShapes() const;
+  /// The measure of the body as it is now.
+  btScalar restMeasureNow() const;
+
+  /// Writes or reads what the dynamics remember from step to step. The nodes and the material are those of the snapshot
+  /// when it is read.
+  void visitState(WorldStream& stream);
 };
 
 }  // namespace tetskin::bullet_detail

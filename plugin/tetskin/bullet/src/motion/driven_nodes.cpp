@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/motion/driven_nodes.h>
 
 #include <algorithm>
@@ -128,6 +129,21 @@ void DrivenNodes::end(const btAlignedObjectArray<btSoftBody*>& awake, btScalar d
       node.m_x = node.m_q = driven.target;
     }
   }
+}
+
+void DrivenNodes::visitState(WorldStream& stream) {
+  stream.byObject(bodies_, [&](const btSoftBody& body, Nodes& nodes) {
+    stream.each(nodes, [&](DrivenNode& driven) {
+      stream(driven.node);
+      if (driven.node < 0 || driven.node >= body.m_nodes.size()) stream.fail();
+      stream(driven.position);
+      stream(driven.target);
+      stream(driven.velocity);
+      stream(driven.sinceMoved);
+      stream(driven.interval);
+      stream(driven.left);
+    });
+  });
 }
 
 }  // namespace tetskin::bullet_detail

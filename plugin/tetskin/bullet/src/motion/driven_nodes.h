@@ -16,6 +16,8 @@
 
 namespace tetskin::bullet_detail {
 
+class WorldStream;
+
 struct DrivenNode {
   int node = -1;
   btVector3 position{0, 0, 0};  ///< the position that the steps give the node
@@ -38,6 +40,9 @@ class DrivenNodes {
   void beforeIntegration(const btAlignedObjectArray<btSoftBody*>& awake);
   /// Call it when the step has ended.
   void end(const btAlignedObjectArray<btSoftBody*>& awake, btScalar dt);
+
+  /// Writes or reads the nodes that are being moved.
+  void visitState(WorldStream& stream);
 
  private:
   using Nodes = std::vector<DrivenNode>;

@@ -3,6 +3,7 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <tetskin/bullet/src/base/contact_filter.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/motion/sleepers.h>
 
 #include <algorithm>
@@ -129,6 +130,25 @@ void seeItself(RestingBody& sleeper) {
   sleeper.disturbed |= !same || (now.moves && !isNew);
 }
 
+/// The shape is that of the object, unless the application has given it another one since.
+void visitState(WorldStream& stream, Neighbour& neighbour) {
+  stream.object(neighbour.object);
+  stream(neighbour.isSoft);
+  stream(neighbour.isObstacle);
+  stream(neighbour.stands);
+  stream(neighbour.transform);
+  stream(neighbour.friction);
+  stream(neighbour.low);
+  stream(neighbour.high);
+  if (!neighbour.isObstacle) return;
+  const btCollisionShape* shape = neighbour.object ? neighbour.object->getCollisionShape() : nullptr;
+  bool isItsShape = shape && neighbour.shape.shape == shape;
+  stream(isItsShape);
+  if (stream.restoring()) neighbour.shape.shape = isItsShape ? shape : nullptr;
+  stream(neighbour.shape.low);
+  stream(neighbour.shape.high);
+}
+
 }  // namespace
 
 /// A pinned node has the inverse mass 0. The products of one node do not wait for those of the one before.
@@ -212,6 +232,21 @@ void Sleepers::seePairs(btOverlappingPairCache& pairs) {
     if (ofFirst) see(second, *ofFirst);
     if (ofSecond) see(first, *ofSecond);
   }
+}
+
+void Sleepers::visitState(WorldStream& stream) {
+  stream.byObject(resting_, [&](const btCollisionObject&, RestingBody& sleeper) {
+    stream.object(sleeper.body);
+    if (!sleeper.body) return stream.fail();
+    stream(sleeper.steps);
+    stream.each(sleeper.neighbours, [&](Neighbour& neighbour) { bullet_detail::visitState(stream, neighbour); });
+    bool isStored = sleeper.before.has_value();
+    stream(isStored);
+    if (stream.restoring() && isStored) sleeper.before.emplace();
+    if (!isStored) return;
+    stream(sleeper.before->nodes);
+    stream(sleeper.before->friction);
+  });
 }
 
 }  // namespace tetskin::bullet_detail

@@ -19,6 +19,8 @@ class btOverlappingPairCache;
 
 namespace tetskin::bullet_detail {
 
+class WorldStream;
+
 /// An object beside a resting body, or attached to it: the boxes overlap, and the two may collide.
 struct Neighbour {
   const btCollisionObject* object = nullptr;
@@ -38,6 +40,7 @@ struct SleepingState {
   btScalar friction = 0;
   bool moves = false;  ///< any node has a velocity
 
+  SleepingState() = default;
   explicit SleepingState(const btSoftBody& body);
 };
 
@@ -62,6 +65,9 @@ class Sleepers {
 
   /// Call it when a body falls asleep: stores what the application may change.
   void store(btSoftBody& body);
+
+  /// Writes or reads what is known of bodies at rest.
+  void visitState(WorldStream& stream);
 
  private:
   void listResting(const btAlignedObjectArray<btSoftBody*>& bodies);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/motion/stillness.h>
 
 #include <algorithm>
@@ -187,6 +188,17 @@ void Stillness::waitForEachOther(const SolverBodies& bodies, const SolvedSystem&
     shortest = std::min(shortest, mayNot ? btScalar(0) : member->getDeactivationTime());
   }
   for (btCollisionObject* member : members) setTime(*member, std::min(shortest, member->getDeactivationTime()));
+}
+
+/// All of them have waited in the last step.
+void Stillness::visitState(WorldStream& stream) {
+  stream.byObject(waits_, [&](const btSoftBody&, Wait& wait) {
+    stream.each(wait.positions, [&](btVector3& position) { stream(position); });
+    stream(wait.velocity);
+    stream(wait.displacement);
+    stream(wait.speed);
+    if (stream.restoring()) wait.step = step_;
+  });
 }
 
 }  // namespace tetskin::bullet_detail

@@ -25,6 +25,9 @@ class Stillness {
   /// that does not stay begins to wait anew, and bodies that are solved for together wait for each other.
   void judge(SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
 
+  /// Writes or reads which bodies wait.
+  void visitState(WorldStream& stream);
+
  private:
   /// A body that waits to fall asleep.
   struct Wait {

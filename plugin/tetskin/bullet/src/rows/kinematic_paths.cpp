@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btTransformUtil.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/rows/kinematic_paths.h>
 
 #include <algorithm>
@@ -137,6 +138,19 @@ void KinematicPaths::endStep() {
     shifted.body->setInterpolationWorldTransform(shifted.interpolation);
   }
   shifted_.clear();
+}
+
+/// The rest of a path is set as the next step begins.
+void KinematicPaths::visitState(WorldStream& stream) {
+  stream.byObject(paths_, [&](const btRigidBody&, KinematicPath& path) {
+    stream(path.from);
+    stream(path.to);
+    stream(path.steps);
+    stream(path.done);
+    stream(path.last);
+    if (path.steps < 1 || path.done < 1) stream.fail();
+    if (stream.restoring()) path.seen = step_;
+  });
 }
 
 }  // namespace tetskin::bullet_detail

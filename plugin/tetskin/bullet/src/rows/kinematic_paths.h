@@ -15,6 +15,8 @@
 
 namespace tetskin::bullet_detail {
 
+class WorldStream;
+
 struct KinematicPath {
   btTransform from = btTransform::getIdentity(), to = from;  ///< of the frame; `to` is where the application has it
   btTransform before = from;                                 ///< when this step begins
@@ -40,6 +42,9 @@ class KinematicPaths {
   const KinematicPath* find(const btRigidBody& body) const;
   /// Takes the path of a kinematic body to this step.
   const KinematicPath& advance(const btRigidBody& body, btScalar seconds);
+
+  /// Writes or reads the paths that bodies are on.
+  void visitState(WorldStream& stream);
 
  private:
   /// A body that is not where the application has it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableBackwardEulerObjective.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/rows/solver_bodies.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
 
@@ -275,6 +276,27 @@ SolvedBody& SolverBodies::bodyOf(int node) {
   const auto after = std::upper_bound(bodies_.begin(), bodies_.end(), node,
                                       [](int n, const SolvedBody& body) { return n < body.first; });
   return *std::prev(after);
+}
+
+/// Everything else is made anew by the next step, whose list of bodies counts as another one.
+void SolverBodies::visitState(WorldStream& stream) {
+  if (stream.restoring()) {
+    clear();
+    dropped_ = true;
+  }
+  stream.byObject(persistent_, [&](const btSoftBody&, PersistentState& kept) {
+    stream(kept.hasRows);
+    stream(kept.hasContacts);
+    stream.each(kept.frictionAnchors, [&](FrictionAnchor& anchor) {
+      stream(anchor.point);
+      stream(anchor.sample);
+      stream.object(anchor.object);
+      stream(anchor.normal);
+      stream(anchor.position);
+      stream(anchor.normalForce);
+      stream(anchor.stuck);
+    });
+  });
 }
 
 }  // namespace tetskin::bullet_detail

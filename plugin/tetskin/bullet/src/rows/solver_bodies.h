@@ -119,6 +119,9 @@ class SolverBodies {
   /// Null if it is not awake.
   SolvedBody* find(const btSoftBody* body);
 
+  /// Writes or reads what is known of bodies from the step before.
+  void visitState(WorldStream& stream);
+
  private:
   void countNodes();
   template <class IsGone>

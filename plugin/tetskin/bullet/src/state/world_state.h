@@ -27,6 +27,9 @@ void visitSoftBodies(WorldStream& stream);
 void visitSolver(WorldStream& stream, DeformableSolver& solver);
 /// The entries of the solver's list of forces: elasticity, soft contacts, joints at surfaces. solver_state.cpp
 void visitForces(WorldStream& stream, DeformableSolver& solver);
+/// Before any part: what the solver's bodies and forces must be. Refuses what cannot be saved, and, while a snapshot is
+/// restored, a world with others. solver_state.cpp
+void checkForces(WorldStream& stream, DeformableSolver& solver);
 /// What the search for contacts of soft bodies with rigid objects remembers. contact_state.cpp
 void visitContactSearch(WorldStream& stream);
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btIDebugDraw.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/step/recorded_forces.h>
 
 #include <algorithm>
@@ -128,6 +129,10 @@ void RecordedForces::dropRemoved() {
   const auto last = std::remove_if(pairs_.begin(), pairs_.end(), goes);
   if (last == pairs_.end()) return;
   pairs_.erase(last, pairs_.end());
+  listPairs();
+}
+
+void RecordedForces::listPairs() {
   indices_.clear();
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const auto& [first, second] = pairs_[k].participants;
@@ -233,6 +238,53 @@ bool RecordedForces::isPresent(const Participant& participant) const {
   const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   const int index = objects.findLinearSearch(const_cast<btCollisionObject*>(participant.object));
   return index < objects.size() && idInWorld(*objects[index]) == participant.id;
+}
+
+// ---- snapshots
+
+void visitState(WorldStream& stream, std::array<AppliedForces, 2>& ofPair) {
+  for (AppliedForces& forces : ofPair) {
+    for (Wrench* wrench : {&forces.contact, &forces.friction, &forces.joints, &forces.anchors}) {
+      stream(wrench->force);
+      stream(wrench->torque);
+    }
+  }
+}
+
+void RecordedForces::clear() {
+  mark_ = seconds_ = secondsBefore_ = 0;
+  pairs_.clear();
+  indices_.clear();
+  points_.clear();
+}
+
+/// Of pairs whose objects are in the world: the others are not reported.
+void RecordedForces::visitState(WorldStream& stream) {
+  stream(mark_);
+  stream(seconds_);
+  stream(secondsBefore_);
+  std::vector<Pair> present;
+  for (const Pair& pair : pairs_) {
+    if (isPresent(pair.participants[0]) && isPresent(pair.participants[1])) present.push_back(pair);
+  }
+  stream.each(present, [&](Pair& pair) {
+    for (Participant& participant : pair.participants) {
+      bool isObject = participant.object != nullptr;
+      stream(isObject);
+      stream.object(participant.object);
+      if (isObject != (participant.object != nullptr)) stream.fail();
+      participant.soft = participant.object ? btSoftBody::upcast(participant.object) : nullptr;
+      participant.id = participant.object ? idInWorld(*participant.object) : 0;
+    }
+    bullet_detail::visitState(stream, pair.impulses);
+    bullet_detail::visitState(stream, pair.before);
+    stream(pair.asleep);
+    stream(pair.sleeps);
+  });
+  if (!stream.restoring()) return;
+  pairs_ = std::move(present);
+  listPairs();
+  points_.clear();
 }
 
 // ---- drawing

@@ -31,6 +31,11 @@ class RecordedForces {
 
   void debugDraw(btIDebugDraw& drawer) const;
 
+  /// Forgets all.
+  void clear();
+  /// Writes or reads the forces, but not what is drawn.
+  void visitState(WorldStream& stream);
+
  private:
   /// An object that may have been destroyed; the id tells it from a later object at the same address.
   struct Participant {
@@ -59,6 +64,7 @@ class RecordedForces {
   bool stepBegins();
   void beginStep();
   void dropRemoved();
+  void listPairs();
   void add(const SolverBodies& bodies, const ContactRow& row, const RowOrigin& origin, btScalar seconds);
   Pair& pairOf(const Participants& participants);
   AppliedForces forcesOf(const Pair& pair, std::size_t side) const;

@@ -53,6 +53,9 @@ struct DeformableSolver::Impl {
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
 
+  /// Writes or reads the settings by which Bullet's world had the last step solved.
+  void visitFlags(WorldStream& stream);
+
   // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);

@@ -10,6 +10,8 @@
 // which is what x + dt v keeps: angular momentum is exact, and a component that does not deform is not stretched.
 #pragma once
 
+#include <tetskin/core/src/base/state/state_stream.h>
+
 #include <Eigen/Core>
 
 namespace tetskin::elastic_detail {
@@ -133,6 +135,9 @@ class ComponentMotion {
   /// now, moments  of the velocities before
   RigidVelocity chord(const ComponentMomentum& now, const ComponentMoments& moments, const Eigen::Vector3d& near,
                       double seconds) const;
+
+  /// Writes or reads what the next `find` uses of this one.
+  void visitState(StateStream& stream) { stream.plain(about_.data(), 3); }
 
  private:
   void findInverseInertia();

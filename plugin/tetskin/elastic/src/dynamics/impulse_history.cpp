@@ -103,6 +103,17 @@ void ImpulseHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S
   seconds_ = seconds;
 }
 
+template <class S>
+void ImpulseHistory<S>::visitState(StateStream& stream, std::size_t wideSize) {
+  stream(seconds_);
+  stream(calm_);
+  for (AlignedVector<S>* v : {&mean_, &last_}) {
+    if (stream.restoring()) v->resize(wideSize);
+    assert(v->size() == wideSize);
+    stream.plain(v->data(), wideSize);
+  }
+}
+
 #define TETSKIN_INSTANTIATE(Scalar) template class ImpulseHistory<Scalar>;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE

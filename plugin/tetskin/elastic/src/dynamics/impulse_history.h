@@ -8,6 +8,7 @@
 #pragma once
 
 #include <tetskin/core/src/base/aligned.h>
+#include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/elastic/src/dynamics/time_scheme.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
@@ -42,6 +43,9 @@ class ImpulseHistory {
   /// length    of the step;  seconds  for which forces have acted
   void keep(const BlockMatrix<S>& matrix, const AlignedVector<S>& impulses, const TimeScheme& scheme, double length,
             double seconds);
+
+  /// Writes or reads what is known.
+  void visitState(StateStream& stream, std::size_t wideSize);
 
  private:
   AlignedVector<S> mean_;  ///< H, in the wide layout

@@ -118,6 +118,24 @@ void InitialGuess<S>::learn(double squared, int iterations) {
   pause_ = kPause;
 }
 
+template <class S>
+void InitialGuess<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
+  stream(used_);
+  stream(useless_);
+  stream(pause_);
+  auto known = static_cast<std::uint32_t>(known_);
+  stream(known);
+  if (stream.restoring()) known_ = std::min(known, 2u);
+  if (!used_) return;
+  stream.plain(matrix.solution(), matrix.wideSize());
+  const auto visit = [&](Wide& solution) {
+    if (stream.restoring()) solution.resize(matrix.wideSize());
+    stream.plain(solution.data(), solution.size());
+  };
+  if (known_ > 0) visit(last_);
+  if (known_ > 1) visit(before_);
+}
+
 #define TETSKIN_INSTANTIATE(Scalar) template class InitialGuess<Scalar>;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE

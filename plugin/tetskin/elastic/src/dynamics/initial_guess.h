@@ -10,6 +10,7 @@
 //   Methods Appl. Mech. Engrg. 163, 1998, doi 10.1016/S0045-7825(98)00012-7
 #pragma once
 
+#include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
 
 #include <array>
@@ -38,6 +39,9 @@ class InitialGuess {
   /// squared     of the residual with which the solve began
   /// iterations  that the solve took
   void learn(double squared, int iterations);
+
+  /// Writes or reads what is known, and the matrix's solution, which is to be remembered.
+  void visitState(StateStream& stream, BlockMatrix<S>& matrix);
 
  private:
   /// Those named above.

@@ -604,6 +604,46 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   });
 }
 
+/// Of the steps before, only what the next one would not forget.
+template <class S>
+void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues) {
+  bool changed = changed_ || outdated;
+  bool known = history_.isKnown() && remembered_ && continues && !changed;
+  double alpha = alpha_;
+  stream(changed);
+  stream(known);
+  stream(alpha);
+  stream(stiffnessOverInertia_);
+  stream(untouched_);
+  stream(lastSeconds_);
+  for (ComponentMotion& motion : motions_) motion.visitState(stream);
+  const bool turned = tets_ && tets_->visitState(stream, static_cast<S>(alpha), !changed);
+  guess_.visitState(stream, matrix_);
+  if (stream.restoring()) {
+    if (!changed && (changed_ || turned || alpha != alpha_)) {
+      matrix_.assemble(tets_ ? tets_->cornersAgain(static_cast<S>(alpha), nullptr) : nullptr,
+                       tets_ ? tets_->ratio() : S(0), nullptr);
+    }
+    alpha_ = alpha;
+    changed_ = changed;
+    remembered_ = known;
+    history_.forget();
+  }
+  if (!known) return;
+  stream(length_);
+  stream(near_);
+  history_.visitState(stream, matrix_.wideSize());
+}
+
+template <class S>
+void BodyDynamics<S>::arrive(std::size_t node, const S* point, const S* velocity) {
+  const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
+  for (std::size_t k = 0; k < 3; ++k) {
+    points_[4 * slot + k] = point[k] - length_ * velocity[k];
+    velocities_[4 * slot + k] = velocity[k] - matrix_.solution()[wide + k * kGroup];
+  }
+}
+
 #define TETSKIN_INSTANTIATE(Scalar) template class BodyDynamics<Scalar>;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE

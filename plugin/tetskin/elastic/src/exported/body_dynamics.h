@@ -167,6 +167,14 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   std::optional<CorotatedTets<S>>& tets() { return tets_; }
 
+  /// Writes or reads what it remembers between steps. The material, and the masses of the nodes, must be those of the
+  /// snapshot when it is read. The matrix is assembled only if it is not the same.
+  /// outdated   while saving: the masses of the nodes are no longer those of the matrix
+  /// continues  while saving: true for all nodes, see `continues`
+  void visitState(StateStream& stream, bool outdated, bool continues);
+  /// Call it for each node after reading: the node is where the last step has brought it.
+  void arrive(std::size_t node, const S* point, const S* velocity);
+
  private:
   bool mayRemember() const { return tets_ && !stiff_ && untouched_ >= kUntouched; }
   void keep(const AlignedVector<S>& impulses, double seconds);

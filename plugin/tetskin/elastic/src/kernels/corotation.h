@@ -349,12 +349,16 @@ template <class S>
 constexpr S kFlat = S(0.1);
 
 /// What multiplies the stiffness in the matrix.
+/// at        index in `alphas`
 /// gradient  returns the deformation gradients
 template <class S, int W, class Pack, class Gradient>
-TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S, Pack>& work, Gradient&& gradient) {
+TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S, Pack>& work, std::size_t at, Gradient&& gradient) {
   if (!(work.flatAlpha > work.alpha)) return all<S, W>(work.alpha);
+  if (!work.points) return wide<S, W>(work.alphas + at);
   const Lanes<S, W> ratio = determinantOf<S, W>(gradient());
-  return ratio < kFlat<S> ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
+  const Lanes<S, W> alpha = ratio < kFlat<S> ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
+  put<S, W>(alpha, work.alphas + at);
+  return alpha;
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS

@@ -218,14 +218,14 @@ TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& wo
   const Pack& pack = work.packs[p];
   V weights[4];
   weightsAt<S, W>(pack, point, lane, weights);
-  const V alpha = alphaOf<S, W>(work, [&] {
+  const std::size_t first = kGroup * (Pack::kPoints * p + point);
+  const V alpha = alphaOf<S, W>(work, first + static_cast<std::size_t>(lane), [&] {
     WideVector<S, W> x[10];
     nodesFromFirst<S, W>(pack, work.points, lane, x);
     return deformationGradient<S, W>(pack, lane, x, weights);
   });
   const V factor = squareRoots<S, W>(alpha * (S(0.5) * wide<S, W>(pack.shear + lane)));
-  const std::size_t at = 4 * kGroup * (Pack::kPoints * p + point) + static_cast<std::size_t>(lane);
-  const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + at));
+  const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * first + lane));
   byShapeGradients<S, W>(
       pack, lane, weights,
       [&](const V& gx, const V& gy, const V& gz) { return rotated<S, W>(r, factor * gx, factor * gy, factor * gz); },

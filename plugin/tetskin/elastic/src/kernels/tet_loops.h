@@ -73,7 +73,7 @@ void rotatedGradients(const TetWork<S, TetPack<S>>& work) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
       const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
-      const V alpha = alphaOf<S, W>(work, [&] { return deformationGradient<S, W>(pack, work.points, lane); });
+      const V alpha = alphaOf<S, W>(work, kGroup * p + static_cast<std::size_t>(lane), [&] { return deformationGradient<S, W>(pack, work.points, lane); });
       const V mu = S(0.5) * wide<S, W>(pack.shear + lane), factor = squareRoots<S, W>(alpha * mu);
       putCorners<S, W>(pack, lane, work.corners + kCorners<TetPack<S>> * (kGroup * p + static_cast<std::size_t>(lane)),
                        [&](const V& gx, const V& gy, const V& gz) {

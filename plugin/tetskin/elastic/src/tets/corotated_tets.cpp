@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 namespace tetskin::elastic_detail {
 namespace {
@@ -21,6 +22,11 @@ constexpr std::size_t kPacksPerTask = kPointsPerTask / Pack::kPoints;
 
 std::size_t tasksFor(std::size_t items, std::size_t perTask) {
   return (items + perTask - 1) / perTask;
+}
+
+template <class S>
+bool haveSameBits(const AlignedVector<S>& a, const AlignedVector<S>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(S)) == 0);
 }
 
 }  // namespace
@@ -124,6 +130,7 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.rotations = packed.rotations.data();
   work.assembled = packed.assembled.data();
   work.corners = corners_.data() + 4 * packed.firstCorner;
+  work.alphas = packed.alphas.data();
   return work;
 }
 
@@ -210,16 +217,85 @@ double CorotatedTets<S>::maxTurn() const {
 
 template <class S>
 const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha) {
-  assert(points_ || !(flatAlpha > alpha));
+  flatAlpha_ = flatAlpha > alpha ? flatAlpha : S(0);
+  assert(points_ || flatAlpha_ == S(0));
   linear_.assembled = linear_.rotations;
   quadratic_.assembled = quadratic_.rotations;
+  if (flatAlpha_ > S(0)) {
+    linear_.alphas.resize(linear_.rotations.size() / 4);
+    quadratic_.alphas.resize(quadratic_.rotations.size() / 4);
+  }
+  return corners(alpha, points_, threads);
+}
+
+template <class S>
+const S* CorotatedTets<S>::cornersAgain(S alpha, ParallelFor* threads) {
+  return corners(alpha, nullptr, threads);
+}
+
+/// points  null: those are flat that were
+template <class S>
+const S* CorotatedTets<S>::corners(S alpha, const S* points, ParallelFor* threads) {
   byPacks(threads, [&](auto work, const auto& loops, std::size_t) {
+    work.rotations = const_cast<S*>(work.assembled);  // this kernel only reads them
     work.alpha = alpha;
-    work.flatAlpha = flatAlpha;
-    work.points = points_;
+    work.flatAlpha = flatAlpha_;
+    work.points = points;
     loops.rotatedGradients(work);
   });
   return corners_.data();
+}
+
+template <class S>
+bool CorotatedTets<S>::visitState(StateStream& stream, S alpha, bool ofMatrix) {
+  stream.plain(linear_.rotations.data(), linear_.rotations.size());
+  stream.plain(quadratic_.rotations.data(), quadratic_.rotations.size());
+  if (!ofMatrix) return false;
+  const S flatAlpha = flatAlpha_;
+  stream(flatAlpha_);
+  bool changed = flatAlpha != flatAlpha_;
+  changed |= visitAssembled(stream, linear_);
+  changed |= visitAssembled(stream, quadratic_);
+  if (!(flatAlpha_ > S(0))) return changed;
+  changed |= visitAlphas(stream, alpha, linear_);
+  changed |= visitAlphas(stream, alpha, quadratic_);
+  return changed;
+}
+
+/// After an assembly, the rotations are those of the matrix.
+template <class S>
+template <class Pack>
+bool CorotatedTets<S>::visitAssembled(StateStream& stream, Packed<Pack>& packed) {
+  bool same = haveSameBits(packed.rotations, packed.assembled);
+  stream(same);
+  if (stream.saving()) {
+    if (!same) stream.plain(packed.assembled.data(), packed.assembled.size());
+    return false;
+  }
+  AlignedVector<S> now = packed.rotations;
+  if (!same) stream.plain(now.data(), now.size());
+  const bool changed = !haveSameBits(now, packed.assembled);
+  packed.assembled.swap(now);
+  return changed;
+}
+
+/// Few tets are flat, if any.
+template <class S>
+template <class Pack>
+bool CorotatedTets<S>::visitAlphas(StateStream& stream, S alpha, Packed<Pack>& packed) {
+  std::vector<std::uint32_t> flat;
+  for (std::size_t k = 0; stream.saving() && k < packed.alphas.size(); ++k) {
+    if (packed.alphas[k] == flatAlpha_) flat.push_back(static_cast<std::uint32_t>(k));
+  }
+  stream.array(flat);
+  if (stream.saving()) return false;
+  AlignedVector<S> now(packed.rotations.size() / 4, alpha);
+  for (const std::uint32_t k : flat) {
+    if (k < now.size()) now[k] = flatAlpha_;
+  }
+  const bool changed = now != packed.alphas;
+  packed.alphas.swap(now);
+  return changed;
 }
 
 #define TETSKIN_INSTANTIATE(Scalar) template class CorotatedTets<Scalar>;

@@ -7,6 +7,7 @@
 
 #include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/base/aligned.h>
+#include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/elastic/src/tets/material.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
@@ -38,6 +39,13 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// flatAlpha  if larger than `alpha`: its value where tets were flat or inverted in the last `forces`, whose points
   ///            must still be there
   const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
+  /// The same again, for a matrix that is made anew from the state of a snapshot.
+  const S* cornersAgain(S alpha, ParallelFor* threads);
+  /// Writes or reads the rotations.
+  /// alpha     of the matrix
+  /// ofMatrix  false: without those of the matrix, which is going to be made anew
+  /// Returns   true if reading has changed what the matrix is made from
+  bool visitState(StateStream& stream, S alpha, bool ofMatrix);
   /// lambda / mu, for BlockMatrix::assemble.
   S ratio() const { return ratio_; }
 
@@ -47,6 +55,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   struct Packed {
     AlignedVector<Pack> packs;
     AlignedVector<S> rotations, assembled;  ///< by pack and point
+    AlignedVector<S> alphas;                ///< by pack and point, see TetWork; empty until some tet may be flat
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };
@@ -60,6 +69,11 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
   kernels::TetWork<S, Pack> work(Packed<Pack>& packed, std::size_t task);
+  template <class Pack>
+  bool visitAssembled(StateStream& stream, Packed<Pack>& packed);
+  template <class Pack>
+  bool visitAlphas(StateStream& stream, S alpha, Packed<Pack>& packed);
+  const S* corners(S alpha, const S* points, ParallelFor* threads);
   /// Calls kernel(work, its loops, number of the task) for all packs.
   template <class Kernel>
   void byPacks(ParallelFor* threads, Kernel&& kernel);
@@ -74,6 +88,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   std::size_t slots_ = 0;
   const S* points_ = nullptr;  ///< of the last `forces`
   S ratio_ = 0;
+  S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: it has no such value
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task
