@@ -17,14 +17,14 @@
 namespace tetskin {
 
 class DeformableSolver;
+class ForceRecord;
 
 namespace bullet_detail {
 class RecordedForces;
 class WorldStream;
+bool isWithinStep(const DeformableSolver& solver);
 void visitSolver(WorldStream& stream, DeformableSolver& solver);
 }  // namespace bullet_detail
-
-class ForceRecord;
 
 /// Seconds that the stages of a DeformableSolver's steps have taken, wall time, in the order in which a step runs them.
 /// What the world's own `stepSimulation` takes beyond these is Bullet's: its solve of rigid bodies, its integration,
@@ -115,6 +115,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  private:
   struct Impl;
   friend class ForceRecord;
+  friend bool bullet_detail::isWithinStep(const DeformableSolver& solver);
   friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   std::unique_ptr<Impl> impl_;
 };
@@ -178,14 +179,15 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
 /// buffer   size bytes, not aligned; null: only the size is computed
 /// Returns  the number of bytes of the snapshot
 /// Cost     O(nodes + tets + objects + contacts), some 25 microseconds for 3,000 tets; allocates little
-/// Errors   NotSaved: the world has something that cannot be saved, which the message names; SizeMismatch: the buffer is
+/// Errors   NotSaved: the world has something that cannot be saved, which the message names; SizeMismatch: the buffer
+/// is
 ///          too small
 TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
                                                     std::size_t size);
 
-/// Restores the state of a world in place: pointers, skins, joints and records stay valid. The world then goes on as the
-/// one that was saved, to the last bit, in this process or another one, on any number of threads.
-/// world     with the same bodies, objects and joints as when it was saved, created in the same order or the very same
+/// Restores the state of a world in place: pointers, skins, joints and records stay valid. The world then goes on as
+/// the one that was saved, to the last bit, in this process or another one, on any number of threads. world     with
+/// the same bodies, objects and joints as when it was saved, created in the same order or the very same
 ///           ones; others may have been added and removed again since
 /// snapshot  size bytes, not aligned, as `saveSnapshot` has written them; only read
 /// Errors    Malformed: the bytes are damaged; UnsupportedFormat: they are of another version, precision or kind of

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A snapshot is a header, and a payload of parts in the machine's own numbers. All of it is checked before the world is
+// changed: its hash by all bytes, the world by the directory, which is the payload's first part.
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/state/saved_worlds.h>
+#include <tetskin/bullet/src/state/world_directory.h>
 #include <tetskin/bullet/src/state/world_state.h>
+#include <tetskin/core/src/base/hash.h>
+
+#include <string>
 
 namespace tetskin {
 
@@ -10,36 +18,169 @@ using namespace bullet_detail;
 
 namespace {
 
-/// All parts, in their order.
-void visitWorld(WorldStream& stream, DeformableSolver& solver) {
-  if (stream.restoring()) removePairs(stream);
-  visitObjects(stream);
-  visitSoftBodies(stream);
-  visitJoints(stream);
-  visitBroadphase(stream);
-  visitPairs(stream);
-  visitSolver(stream, solver);
-  visitContactSearch(stream);
-  visitForces(stream, solver);
+using World = btDeformableMultiBodyDynamicsWorld;
+
+constexpr std::uint64_t kMagic = 0x544F485350414E54u;  // "TNAPSHOT"
+constexpr std::uint32_t kByteLayout = 1;               ///< rises with every change of what is written
+
+using VisitPart = void (*)(WorldStream&, DeformableSolver&);
+/// In the order in which they depend on each other.
+constexpr VisitPart kParts[] = {
+    [](WorldStream& s, DeformableSolver&) { visitObjects(s); },
+    [](WorldStream& s, DeformableSolver&) { visitSoftBodies(s); },
+    [](WorldStream& s, DeformableSolver&) { visitJoints(s); },
+    [](WorldStream& s, DeformableSolver&) { visitBroadphase(s); },
+    [](WorldStream& s, DeformableSolver&) { visitPairs(s); },
+    [](WorldStream& s, DeformableSolver& solver) { visitSolver(s, solver); },
+    [](WorldStream& s, DeformableSolver&) { visitContactSearch(s); },
+    [](WorldStream& s, DeformableSolver& solver) { visitForces(s, solver); },
+};
+constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
+
+struct Header {
+  std::uint64_t magic = kMagic;
+  std::uint32_t layout = kByteLayout, library = TETSKIN_VERSION_NUMBER;
+  std::uint32_t scalarBytes = sizeof(btScalar), byteOrder = 0x01020304u;
+  std::uint64_t length = 0, hash = 0;       ///< of the payload
+  std::uint64_t ends[kPartCount + 1] = {};  ///< of the directory and of each part, from the payload's beginning
+
+  void visit(StateStream& stream) {
+    stream(magic);
+    stream(layout);
+    stream(library);
+    stream(scalarBytes);
+    stream(byteOrder);
+    stream(length);
+    stream(hash);
+    stream.plain(ends, kPartCount + 1);
+  }
+  static std::size_t bytes() {
+    StateStream stream;
+    Header().visit(stream);
+    return stream.count();
+  }
+};
+
+/// Lanes that do not wait for each other; a step is one-to-one in each word, as in `Hash`.
+std::uint64_t fastHash(const unsigned char* bytes, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  std::uint64_t lanes[kLanes] = {};
+  const auto mix = [&](std::size_t lane, std::uint64_t word) {
+    const std::uint64_t product = (lanes[lane] ^ word) * 0x9E3779B97F4A7C15u;
+    lanes[lane] = product ^ product >> 32;
+  };
+  std::size_t at = 0;
+  for (; at + 8 * kLanes <= count; at += 8 * kLanes) {
+    std::uint64_t words[kLanes];
+    std::memcpy(words, bytes + at, sizeof words);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) mix(lane, words[lane]);
+  }
+  for (std::size_t lane = 0; at < count; at += 8, ++lane) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + at, count - at < 8 ? count - at : 8);
+    mix(lane, word);
+  }
+  Hash hash;
+  hash.add(std::uint64_t{count});
+  for (const std::uint64_t lane : lanes) hash.add(lane);
+  return hash.value();
+}
+
+/// What is in the header beside the hash is protected by it, too.
+std::uint64_t hashOf(const Header& header, const unsigned char* payload) {
+  Hash hash;
+  for (const std::uint64_t end : header.ends) hash.add(end);
+  hash.add(fastHash(payload, header.length));
+  return hash.value();
+}
+
+Status malformed(const std::string& what) {
+  return {StatusCode::Malformed, "the snapshot is damaged: " + what};
+}
+Status unsupported(const std::string& what) {
+  return {StatusCode::UnsupportedFormat, "this snapshot cannot be read here: " + what};
+}
+
+/// Reads the header, and checks that these are the bytes that were written, for a library such as this one.
+Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) {
+  StateStream stream(bytes, size);
+  header.visit(stream);
+  if (stream.failed()) return malformed("it has " + std::to_string(size) + " bytes, less than its header");
+  const Header own;
+  if (header.magic != own.magic) return malformed("it does not begin as a snapshot does");
+  if (header.byteOrder != own.byteOrder) return unsupported("it is from a machine with another byte order");
+  if (header.scalarBytes != own.scalarBytes) {
+    return unsupported("its numbers have " + std::to_string(header.scalarBytes) + " bytes, Bullet's here " +
+                       std::to_string(own.scalarBytes));
+  }
+  if (header.layout != own.layout || header.library != own.library) {
+    return unsupported("it was written by another version of this library");
+  }
+  if (header.length != size - Header::bytes()) {
+    return malformed("it has " + std::to_string(size) + " bytes, not the " +
+                     std::to_string(header.length + Header::bytes()) + " that were written");
+  }
+  if (header.hash != hashOf(header, bytes + Header::bytes())) return malformed("bytes have changed since it was saved");
+  return {};
 }
 
 }  // namespace
 
-Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer, std::size_t size) {
-  auto& saved = const_cast<btDeformableMultiBodyDynamicsWorld&>(world);  // NOLINT: Bullet has no const accessors
-  DeformableSolver* solver = deformableSolverOf(saved);
+Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t size) {
+  auto& saved = const_cast<World&>(world);  // NOLINT: Bullet has no const accessors
+  DeformableSolver* solver = savedSolverOf(saved);
   if (!solver) return refusal("a snapshot", {kUseDeformableSolver});
+  if (Status status = checkIsSaved(saved, *solver); !status.ok()) return status;
+  const std::size_t begin = Header::bytes();
   auto* bytes = static_cast<unsigned char*>(buffer);
-  WorldStream stream = bytes ? WorldStream(saved, bytes, size) : WorldStream(saved);
-  visitWorld(stream, *solver);
-  return stream.count();
+  const std::size_t room = size > begin ? size - begin : 0;
+  WorldStream stream = bytes ? WorldStream(saved, bytes + (room > 0 ? begin : 0), room) : WorldStream(saved);
+  Header header;
+  WorldDirectory(saved).visit(stream);
+  header.ends[0] = stream.count();
+  for (std::size_t k = 0; k < kPartCount; ++k) {
+    kParts[k](stream, *solver);
+    header.ends[k + 1] = stream.count();
+  }
+  if (!stream.refusal().empty()) return Status{StatusCode::NotSaved, "a snapshot cannot hold " + stream.refusal()};
+  header.length = stream.count();
+  const std::size_t needed = begin + stream.count();
+  if (!bytes) return needed;
+  if (size < needed) {
+    return Status{StatusCode::SizeMismatch,
+                  "the buffer has " + std::to_string(size) + " bytes, and the snapshot " + std::to_string(needed)};
+  }
+  header.hash = hashOf(header, bytes + begin);
+  StateStream front(bytes, begin);
+  header.visit(front);
+  return needed;
 }
 
-Status restoreSnapshot(btDeformableMultiBodyDynamicsWorld& world, const void* snapshot, std::size_t size) {
-  DeformableSolver* solver = deformableSolverOf(world);
+Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
+  DeformableSolver* solver = savedSolverOf(world);
   if (!solver) return refusal("a snapshot", {kUseDeformableSolver});
-  WorldStream stream(world, static_cast<const unsigned char*>(snapshot), size);
-  visitWorld(stream, *solver);
+  const auto* bytes = static_cast<const unsigned char*>(snapshot);
+  Header header;
+  Status status = readHeader(bytes, bytes ? size : 0, header);
+  if (status.ok()) status = checkIsSaved(world, *solver);
+  if (!status.ok()) return status;
+  WorldStream stream(world, bytes + Header::bytes(), static_cast<std::size_t>(header.length));
+  WorldDirectory directory;
+  directory.visit(stream);
+  if (stream.failed() || stream.count() != header.ends[0]) return malformed("its list of objects does not end");
+  status = directory.find(world);
+  if (!status.ok()) return status;
+
+  removePairs(stream);
+  directory.order(world);
+  for (std::size_t k = 0; k < kPartCount; ++k) {
+    kParts[k](stream, *solver);
+    if (stream.failed() || stream.count() != header.ends[k + 1]) {
+      // Only bytes that were changed and hashed anew get here, or settings that no snapshot compares.
+      return malformed("part " + std::to_string(k) + " does not fit this world" +
+                       (stream.refusal().empty() ? "" : ": " + stream.refusal()));
+    }
+  }
   return {};
 }
 

@@ -13,14 +13,20 @@ namespace tetskin::bullet_detail {
 /// Motion and settings of rigid bodies, links, multibodies and other objects, but not of soft bodies; the world's clock
 /// and gravity, and the seed of its solver. objects_state.cpp, multibodies_state.cpp
 void visitObjects(WorldStream& stream);
+void visitMultiBodies(WorldStream& stream);
 /// Joints of rigid bodies and of multibodies. joints_state.cpp
 void visitJoints(WorldStream& stream);
+/// False for classes other than Bullet's own.
+bool isSaved(const btTypedConstraint& joint);
+bool isSaved(const btMultiBodyConstraint& joint);
 /// Boxes, trees and ids of the broadphase. broadphase_state.cpp
 void visitBroadphase(WorldStream& stream);
 /// Overlapping pairs with what their algorithms remember: contact caches with impulses. pairs_state.cpp
 void visitPairs(WorldStream& stream);
 /// Before all others while a snapshot is restored: pairs are found by ids, which change. pairs_state.cpp
 void removePairs(WorldStream& stream);
+/// Of its class, rather than of one that derives from it.
+bool isBulletsDispatcher(const btDispatcher& dispatcher);
 /// Nodes of a soft body, and what Bullet remembers of it. soft_bodies_state.cpp
 void visitSoftBodies(WorldStream& stream);
 /// What the solver remembers from step to step. solver_state.cpp

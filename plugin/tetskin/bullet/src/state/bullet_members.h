@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to snapshots: members of Bullet's classes that it does not show. A world goes on to the last bit only if
+// they are put back as they were, and Bullet's setters compute or round. Access is not checked where a template is
+// instantiated explicitly ([temp.spec.general]), so that this is C++ as it is written, and breaks at compile time when
+// a member is renamed. Nothing else in the library may reach into Bullet in this way.
+#pragma once
+
+#include <tetskin/bullet/src/base/world_stream.h>
+
+#include <type_traits>
+
+namespace tetskin::bullet_detail {
+
+/// A number, a vector, an array of such; or a struct that has its own visitState.
+template <class T>
+void visitMember(WorldStream& stream, T& member) {
+  if constexpr (std::is_array_v<T>) {
+    for (auto& element : member) visitMember(stream, element);
+  } else if constexpr (std::is_invocable_v<WorldStream&, T&>) {
+    stream(member);
+  } else {
+    visitState(stream, member);
+  }
+}
+
+template <class... Members>
+void visitAll(WorldStream& stream, Members&... members) {
+  (visitMember(stream, members), ...);
+}
+
+/// In a source, after the declaration `void visitMembers(WorldStream&, Object&)`:
+///     template struct Visited<Object, &Object::m_hidden, ...>;
+/// defines that function.
+template <class Object, auto... members>
+struct Visited {
+  friend void visitMembers(WorldStream& stream, Object& object) { visitAll(stream, object.*members...); }
+};
+
+/// One member: after `struct Name { friend Type Object::*memberOf(Name); }`,
+///     template struct Opened<Name, &Object::m_hidden>;
+/// makes `object.*memberOf(Name())` that member.
+template <class Name, auto member>
+struct Opened {
+  friend decltype(member) memberOf(Name) { return member; }
+};
+
+}  // namespace tetskin::bullet_detail
