@@ -72,6 +72,16 @@ void ContactBody::read() {
   centroid = sum / static_cast<btScalar>(positions.size());
 }
 
+/// Everything else is read from the body in each step; its motion since the last one begins at these positions.
+void ContactBody::visitState(bullet_detail::WorldStream& stream, bool moves) {
+  stream(self);
+  stream(id);
+  stream(reads);
+  std::vector<btVector3> none;
+  stream.each(moves || stream.restoring() ? positions : none, [&](btVector3& p) { stream(p); });
+  if (!positions.empty() && positions.size() != data().nodes.size()) stream.fail();
+}
+
 ContactBox ContactBody::regionBox(const Tet& n, const TetSubregion& part) const {
   const auto at = [&](std::size_t k) { return fourOf(positions[static_cast<std::size_t>(n[k])]); };
   const Four corners[4] = {at(0), at(1), at(2), at(3)};

@@ -4,6 +4,7 @@
 // Internal to SoftContacts: a body, and its positions in this step.
 #pragma once
 
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/contact/src/soft/four.h>
 #include <tetskin/contact/src/soft/shape_data.h>
 
@@ -99,6 +100,9 @@ class ContactBody {
   void place();
   /// Fits the trees to the current positions, unless this has been done since `read`. Cost O(tets + runs)
   void fit();
+
+  /// moves  whether its motion since the last step will matter
+  void visitState(bullet_detail::WorldStream& stream, bool moves);
 
   /// A box around the samples of a run, by the nodes of its tet.
   ContactBox runBox(int run) const {

@@ -23,6 +23,10 @@ class PairMotion {
   void markSearched();
   void visitState(StateStream& stream);
   btScalar sinceSearch() const { return path_; }
+  /// False if touches are searched for in the next step whatever happens.
+  bool goesOn(const ContactBody& first, const ContactBody& second) const {
+    return searched_ && reads_[0] == first.reads && reads_[1] == second.reads;
+  }
 
  private:
   btScalar sinceBefore(const ContactBody& first, const ContactBody& second);

@@ -142,6 +142,40 @@ bool PairSearch::follow(std::vector<Touch>& touches) {
   return true;
 }
 
+void PairMemory::visitState(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed) {
+  if (stream.restoring()) candidates.drop();
+  motion.visitState(stream);
+  sides.visitState(stream);
+  stream(overlap.deepest);
+  stream(overlap.normals);
+  stream(overlap.inside);
+  stream(overlap.agreeing);
+  stream(follows);
+  stream.each(touched, [&](TouchedSample& sample) {
+    stream(sample.sample);
+    stream(sample.age);
+  });
+  stream.array(pierced);
+  std::vector<Touch> none;
+  stream.each(followed || stream.restoring() ? touches : none, [&](Touch& touch) {
+    stream(touch.sample);
+    stream(touch.tet);
+    stream(touch.restFound);
+    stream(touch.restNormal);
+    stream(touch.restDistance);
+  });
+}
+
+bool PairMemory::fits(const ContactBody& first, const ContactBody& second, const std::vector<Touch>& touches) const {
+  const auto samples = static_cast<int>(first.data().samples.size()),
+             tets = static_cast<int>(second.data().tets.size());
+  const auto isSample = [&](int sample) { return sample >= 0 && sample < samples; };
+  return std::all_of(pierced.begin(), pierced.end(), isSample) &&
+         std::all_of(touched.begin(), touched.end(), [&](const TouchedSample& t) { return isSample(t.sample); }) &&
+         std::all_of(touches.begin(), touches.end(),
+                     [&](const Touch& t) { return isSample(t.sample) && t.tet >= 0 && t.tet < tets; });
+}
+
 /// A node that touches nothing in this step keeps the samples with which it touched before.
 void PairSearch::remember(PairMemory& memory) const {
   memory.touched.clear();

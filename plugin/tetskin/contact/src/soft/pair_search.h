@@ -52,6 +52,16 @@ struct PairMemory {
   bool follows = false;  ///< they may be followed: that search had no direction in which the body was to leave
   std::vector<TouchedSample> touched;  ///< samples by which nodes have touched, ascending
   std::vector<int> pierced;            ///< samples that pierced the surface in the last step
+
+  /// True if the next step may follow the touches of this one.
+  bool mayFollow(const ContactBody& first, const ContactBody& second) const {
+    return follows && motion.goesOn(first, second);
+  }
+  /// touches   those of the last step
+  /// followed  whether they are saved: `mayFollow`
+  void visitState(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed);
+  /// True if all that it holds is of these bodies.
+  bool fits(const ContactBody& first, const ContactBody& second, const std::vector<Touch>& touches) const;
 };
 
 /// Finds the touches of pairs, one pair after the other; reuses its memory.
