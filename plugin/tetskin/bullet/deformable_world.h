@@ -115,8 +115,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
  private:
   struct Impl;
   friend class ForceRecord;
-  friend bool bullet_detail::isWithinStep(const DeformableSolver& solver);
   friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
+  friend bool bullet_detail::isWithinStep(const DeformableSolver& solver);
   std::unique_ptr<Impl> impl_;
 };
 
