@@ -125,7 +125,11 @@ TEST_F(SoftCandidates, AreNotTestedAgainUntilTheyHaveMovedByTheirClearance) {
       std::size_t again = 0;
       for (const auto& tested : visited(candidates, *first, *second, clear)) again += begun.count(tested);
       // Meanwhile, some have left each other.
-      step < 3 ? EXPECT_EQ(again, 0U) : EXPECT_GT(again, begun.size() * 19 / 20);
+      if (step < 3) {
+        EXPECT_EQ(again, 0U);
+      } else {
+        EXPECT_GT(again, begun.size() * 19 / 20);
+      }
     }
   }
 }

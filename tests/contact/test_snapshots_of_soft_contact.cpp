@@ -91,14 +91,14 @@ void expectToGoOn(SavedHeap& heap, const HeapRun& run, std::size_t from) {
 TEST(SnapshotsOfSoftContact, GoOnInTheSameWorld) {
   SavedHeap heap;
   const HeapRun run(heap);
-  for (const std::size_t from : {0, 17, 40, 55}) expectToGoOn(heap, run, from);
+  for (const std::size_t from : {0U, 17U, 40U, 55U}) expectToGoOn(heap, run, from);
 }
 
 TEST(SnapshotsOfSoftContact, GoOnInANewWorldOnOtherThreads) {
   SavedHeap heap;
   const HeapRun run(heap);
   ThreadPool threads(2);
-  for (const std::size_t from : {25, 50}) {
+  for (const std::size_t from : {25U, 50U}) {
     SavedHeap alone, parallel(&threads);
     expectToGoOn(alone, run, from);
     expectToGoOn(parallel, run, from);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/state/bullet_members.h>
 #include <tetskin/bullet/src/state/world_state.h>
 #include <tetskin/bullet/src/step/step_objects.h>
 
@@ -10,11 +11,6 @@ namespace tetskin::bullet_detail {
 namespace {
 
 using Node = btSoftBody::Node;
-
-template <class... Values>
-void visitAll(WorldStream& stream, Values&... values) {
-  (stream(values), ...);
-}
 
 void visitSettings(WorldStream& stream, btSoftBody& body) {
   btSoftBody::Config& c = body.m_cfg;
