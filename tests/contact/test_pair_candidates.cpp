@@ -111,8 +111,8 @@ TEST_F(SoftCandidates, AreNotTestedAgainUntilTheyHaveMovedByTheirClearance) {
     auto first = includeCoarse({0, 0, 0}), second = includeCoarse({0.6, 0.2, 0.1});
     const btScalar touching =
         kNearCubes * second->data().grid.spacing();  // is subtracted from the distance of what stands
-    const Clearance clear =
-        within ? Clearance{kForever, btScalar(2.5) * apart + touching} : Clearance{btScalar(2.5) * apart, kForever};
+    const Clearance clear = within ? Clearance{kForever, kApproach * btScalar(2.5) * apart + touching}
+                                   : Clearance{btScalar(2.5) * apart, kForever};
     PairCandidates candidates;
     candidates.update(*first, *second, kCandidateStep);
     const RunTets begun = visited(candidates, *first, *second, clear);
@@ -124,7 +124,12 @@ TEST_F(SoftCandidates, AreNotTestedAgainUntilTheyHaveMovedByTheirClearance) {
       ASSERT_EQ(candidates.age(), step);
       std::size_t again = 0;
       for (const auto& tested : visited(candidates, *first, *second, clear)) again += begun.count(tested);
-      EXPECT_EQ(again, step < 3 ? 0U : begun.size());
+      // Meanwhile, some have left each other.
+      if (step < 3) {
+        EXPECT_EQ(again, 0U);
+      } else {
+        EXPECT_GT(again, begun.size() * 19 / 20);
+      }
     }
   }
 }
@@ -167,105 +172,6 @@ TEST_F(SoftCandidates, HoldWhileBodiesMoveTogether) {
   second->read();
   candidates.update(*first, *second, dt);
   EXPECT_EQ(candidates.age(), 0) << "a node has gone farther than the slack";
-}
-
-/// Beyond any motion in these tests.
-constexpr btScalar kAnyMotion = 100;
-
-TEST_F(SoftCandidates, AreNearlyAsVisitedUntilSomethingHasMovedFarther) {
-  auto first = includeCoarse({0, 0, 0}), second = includeCoarse({0.6, 0.2, 0.1});
-  const btScalar bound = btScalar(0.001);
-  PairCandidates candidates;
-  EXPECT_FALSE(candidates.isNearlyAsVisited(kAnyMotion)) << "none have been found yet";
-  candidates.update(*first, *second, kCandidateStep);
-  ASSERT_FALSE(candidates.empty());
-  EXPECT_FALSE(candidates.isNearlyAsVisited(kAnyMotion)) << "none have been visited yet";
-  for (const bool ofFirst : {false, true}) {
-    candidates.markVisited();
-    EXPECT_TRUE(candidates.isNearlyAsVisited(0));
-    for (int step = 1; step <= 3; ++step) {
-      const btScalar motion = btScalar(0.4) * bound;
-      move(*first, [&](const btVector3& x) { return ofFirst ? x + btVector3(0, motion, 0) : x; });
-      move(*second, [&](const btVector3& x) { return ofFirst ? x : x - btVector3(motion, 0, 0); });
-      candidates.update(*first, *second, kCandidateStep);
-      ASSERT_GT(candidates.age(), 0);
-      // Samples outside of the tets that carry them go farther than nodes do.
-      const btScalar spread = ofFirst ? first->data().largestSpread : btScalar(1);
-      EXPECT_FALSE(candidates.isNearlyAsVisited(btScalar(0.99) * motion * btScalar(step)));
-      EXPECT_TRUE(candidates.isNearlyAsVisited(btScalar(1.01) * spread * motion * btScalar(step)));
-      if (step == 3) {
-        EXPECT_FALSE(candidates.isNearlyAsVisited(bound));
-      }
-    }
-  }
-}
-
-TEST_F(SoftCandidates, AreNotAsVisitedIfOneNodeHasMovedFarther) {
-  auto first = includeCoarse({0, 0, 0}), second = includeCoarse({0.6, 0.2, 0.1});
-  PairCandidates candidates;
-  candidates.update(*first, *second, kCandidateStep);
-  candidates.markVisited();
-  const btVector3 within(btScalar(0.8), btScalar(0.6), btScalar(0.5));  // where the two overlap
-  btSoftBody::Node* nearest = &bodies_[0]->m_nodes[0];
-  for (int n = 0; n < bodies_[0]->m_nodes.size(); ++n) {
-    btSoftBody::Node& node = bodies_[0]->m_nodes[n];
-    if ((node.m_x - within).length2() < (nearest->m_x - within).length2()) nearest = &node;
-  }
-  nearest->m_x += btVector3(0, btScalar(0.002), 0);
-  for (ContactBody* body : {first.get(), second.get()}) body->read();
-  candidates.update(*first, *second, kCandidateStep);
-  ASSERT_EQ(candidates.age(), 1);
-  EXPECT_FALSE(candidates.isNearlyAsVisited(btScalar(0.0019)));
-  EXPECT_TRUE(candidates.isNearlyAsVisited(btScalar(0.0021) * first->data().largestSpread));
-}
-
-TEST_F(SoftCandidates, AreNearlyAsVisitedWhileBodiesMoveTogether) {
-  auto first = includeCoarse({0, 0, 0}), second = includeCoarse({0.6, 0.2, 0.1});
-  PairCandidates candidates;
-  candidates.update(*first, *second, kCandidateStep);
-  candidates.markVisited();
-  for (const auto& body : bodies_) body->translate(btVector3(btScalar(0.3), 0, 0));
-  for (ContactBody* body : {first.get(), second.get()}) body->read();
-  candidates.update(*first, *second, kCandidateStep);
-  ASSERT_EQ(candidates.age(), 1);
-  EXPECT_TRUE(candidates.isNearlyAsVisited(btScalar(1e-4)));
-}
-
-TEST_F(SoftCandidates, AreNotAsVisitedOnceTheyAreFoundAnew) {
-  auto first = includeCoarse({0, 0, 0}), second = includeCoarse({0.6, 0.2, 0.1});
-  PairCandidates candidates;
-  candidates.update(*first, *second, kCandidateStep);
-  candidates.markVisited();
-  first->read();
-  move(*second, [](const btVector3& x) { return x + btVector3(0, btScalar(0.5), 0); });
-  candidates.update(*first, *second, kCandidateStep);
-  ASSERT_EQ(candidates.age(), 0);
-  EXPECT_FALSE(candidates.isNearlyAsVisited(kAnyMotion));
-  move(*second, [](const btVector3& x) { return x + btVector3(0, 5, 0); });
-  first->read();
-  candidates.update(*first, *second, kCandidateStep);
-  ASSERT_TRUE(candidates.empty());
-  EXPECT_FALSE(candidates.isNearlyAsVisited(kAnyMotion)) << "there are none";
-}
-
-/// In the step to come, samples may then touch that could not touch in the one that was searched.
-TEST_F(SoftCandidates, AreNotAsVisitedIfBodiesGetFaster) {
-  auto first = includeCoarse({0, 0, 0}), second = includeCoarse({0.6, 0.2, 0.1});
-  const auto updateAt = [&](PairCandidates& candidates, btScalar speed) {
-    for (int n = 0; n < bodies_[1]->m_nodes.size(); ++n) bodies_[1]->m_nodes[n].m_v = btVector3(speed, 0, 0);
-    for (ContactBody* body : {first.get(), second.get()}) body->read();
-    candidates.update(*first, *second, kCandidateStep);
-  };
-  PairCandidates candidates;
-  updateAt(candidates, 1);
-  candidates.markVisited();
-  updateAt(candidates, 3);
-  EXPECT_FALSE(candidates.isNearlyAsVisited(btScalar(1.9) * kCandidateStep));
-  EXPECT_TRUE(candidates.isNearlyAsVisited(btScalar(2.1) * kCandidateStep)) << "by as much";
-  updateAt(candidates, btScalar(0.5));
-  EXPECT_TRUE(candidates.isNearlyAsVisited(btScalar(1e-6))) << "what is slower reaches no more";
-  updateAt(candidates, -1);
-  EXPECT_TRUE(candidates.isNearlyAsVisited(btScalar(1e-6)));
 }
 
 TEST_F(SoftCandidates, AreMissingOfBodiesApart) {

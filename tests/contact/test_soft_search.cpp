@@ -35,12 +35,13 @@ class FollowingSearch {
   void find(ContactBody& first, ContactBody& second, btScalar dt) {
     PairMemory fromNothing = memory_;
     fromNothing.candidates = {};
+    fromNothing.motion = {};
     wanted_.clear();
     search_.find(first, second, dt, btVector3(0, 0, 0), 0, fromNothing, wanted_);
     search_.find(first, second, dt, btVector3(0, 0, 0), 0, memory_, touches_);
     found_.wanted += wanted_.size();
     // Since a search in this step, nothing can have moved.
-    const bool searched = memory_.candidates.isNearlyAsVisited(0);
+    const bool searched = memory_.motion.sinceSearch() == 0;
     ++(searched ? found_.searched : found_.followed);
     searched ? expectSame() : expectNearlySame(first, second.data().grid.spacing());
   }

@@ -12,6 +12,8 @@ namespace {
 
 /// The slack is the relative motion of this many steps, in cubes of the grid bounded as given.
 constexpr btScalar kSlackSteps = 6, kSlackCubes = btScalar(0.7), kMaxSlackCubes = 3;
+/// In cubes of the grid: more than the planes of thin tets are wrong by in single precision.
+constexpr btScalar kRoundingCubes = btScalar(1e-3);
 
 /// A lower bound of the distance between two boxes; below 0 if they overlap.
 btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
@@ -47,6 +49,7 @@ void CandidateValidity::begin(const ContactBody& first, const ContactBody& secon
   slack_ = std::min(std::max(kSlackCubes * cube, kSlackSteps * growth), kMaxSlackCubes * cube);
   moved_ = drift_ = 0;
   age_ = 0;
+  setRounding(first, second);
   began_[0] = first.positions;
   began_[1] = second.positions;
   near_.clear();
@@ -66,18 +69,24 @@ bool CandidateValidity::lasts(const ContactBody& first, const ContactBody& secon
   assert(began_[0].size() == first.positions.size() && began_[1].size() == second.positions.size());
   ++age_;
   const btScalar spread = first.data().largestSpread;
-  moved_ += spread * first.moved + second.moved;
-  if (moved_ <= slack_) return true;
+  setRounding(first, second);
+  moved_ += accountable(spread * first.moved + kInsideSpread * second.moved, second);
+  if (moved_ + rounding_ <= slack_) return true;
   if (rooms_[0].empty() || rooms_[1].empty()) return true;
   const RigidMotion motion = near_.empty() ? RigidMotion(second.positions[0] - began_[1][0])
                                            : RigidMotion(
                                                  near_, [&](std::size_t n) { return began_[1][n]; },
                                                  [&](std::size_t n) { return second.positions[n]; });
   const Deviation own = deviate(0, first, motion), other = deviate(1, second, motion);
-  drift_ = spread * own.near + other.near;
+  drift_ = spread * own.near + kInsideSpread * other.near;
   // What is used up of the slack: the rest is there for the steps to come.
-  moved_ = std::max({drift_, usedUp(0, spread, other.anywhere), usedUp(1, 1, spread * own.near)});
-  return moved_ <= slack_;
+  moved_ = std::max(
+      {drift_, usedUp(0, spread, kInsideSpread * other.anywhere), usedUp(1, kInsideSpread, spread * own.near)});
+  return moved_ + rounding_ <= slack_;
+}
+
+void CandidateValidity::setRounding(const ContactBody& first, const ContactBody& second) {
+  rounding_ = kRoundingCubes * second.data().grid.spacing() + roundingOf(first, second);
 }
 
 CandidateValidity::Deviation CandidateValidity::deviate(int k, const ContactBody& body, const RigidMotion& motion) {

@@ -6,11 +6,25 @@
 
 #include <tetskin/contact/src/soft/contact_body.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace tetskin::contact_detail {
 
 class RigidMotion;
+
+/// What the computed position of a point may differ by from the true one.
+inline btScalar roundingOf(const ContactBody& first, const ContactBody& second) {
+  return 8 * SIMD_EPSILON * std::max(first.farthest, second.farthest);
+}
+
+/// A motion that is to be added to the sum of those before, with what rounding of that sum may lose.
+/// second  the body whose grid bounds the sum
+inline btScalar accountable(btScalar motion, const ContactBody& second) {
+  /// Of the largest sum, that is a few cubes.
+  constexpr btScalar kLost = btScalar(1e-6);
+  return motion > 0 ? motion + kLost * second.data().grid.spacing() : motion;
+}
 
 /// Candidates are all samples and tets whose boxes were nearer to each other than a slack. Others have not met while no
 /// two of their nodes have approached each other by more than that; far from the other body, by more than the distance
@@ -24,20 +38,23 @@ class CandidateValidity {
   /// Cost  O(1) while the bodies have moved little, else O(nodes)
   bool lasts(const ContactBody& first, const ContactBody& second);
 
-  btScalar slack() const { return slack_; }  ///< world space
-  int age() const { return age_; }           ///< number of steps
+  btScalar slack() const { return slack_; }        ///< world space
+  btScalar rounding() const { return rounding_; }  ///< what gaps that are computed in two steps may differ by
+  int age() const { return age_; }                 ///< number of steps
 
  private:
   /// Of the nodes of a body: their largest deviation from a rigid motion near the other body, and anywhere.
   struct Deviation {
     btScalar near = 0, anywhere = 0;
   };
+  void setRounding(const ContactBody& first, const ContactBody& second);
   Deviation deviate(int k, const ContactBody& body, const RigidMotion& motion);
   btScalar usedUp(int k, btScalar spread, btScalar other) const;
 
   btScalar slack_ = 0;
-  btScalar moved_ = 0;  ///< bound of what has been used up of the slack
-  btScalar drift_ = 0;  ///< relative motion of nodes that were near, when it was last measured
+  btScalar rounding_ = 0;  ///< part of the slack that is never used up
+  btScalar moved_ = 0;     ///< bound of what has been used up of the slack
+  btScalar drift_ = 0;     ///< relative motion of nodes that were near, when it was last measured
   int age_ = 0;
   std::vector<int> near_;  ///< nodes of the second body that were near the first one
   // By body, then by node.

@@ -18,10 +18,12 @@ void DeformedTet::weightsAt(const btVector3& p, btScalar weights[4]) const {
 
 void DeformedTet::setPlanes(const btScalar minimum[4]) {
   const btVector3 gradients[4] = {rows[0], rows[1], rows[2], -(rows[0] + rows[1] + rows[2])};
+  steepness = 0;
   for (int k = 0; k < 4; ++k) {
     const btScalar length = gradients[k].length();
     normals[k] = gradients[k] / length;
-    offsets[k] = ((k == 3 ? 1 : 0) - (minimum[k] > 0 ? minimum[k] : kMinWeight)) / length;
+    offsets[k] = ((k == 3 ? 1 : 0) - minimum[k]) / length;
+    steepness += length;
   }
 }
 
@@ -62,10 +64,22 @@ void ContactBody::read() {
   }
   moved = btSqrt(motion);
   fastest = btSqrt(speed);
+  farthest = 0;
+  for (int axis = 0; axis < 3; ++axis) farthest = std::max({farthest, -box.low[axis], box.high[axis]});
   const btScalar size = box.diagonal();
   // Comparisons skip NaN values; the sum does not.
   readable = std::isfinite(size + sum.x() + sum.y() + sum.z()) && size < static_cast<btScalar>(Limits::kMaxCoordinate);
   centroid = sum / static_cast<btScalar>(positions.size());
+}
+
+/// Everything else is read from the body in each step; its motion since the last one begins at these positions.
+void ContactBody::visitState(bullet_detail::WorldStream& stream, bool moves) {
+  stream(self);
+  stream(id);
+  stream(reads);
+  std::vector<btVector3> none;
+  stream.each(moves || stream.restoring() ? positions : none, [&](btVector3& p) { stream(p); });
+  if (!positions.empty() && positions.size() != data().nodes.size()) stream.fail();
 }
 
 ContactBox ContactBody::regionBox(const Tet& n, const TetSubregion& part) const {

@@ -4,6 +4,7 @@
 // Internal to SoftContacts: a body, and its positions in this step.
 #pragma once
 
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/contact/src/soft/four.h>
 #include <tetskin/contact/src/soft/shape_data.h>
 
@@ -15,10 +16,6 @@
 
 namespace tetskin::contact_detail {
 
-/// Least weight with which a point counts as inside a tet: rounding must lose no point between two tets, and just
-/// outside of the cage the surface is near.
-constexpr btScalar kMinWeight = btScalar(-0.02);
-
 /// The map from a position in the world to its weights in a deformed tet: weight i is rows[i] . (p - origin), i < 3.
 struct DeformedTet {
   btVector3 origin{0, 0, 0};
@@ -28,6 +25,7 @@ struct DeformedTet {
   btScalar offsets[4] = {};
   btVector3 restOrigin{0, 0, 0}, toRest[3];  ///< rest position: restOrigin[i] + toRest[i] . (p - origin)
   btScalar restPerWorld = 0;                 ///< an upper bound of the ratio of rest lengths to world lengths
+  btScalar steepness = 0;                    ///< sum of the lengths of the weights' gradients
   bool flat = true;
 
   void weightsAt(const btVector3& p, btScalar weights[4]) const;
@@ -36,7 +34,7 @@ struct DeformedTet {
     return restOrigin + btVector3(toRest[0].dot(r), toRest[1].dot(r), toRest[2].dot(r));
   }
   /// Sets the planes, from the rows.
-  /// minimum  weights in the planes; 0 counts as kMinWeight
+  /// minimum  weights in the planes
   void setPlanes(const btScalar minimum[4]);
 };
 
@@ -103,6 +101,9 @@ class ContactBody {
   /// Fits the trees to the current positions, unless this has been done since `read`. Cost O(tets + runs)
   void fit();
 
+  /// moves  whether its motion since the last step will matter
+  void visitState(bullet_detail::WorldStream& stream, bool moves);
+
   /// A box around the samples of a run, by the nodes of its tet.
   ContactBox runBox(int run) const {
     assert(run >= 0 && static_cast<std::size_t>(run) < data().runs.size());
@@ -124,6 +125,7 @@ class ContactBody {
   btVector3 centroid{0, 0, 0};                         ///< of the nodes
   int reads = 0;                                       ///< number of times that `read` has been called
   btScalar moved = 0, fastest = 0;                     ///< most of any node since it was read before, and its speed
+  btScalar farthest = 0;                               ///< largest coordinate of any node, by which rounding grows
   std::vector<btVector3> positions, velocities;        ///< by node
   std::vector<btVector3> before;                       ///< positions by node when it was read before
   std::vector<GroupBoxes> groupBoxes;                  ///< by group: around the tets' filled parts; valid after `place`

@@ -179,7 +179,10 @@ TetSubregion filledSubregion(const ShapeData& data, const Tet& nodes, btScalar s
         for (std::size_t n = 0; n < 4; ++n) p += w[n] * data.nodes[static_cast<std::size_t>(nodes[n])];
         GridDistance known;
         if (data.grid.at(p, known) && known.distance > reach) continue;
-        for (int n = 0; n < 4; ++n) region.minimum[n] = std::min(region.minimum[n], std::max(w[n] - step, btScalar(0)));
+        for (int n = 0; n < 4; ++n) {
+          const btScalar least = w[n] - step;
+          region.minimum[n] = std::min(region.minimum[n], least > 0 ? least : kMinWeight);
+        }
       }
     }
   }

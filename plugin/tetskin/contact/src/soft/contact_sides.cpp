@@ -86,6 +86,16 @@ void ContactSides::clear() {
   next_ = 0;
 }
 
+/// Those of the step before are replaced at the beginning of the next one.
+void ContactSides::visitState(bullet_detail::WorldStream& stream) {
+  if (stream.restoring()) clear();
+  stream.each(now_, [&](ContactSide& side) {
+    stream(side.sample);
+    stream(side.point);
+    stream(side.normal);
+  });
+}
+
 bool asksForMotion(const DistanceGrid& grid, const GridDistance& nearest, const ContactSide* before) {
   return !before && !(nearest.distance > -kDeepCubes * grid.spacing());
 }

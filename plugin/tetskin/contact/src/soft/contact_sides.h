@@ -5,6 +5,7 @@
 // through that side, even from beyond the middle of a thin part, where the nearest surface is another one.
 #pragma once
 
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/contact/src/soft/distance_grid.h>
 
 #include <cassert>
@@ -34,6 +35,7 @@ class ContactSides {
     now_.push_back(side);
   }
   void clear();
+  void visitState(bullet_detail::WorldStream& stream);
 
  private:
   std::vector<ContactSide> before_, now_;

@@ -37,6 +37,25 @@ DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid,
       fillRow(outside, solid, low + spacing * Eigen::Vector3d(0, y, z), spacing, &distances_[indexOf(0, y, z)]);
     }
   }
+  findSteepness();
+}
+
+/// Between corners, each slope is a mean of those along the edges around.
+void DistanceGrid::findSteepness() {
+  float squares = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float most = 0;
+    for (int z = 0; z + (axis == 2) < counts_[2]; ++z) {
+      for (int y = 0; y + (axis == 1) < counts_[1]; ++y) {
+        for (int x = 0; x + (axis == 0) < counts_[0]; ++x) {
+          const float* d = &distances_[indexOf(x, y, z)];
+          most = std::max(most, std::abs(d[stride_[axis]] - d[0]));
+        }
+      }
+    }
+    squares += most * most;
+  }
+  steepness_ = static_cast<btScalar>(std::sqrt(squares)) * inverseSpacing_;
 }
 
 /// From one corner to the next, the nearest triangle is the same one or near it. The distance changes by at most the

@@ -40,6 +40,8 @@ class DistanceGrid {
   bool at(const btVector3& point, GridDistance& result) const;
   /// Side of a cube.
   btScalar spacing() const { return spacing_; }
+  /// How much the distance changes by at most, per length.
+  btScalar steepness() const { return steepness_; }
   /// True if any corner is inside.
   bool hasInside() const;
 
@@ -50,9 +52,10 @@ class DistanceGrid {
   }
   void fillRow(const TriangleBvh& outside, const WindingTree& solid, const Eigen::Vector3d& first, double spacing,
                float* row) const;
+  void findSteepness();
 
   btVector3 low_{0, 0, 0};
-  btScalar spacing_ = 1, inverseSpacing_ = 1;
+  btScalar spacing_ = 1, inverseSpacing_ = 1, steepness_ = 1;
   std::array<int, 3> counts_{};          ///< number of corners along each axis
   std::array<std::size_t, 3> stride_{};  ///< distance in the array between neighbouring corners, by axis
   std::vector<float> distances_;

@@ -8,13 +8,6 @@
 #include <cmath>
 
 namespace tetskin::contact_detail {
-namespace {
-
-/// In cubes of the grid: a motion within a step so small that it is not worth finding out what part of it is relative.
-constexpr btScalar kStillCubes = btScalar(0.02);
-
-}  // namespace
-
 void PairCandidates::update(ContactBody& first, ContactBody& second, btScalar dt) {
   assert(dt > 0 && first.reads > 0 && second.reads > 0);
   const bool again = first.reads == reads_[0] && second.reads == reads_[1];
@@ -24,34 +17,19 @@ void PairCandidates::update(ContactBody& first, ContactBody& second, btScalar dt
   reads_[1] = second.reads;
 }
 
-void PairCandidates::markVisited() {
-  visited_ = true;
-  for (Run& run : runs_) {
-    run.visitedPath = run.path;
-    run.visitedReach = run.reach;
-  }
-}
-
-bool PairCandidates::isNearlyAsVisited(btScalar maximum) const {
-  assert(!(maximum < 0));
-  return visited_ && std::all_of(runs_.begin(), runs_.end(), [&](const Run& run) {
-           return run.path - run.visitedPath + std::max(run.reach - run.visitedReach, btScalar(0)) <= maximum;
-         });
-}
-
 /// Returns false if the candidates may not be complete any more.
 bool PairCandidates::follow(const ContactBody& first, const ContactBody& second) {
   if (first.reads != reads_[0] + 1 || second.reads != reads_[1] + 1) return false;
   if (!validity_.lasts(first, second)) return false;
-  const btScalar all = first.data().largestSpread * first.moved + second.moved;
+  const btScalar all = accountable(first.data().largestSpread * first.moved + kInsideSpread * second.moved, second);
   if (all <= kStillCubes * second.data().grid.spacing()) {
     for (Run& run : runs_) run.path += all;
     return true;
   }
   const auto before = [](const ContactBody& body) { return [&](std::size_t n) { return body.before[n]; }; };
   const auto now = [](const ContactBody& body) { return [&](std::size_t n) { return body.positions[n]; }; };
-  measure(first, before(first), now(first), before(second), now(second),
-          [](Run& run, btScalar motion) { run.path += motion; });
+  measure(first, before(first), now(first), second, before(second), now(second),
+          [&](Run& run, btScalar motion) { run.path += accountable(motion, second); });
   return true;
 }
 
@@ -60,8 +38,9 @@ bool PairCandidates::follow(const ContactBody& first, const ContactBody& second)
 /// from, to            btVector3(std::size_t node), of the first body
 /// fromOther, toOther  of the second one
 template <class From, class To, class FromOther, class ToOther, class Use>
-void PairCandidates::measure(const ContactBody& first, const From& from, const To& to, const FromOther& fromOther,
-                             const ToOther& toOther, Use&& use) {
+void PairCandidates::measure(const ContactBody& firstBody, const From& from, const To& to,
+                             const ContactBody& secondBody, const FromOther& fromOther, const ToOther& toOther,
+                             Use&& use) {
   if (runs_.empty()) return;
   const RigidMotion motion(nodes_[1], fromOther, toOther);
   for (const int node : nodes_[0]) {
@@ -73,15 +52,15 @@ void PairCandidates::measure(const ContactBody& first, const From& from, const T
     const auto n = static_cast<std::size_t>(node);
     second = std::max(second, (toOther(n) - motion(fromOther(n))).length2());
   }
-  second = btSqrt(second);
-  const ShapeData& shape = first.data();
+  const ShapeData& shape = firstBody.data();
+  const btScalar other = kInsideSpread * btSqrt(second) + roundingOf(firstBody, secondBody);
   for (Run& run : runs_) {
     const auto r = static_cast<std::size_t>(run.run);
     btScalar own = 0;
     for (const int n : shape.tets[static_cast<std::size_t>(shape.runs[r].tet)]) {
       own = std::max(own, nodeMotion_[static_cast<std::size_t>(n)]);
     }
-    use(run, shape.runRegions[r].spread() * btSqrt(own) + second);
+    use(run, shape.runRegions[r].spread() * btSqrt(own) + other);
   }
 }
 
@@ -90,7 +69,8 @@ void PairCandidates::setReach(const ContactBody& first, const ContactBody& secon
   const auto set = [&](Run& run, btScalar motion) {
     run.reach = std::min(kReachCubes * cube, kNearCubes * cube + motion);
   };
-  const btScalar all = dt * (first.data().largestSpread * first.fastest + second.fastest);
+  const btScalar all =
+      accountable(dt * (first.data().largestSpread * first.fastest + kInsideSpread * second.fastest), second);
   if (all <= kStillCubes * cube) {
     for (Run& run : runs_) set(run, all);
     return;
@@ -99,14 +79,13 @@ void PairCandidates::setReach(const ContactBody& first, const ContactBody& secon
   const auto next = [dt](const ContactBody& body) {
     return [&body, dt](std::size_t n) { return body.positions[n] + dt * body.velocities[n]; };
   };
-  measure(first, now(first), next(first), now(second), next(second), set);
+  measure(first, now(first), next(first), second, now(second), next(second), set);
 }
 
 void PairCandidates::find(ContactBody& first, ContactBody& second) {
   first.fit();
   second.fit();
   validity_.begin(first, second);
-  visited_ = false;
   runs_.clear();
   links_.clear();
   lanes_.clear();

@@ -17,20 +17,28 @@ namespace tetskin::contact_detail {
 /// Infinite: a clearance that no motion exceeds.
 constexpr btScalar kForever = std::numeric_limits<btScalar>::infinity();
 
+/// What a sample within a tet approaches the surface by at the most, per motion relative to the tet. While the tet
+/// deforms, the surface comes nearer faster than its nodes.
+constexpr btScalar kApproach = 4;
+
 /// A lower bound of the distance by which samples may move before one of them enters a tet, or reaches the surface;
-/// world space.
+/// world space. Nothing depends on what is skipped by it: found again, it would be as clear.
 struct Clearance {
   btScalar outside = kForever;
-  btScalar distance = kForever;  ///< from the surface, the least of the samples within the tet; below 0 inside
+  /// Of the samples within the tet, the least distance from the surface: it becomes shorter by at most `kApproach`
+  /// times their motion. Below 0 inside
+  btScalar distance = kForever;
 
   void cut(const Clearance& other) {
     outside = std::min(outside, other.outside);
     distance = std::min(distance, other.distance);
   }
+  /// The values at which they end, if the path of the run is now this long.
+  Clearance endsAt(btScalar path) const { return {path + outside, kApproach * path + distance}; }
 };
 
-/// The tet in which a sample was found last, away from the surface, and the value of its run's path up to which it
-/// cannot reach the surface in that tet.
+/// The tet in which a sample was found last, away from the surface, and the end of its clearance in that tet, as in
+/// `Clearance::endsAt`.
 struct SampleClearance {
   int tet = -1;
   btScalar until = 0;
@@ -40,7 +48,8 @@ struct SampleClearance {
 struct VisitedRun {
   int run;
   btScalar path;             ///< bound of the motion of its samples relative to the tets near them, since some step
-  btScalar reach;            ///< distance from the surface from which on no sample can touch it within the step
+  btScalar reach;            ///< a bound of the distances within which its samples may touch the surface in the step
+  btScalar rounding;         ///< what a distance may be wrong by
   SampleClearance* samples;  ///< by sample of the run: what has been found for this path
 };
 
@@ -61,11 +70,8 @@ class PairCandidates {
   template <class Begin, class Test, class End>
   void visit(const ContactBody& second, Begin&& begin, Test&& test, End&& end);
   bool empty() const { return runs_.empty(); }
-  /// Call it before `visit`: what follows is measured from here.
-  void markVisited();
-  /// True if, since `markVisited`, no sample and no tet near it have approached each other by more than `maximum`, nor
-  /// will in the step to come by more than they would have then. False if the candidates have been found anew.
-  bool isNearlyAsVisited(btScalar maximum) const;
+  /// Nothing is known any more: they will be found anew. What is found in the bodies does not depend on it.
+  void drop() { reads_[0] = reads_[1] = -1; }
   int age() const { return validity_.age(); }  ///< number of steps since the candidates were found
 
  private:
@@ -86,8 +92,7 @@ class PairCandidates {
     Clearance until{0, 0};            ///< the least of its links' values
     btScalar path = 0;   ///< bound of the motion of its samples relative to any tet of its links since they were found
     btScalar reach = 0;  ///< as in VisitedRun
-    std::size_t samples = 0;                     ///< of its first sample, in `samples_`
-    btScalar visitedPath = 0, visitedReach = 0;  ///< when it was visited
+    std::size_t samples = 0;  ///< of its first sample, in `samples_`
   };
   struct Pair {
     const ContactBody* first;
@@ -100,17 +105,17 @@ class PairCandidates {
   void findForRun(const Pair& pair, int run);
   void listNodes(const ContactBody& first, const ContactBody& second);
   template <class From, class To, class FromOther, class ToOther, class Use>
-  void measure(const ContactBody& first, const From& from, const To& to, const FromOther& fromOther,
-               const ToOther& toOther, Use&& use);
+  void measure(const ContactBody& firstBody, const From& from, const To& to, const ContactBody& secondBody,
+               const FromOther& fromOther, const ToOther& toOther, Use&& use);
   void setReach(const ContactBody& first, const ContactBody& second, btScalar dt);
   static Four gapsOf(unsigned neighbours, const GroupBoxes& boxes, const FourBoxes& box);
   template <class Test>
   void testLink(const Run& run, Link& link, const ContactBody& second, const FourBoxes& box, Test& test);
-  static bool isClear(const Clearance& until, const Run& run) {
-    return run.path < until.outside && run.path + run.reach < until.distance;
+  bool isClear(const Clearance& until, const Run& run) const {
+    const btScalar path = run.path + validity_.rounding();
+    return path < until.outside && kApproach * path + run.reach < until.distance;
   }
 
-  bool visited_ = false;     ///< since the candidates were found
   int reads_[2] = {-1, -1};  ///< by body: `reads` when last updated
   CandidateValidity validity_;
   std::vector<int> nodes_[2];  ///< of the runs' tets, and of the tets of all links
@@ -149,7 +154,7 @@ void PairCandidates::testLink(const Run& run, Link& link, const ContactBody& sec
       ends = {run.path + gaps[static_cast<int>(k)], kForever};
     } else if (!isClear(ends, run)) {
       const Clearance found = test(second.data().groups[g][k]);
-      ends = {run.path + found.outside, run.path + found.distance};
+      ends = found.endsAt(run.path);
     }
     link.until.cut(ends);
   }
@@ -160,7 +165,7 @@ void PairCandidates::visit(const ContactBody& second, Begin&& begin, Test&& test
   assert(second.reads == reads_[1]);
   for (Run& run : runs_) {
     if (isClear(run.until, run)) continue;
-    const FourBoxes box(begin(VisitedRun{run.run, run.path, run.reach, &samples_[run.samples]}));
+    const FourBoxes box(begin(VisitedRun{run.run, run.path, run.reach, validity_.rounding(), &samples_[run.samples]}));
     run.until = {};
     for (std::size_t c = run.first; c < run.last; ++c) {
       if (!isClear(links_[c].until, run)) testLink(run, links_[c], second, box, test);

@@ -78,6 +78,21 @@ Clearance atSurface() {
   return away(0);
 }
 
+// While nodes of a tet move by d, its gradients by less than a quarter, let q = d steepness: lengths at rest per length
+// in the world grow by at most 1 / (1 - q), and their bound by at most 1 + kStretch q.
+constexpr btScalar kStretch = btScalar(2.7), kMaxStretched = btScalar(0.25);
+
+/// How far a sample within a tet at a distance from the surface may be taken to be, so that `kApproach` holds.
+btScalar surfaceClearance(btScalar distance, const DistanceGrid& grid, const DeformedTet& in) {
+  const btScalar room = std::max(kApproach - grid.steepness(), btScalar(0)) / (kStretch * in.steepness);
+  return std::min({distance, room, kApproach * kMaxStretched / in.steepness});
+}
+
+/// How far a sample may move until it is this far, by lengths now, from where it is at rest.
+btScalar ownPlaceClearance(btScalar distance, const DeformedTet& in) {
+  return std::min(distance / (1 + kStretch * kMaxStretched), kMaxStretched / in.steepness);
+}
+
 }  // namespace
 
 Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
@@ -87,10 +102,10 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, c
   ++pair_;
   if (known_.size() < second.data().tets.size()) known_.resize(second.data().tets.size());
   memory.candidates.update(first, second, dt);
-  const bool still = memory.candidates.isNearlyAsVisited(kFollowedCubes * second.data().grid.spacing());
+  const bool still = memory.motion.isStill(first, second, dt, kFollowedCubes * second.data().grid.spacing());
   if (still && memory.follows && apart.isZero() && follow(touches)) return memory.overlap;
   memory.follows = apart.isZero();
-  second.place();
+  if (!memory.candidates.empty()) second.place();
   overlap_ = {};
   touches.clear();
   touches_ = &touches;
@@ -98,7 +113,7 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, c
   memory.sides.beginStep();
   touched_.swap(memory.touched);
   pierced_.swap(memory.pierced);
-  memory.candidates.markVisited();
+  memory.motion.markSearched();
   memory.candidates.visit(
       second, [&](const VisitedRun& run) -> const ContactBox& { return beginRun(run); },
       [&](int tet) { return testTet(tet); }, [&] { touchRun(); });
@@ -125,6 +140,40 @@ bool PairSearch::follow(std::vector<Touch>& touches) {
     touch.normal = normal / length;
   }
   return true;
+}
+
+void PairMemory::visitState(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed) {
+  if (stream.restoring()) candidates.drop();
+  motion.visitState(stream);
+  sides.visitState(stream);
+  stream(overlap.deepest);
+  stream(overlap.normals);
+  stream(overlap.inside);
+  stream(overlap.agreeing);
+  stream(follows);
+  stream.each(touched, [&](TouchedSample& sample) {
+    stream(sample.sample);
+    stream(sample.age);
+  });
+  stream.array(pierced);
+  std::vector<Touch> none;
+  stream.each(followed || stream.restoring() ? touches : none, [&](Touch& touch) {
+    stream(touch.sample);
+    stream(touch.tet);
+    stream(touch.restFound);
+    stream(touch.restNormal);
+    stream(touch.restDistance);
+  });
+}
+
+bool PairMemory::fits(const ContactBody& first, const ContactBody& second, const std::vector<Touch>& touches) const {
+  const auto samples = static_cast<int>(first.data().samples.size()),
+             tets = static_cast<int>(second.data().tets.size());
+  const auto isSample = [&](int sample) { return sample >= 0 && sample < samples; };
+  return std::all_of(pierced.begin(), pierced.end(), isSample) &&
+         std::all_of(touched.begin(), touched.end(), [&](const TouchedSample& t) { return isSample(t.sample); }) &&
+         std::all_of(touches.begin(), touches.end(),
+                     [&](const Touch& t) { return isSample(t.sample) && t.tet >= 0 && t.tet < tets; });
 }
 
 /// A node that touches nothing in this step keeps the samples with which it touched before.
@@ -274,9 +323,12 @@ Clearance PairSearch::testTet(int tet) {
 /// Most samples within a tet are away from its surface, and still where they were: these need not be looked up again.
 Clearance PairSearch::testSample(int tet, int k) {
   SampleClearance& known = visited_.samples[k];
-  if (known.tet == tet && visited_.path + visited_.reach < known.until) return away(known.until - visited_.path);
+  const btScalar path = visited_.path;
+  if (known.tet == tet && kApproach * (path + visited_.rounding) + visited_.reach < known.until) {
+    return away(known.until - kApproach * path);
+  }
   const Clearance found = addPosition(tet, run_.first + k, k);
-  if (found.distance > 0 && found.outside == kForever) known = {tet, visited_.path + found.distance};
+  if (found.distance > 0 && found.outside == kForever) known = {tet, found.endsAt(path).distance};
   return found;
 }
 
@@ -303,7 +355,7 @@ Clearance PairSearch::addPosition(int tet, int sample, int k) {
   if (now_.first == now_.second) {
     const btScalar own = kOwnPlaceCubes * data.grid.spacing();
     const btScalar moved = (position.rest - data.sampleRest[static_cast<std::size_t>(sample)]).length();
-    if (moved < own) return outside((own - moved) / in.restPerWorld);
+    if (moved < own) return outside(ownPlaceClearance((own - moved) / in.restPerWorld, in));
   }
   int& head = heads_[static_cast<std::size_t>(k)];
   const btScalar apart = kOnePlace * data.edge;
@@ -312,21 +364,39 @@ Clearance PairSearch::addPosition(int tet, int sample, int k) {
   }
   if (!data.grid.at(position.rest, position.nearest)) return atSurface();
   const btScalar distance = position.nearest.distance / in.restPerWorld;
-  if (distance > visited_.reach) return away(distance);
+  if (distance > visited_.reach) return away(surfaceClearance(distance, data.grid, in));
   in.weightsAt(at, position.weights);
   position.tet = tet;
+  position.reach = reachOf(sample, position);
+  if (distance > position.reach) return away(surfaceClearance(distance, data.grid, in));
   position.next = head;
   head = static_cast<int>(positions_.size());
   positions_.push_back(position);
   return atSurface();
 }
 
+/// The velocity of the sample relative to the tet.
+btVector3 PairSearch::velocityOf(int sample, const SamplePosition& position) const {
+  const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
+  const Tet& n = now_.second->data().tets[static_cast<std::size_t>(position.tet)];
+  btVector3 velocity(0, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) {
+    velocity += point.weights[k] * now_.first->velocities[static_cast<std::size_t>(point.nodes[k])] -
+                position.weights[k] * now_.second->velocities[static_cast<std::size_t>(n[k])];
+  }
+  return velocity;
+}
+
+/// By the sample's own motion: bounds of it depend on which other samples are candidates.
+btScalar PairSearch::reachOf(int sample, const SamplePosition& position) const {
+  const btScalar cube = now_.second->data().grid.spacing();
+  return std::min(kReachCubes * cube, kNearCubes * cube + now_.dt * velocityOf(sample, position).length());
+}
+
 /// The motion of the sample in the body's rest space.
 btVector3 PairSearch::restMotion(int sample, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
-  const EmbeddedPoint<btScalar>& point = now_.first->data().samples[static_cast<std::size_t>(sample)];
-  const btVector3 velocity =
-      point.velocity(velocitiesIn(*now_.first->body)) - now_.second->velocityAt(position.tet, position.weights);
+  const btVector3 velocity = velocityOf(sample, position);
   const DeformedTet& around = deformed(position.tet);
   const Tet& n = in.tets[static_cast<std::size_t>(position.tet)];
   btVector3 motion(0, 0, 0);
@@ -387,7 +457,7 @@ void PairSearch::makeTouch(int k, const SamplePosition& position) {
   if (!(length > SIMD_EPSILON)) return;
   Touch made;
   made.distance = found.distance / length;
-  if (made.distance > visited_.reach) return;
+  if (made.distance > position.reach) return;
   found.side.sample = sample;
   now_.sides->keep(found.side);
   made.sample = sample;

@@ -6,6 +6,7 @@
 
 #include <tetskin/contact/src/soft/contact_sides.h>
 #include <tetskin/contact/src/soft/pair_candidates.h>
+#include <tetskin/contact/src/soft/pair_motion.h>
 
 #include <cstdint>
 #include <vector>
@@ -44,12 +45,23 @@ struct TouchedSample {
 
 /// What a pair of bodies stores from step to step about the first one's samples in the second one.
 struct PairMemory {
-  PairCandidates candidates;
+  PairCandidates candidates;  ///< nothing depends on them but the time that a search takes
+  PairMotion motion;
   ContactSides sides;
   Overlap overlap;       ///< when the touches were searched for
   bool follows = false;  ///< they may be followed: that search had no direction in which the body was to leave
   std::vector<TouchedSample> touched;  ///< samples by which nodes have touched, ascending
   std::vector<int> pierced;            ///< samples that pierced the surface in the last step
+
+  /// True if the next step may follow the touches of this one.
+  bool mayFollow(const ContactBody& first, const ContactBody& second) const {
+    return follows && motion.goesOn(first, second);
+  }
+  /// touches   those of the last step
+  /// followed  whether they are saved: `mayFollow`
+  void visitState(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed);
+  /// True if all that it holds is of these bodies.
+  bool fits(const ContactBody& first, const ContactBody& second, const std::vector<Touch>& touches) const;
 };
 
 /// Finds the touches of pairs, one pair after the other; reuses its memory.
@@ -74,6 +86,7 @@ class PairSearch {
     btScalar weights[4] = {};
     btVector3 rest{0, 0, 0};
     GridDistance nearest;
+    btScalar reach = 0;  ///< distance from which on it cannot touch the surface within the step
   };
   struct Search {
     ContactBody* first;
@@ -104,6 +117,8 @@ class PairSearch {
   void touchRun();
   void makeTouch(int k, const SamplePosition& position);
   void accumulateOverlap(const btVector3& own, const Touch& touch);
+  btScalar reachOf(int sample, const SamplePosition& position) const;
+  btVector3 velocityOf(int sample, const SamplePosition& position) const;
   btVector3 restMotion(int sample, const SamplePosition& position);
   btVector3 ownNormal(int sample) const;
   bool chooseNormal(const btVector3& own, bool onFace, Touch& touch) const;

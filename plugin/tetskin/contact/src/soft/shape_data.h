@@ -38,6 +38,15 @@ constexpr btScalar kReachCubes = btScalar(1.5);
 /// Contacts whose gap the step will not close are left out, if the gap is larger than this many cubes.
 constexpr btScalar kNearCubes = btScalar(0.1);
 
+/// In cubes of the grid: a motion within a step so small that it is not worth finding out what part of it is relative.
+constexpr btScalar kStillCubes = btScalar(0.02);
+
+/// Least weight with which a point counts as inside a tet: rounding must lose no point between two tets, and just
+/// outside of the cage the surface is near.
+constexpr btScalar kMinWeight = btScalar(-0.02);
+/// How much farther than its nodes a point inside a tet can move: the sum of its weights' magnitudes.
+constexpr btScalar kInsideSpread = 1 - 6 * kMinWeight;
+
 /// The part of a tet that may hold something inside, or near it: where each weight is at least this. It has the shape
 /// of the tet, so that it deforms with it.
 struct TetSubregion {

@@ -125,6 +125,12 @@ void SoftContactRows::removeSoftBody(btSoftBody* body) {
   gone_.push_back(body);
 }
 
+void SoftContactRows::dropCandidates() {
+  for (auto& [ids, state] : pairStates_) {
+    for (PairMemory& memory : state.memories) memory.candidates.drop();
+  }
+}
+
 PointContacts* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads) {
   assert(seconds > 0);
   keepSleeping();

@@ -32,8 +32,14 @@ class SoftContactRows : public RowSource {
   const PointContacts& lastContacts() const { return contacts_; }
   const PointContacts& sleepingContacts() const { return sleeping_; }
 
+  /// Nothing depends on candidates but the time that a search takes.
+  void dropCandidates();
+
   PointContacts* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
+  /// Of the contacts of the last step, those between bodies that sleep are kept; others are as before a step.
+  void visitState(WorldStream& stream) override;
+  void checkState(WorldStream& stream) override;
 
  private:
   /// What two bodies, or one body with itself, store from step to step.
@@ -50,6 +56,12 @@ class SoftContactRows : public RowSource {
     PairState* state;
   };
   using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
+  void visitBodies(WorldStream& stream);
+  void visitPairs(WorldStream& stream);
+  void visitPair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
+  void visitSleeping(WorldStream& stream);
+  ContactBody* withId(int id) const;
+  bool mayBeFollowed(const ContactBody& body) const;
   void keepSleeping();
   BodyPairs overlappingPairs();
   void forgetAllBut(const BodyPairs& near);

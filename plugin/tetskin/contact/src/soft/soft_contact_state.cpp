@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What contacts among soft bodies remember from step to step, in a snapshot.
+#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/contact/src/soft/soft_contact_rows.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tetskin::contact_detail {
+namespace {
+
+void visitPoint(WorldStream& stream, CarriedPoint& point) {
+  stream(point.count);
+  if (point.count > kMaxPointNodes) {
+    point = {};
+    return stream.fail();
+  }
+  stream.plain(point.nodes.data(), point.count);
+  stream.plain(point.weights.data(), point.count);
+}
+
+void visitContact(WorldStream& stream, PointContact& contact) {
+  stream.object(contact.body);
+  stream.object(contact.object);
+  stream(contact.point);
+  stream(contact.sample);
+  visitPoint(stream, contact.at);
+  visitPoint(stream, contact.onObject);
+  stream(contact.position);
+  stream(contact.normal);
+  stream(contact.distance);
+  stream(contact.predicted);
+  stream(contact.friction);
+  stream(contact.impulse);
+}
+
+bool isBetweenSleepers(const PointContact& contact) {
+  return !contact.body->isActive() && !contact.object->isActive();
+}
+
+constexpr const char* kOtherBodies = "contacts among other soft bodies were there";
+
+}  // namespace
+
+void SoftContactRows::checkState(WorldStream& stream) {
+  stream.same(bodies_.size(), kOtherBodies);
+  std::uint64_t samples = 0, nodes = 0, tets = 0;
+  for (const auto& body : bodies_) {
+    samples += body->data().samples.size();
+    nodes += body->data().nodes.size();
+    tets += body->data().tets.size();
+  }
+  for (const std::uint64_t sum : {samples, nodes, tets}) stream.same(sum, kOtherBodies);
+}
+
+void SoftContactRows::visitState(WorldStream& stream) {
+  visitBodies(stream);
+  if (stream.failed()) return;
+  visitPairs(stream);
+  visitSleeping(stream);
+}
+
+/// The bodies get the order and the ids that they had: pairs are searched in this order, and ids tell directions.
+void SoftContactRows::visitBodies(WorldStream& stream) {
+  excludeDeleted();
+  stream.same(bodies_.size(), kOtherBodies);
+  stream(nextId_);
+  for (std::size_t k = 0; k < bodies_.size() && !stream.failed(); ++k) {
+    btSoftBody* named = bodies_[k]->body;
+    stream.object(named);
+    const auto found = std::find_if(bodies_.begin() + static_cast<std::ptrdiff_t>(k), bodies_.end(),
+                                    [&](const auto& body) { return body->body == named; });
+    if (found == bodies_.end()) return stream.refuse(kOtherBodies);
+    std::swap(bodies_[k], *found);
+    stream.same(bodies_[k]->data().samples.size(), "a soft body had another contact shape");
+    stream.same(bodies_[k]->data().tets.size(), "a soft body had another contact shape");
+    bodies_[k]->visitState(stream, stream.saving() && mayBeFollowed(*bodies_[k]));
+  }
+}
+
+bool SoftContactRows::mayBeFollowed(const ContactBody& body) const {
+  return std::any_of(pairStates_.begin(), pairStates_.end(), [&](const auto& entry) {
+    const auto [a, b] = entry.first;
+    if (a != body.id && b != body.id) return false;
+    const ContactBody &first = *withId(a), &second = *withId(b);
+    return entry.second.memories[0].mayFollow(first, second) || entry.second.memories[1].mayFollow(second, first);
+  });
+}
+
+ContactBody* SoftContactRows::withId(int id) const {
+  const auto found = std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& body) { return body->id == id; });
+  return found == bodies_.end() ? nullptr : found->get();
+}
+
+void SoftContactRows::visitPairs(WorldStream& stream) {
+  const std::size_t count = stream.length(pairStates_.size());
+  if (stream.saving()) {
+    for (auto& [key, state] : pairStates_) {
+      std::pair<int, int> ids = key;
+      stream(ids.first);
+      stream(ids.second);
+      visitPair(stream, ids, state);
+    }
+    return;
+  }
+  pairStates_.clear();
+  for (std::size_t k = 0; k < count && !stream.failed(); ++k) {
+    std::pair<int, int> ids;
+    stream(ids.first);
+    stream(ids.second);
+    visitPair(stream, ids, pairStates_[ids]);
+  }
+}
+
+void SoftContactRows::visitPair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state) {
+  const ContactBody *first = withId(ids.first), *second = withId(ids.second);
+  if (!first || !second) return stream.fail();
+  stream(state.apart);
+  int within = !state.within ? -1 : state.within->id;
+  stream(within);
+  state.within = within < 0 ? nullptr : withId(within);
+  for (int k = 0; k < (first == second ? 1 : 2); ++k) {
+    const ContactBody &of = k == 0 ? *first : *second, &in = k == 0 ? *second : *first;
+    PairMemory& memory = state.memories[k];
+    memory.visitState(stream, state.touches[k], memory.mayFollow(of, in));
+    if (!memory.fits(of, in, state.touches[k])) stream.fail();
+  }
+}
+
+/// Sleeping bodies have no other contacts.
+void SoftContactRows::visitSleeping(WorldStream& stream) {
+  PointContacts sleeping;
+  if (stream.saving()) {
+    for (const PointContacts* contacts : {&sleeping_, &contacts_}) {
+      std::copy_if(contacts->begin(), contacts->end(), std::back_inserter(sleeping), isBetweenSleepers);
+    }
+  }
+  stream.each(sleeping, [&](PointContact& contact) { visitContact(stream, contact); });
+  if (!stream.restoring()) return;
+  const bool known = std::all_of(sleeping.begin(), sleeping.end(), [](const PointContact& contact) {
+    return contact.body && contact.object && btSoftBody::upcast(contact.object);
+  });
+  contacts_.clear();
+  sleeping_.clear();
+  if (!known) return stream.fail();
+  sleeping_ = sleeping;
+}
+
+}  // namespace tetskin::contact_detail
