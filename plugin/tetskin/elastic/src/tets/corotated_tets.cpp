@@ -130,7 +130,7 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
 template <class S>
 template <class Kernel>
 void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   runTasks(threads, findings_.size(), [&](std::size_t task) {
     if (task < linear_.tasks) {
       kernel(work(linear_, task), table.linear, task);
@@ -169,7 +169,7 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
     cornerForces(points, out, false, nullptr);
     return;
   }
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   cornerForces(points, nullptr, false, threads);
   runTasks(threads, std::max<std::size_t>(1, tasksFor(slots_, kSlotsPerTask)), [&](std::size_t task) {
     kernels::SumWork<S> work;
