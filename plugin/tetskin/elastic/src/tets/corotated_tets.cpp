@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/base/lists.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
@@ -205,7 +206,7 @@ double CorotatedTets<S>::meanTurn() const {
 
 template <class S>
 double CorotatedTets<S>::maxTurn() const {
-  return 4.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
+  return 4.0 * arcSine(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
 }
 
 template <class S>
