@@ -10,6 +10,7 @@
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
+#include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/median.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
@@ -114,7 +115,7 @@ Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   constexpr double kMaxBodyLengths = 1e6;
   double volume = 0.0;
   for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
-  const double size = std::cbrt(volume), length = static_cast<double>(gravity.length());
+  const double size = cubeRoot(volume), length = static_cast<double>(gravity.length());
   if (length <= kMaxBodyLengths * size) return {};
   char text[160];
   std::snprintf(text, sizeof text,

@@ -30,6 +30,7 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
   setGravity(options.gravity);
   setUseProjection(true);
   impl_->deformableSolver.setThreads(options.threads);
+  impl_->deformableSolver.setDeterministic(options.deterministic);
 }
 
 DeformableWorld::~DeformableWorld() = default;

@@ -87,6 +87,7 @@ struct ElasticBody<Scalar>::Impl {
     dynamics.setMaterial(elastic_detail::lameOf(options.youngsModulus, options.poissonRatio));
     dynamics.setDamping(options.stiffnessDamping);
     dynamics.setStaggered(true);
+    dynamics.setDeterministic(options.deterministic);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);
       double total = 0.0;

@@ -3,6 +3,7 @@
 #include <LinearMath/btTransformUtil.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/rows/kinematic_paths.h>
+#include <tetskin/core/src/base/arithmetic/turns.h>
 
 #include <algorithm>
 #include <cassert>
@@ -30,9 +31,12 @@ btScalar sineBetween(const btTransform& from, const btTransform& to) {
 btQuaternion between(const btQuaternion& from, const btQuaternion& to, btScalar fraction) {
   constexpr btScalar kStraight = btScalar(0.9999);  // cosine of half the angle up to which the arc is straight
   const btScalar cosine = from.dot(to);
-  if (btFabs(cosine) < kStraight) return from.slerp(to, fraction);
   const btQuaternion end = cosine < 0 ? -to : to;
-  return (from + (end - from) * fraction).normalized();
+  if (btFabs(cosine) >= kStraight) return (from + (end - from) * fraction).normalized();
+  const double angle = 2.0 * arcSine(std::min(1.0, 0.5 * static_cast<double>((end - from).length())));
+  const double part = static_cast<double>(fraction), sine = sineAndCosine(angle).sine;
+  return from * static_cast<btScalar>(sineAndCosine((1.0 - part) * angle).sine / sine) +
+         end * static_cast<btScalar>(sineAndCosine(part * angle).sine / sine);
 }
 
 /// Seconds in which the body's velocity takes it from one transform to the other; 0 if it does not.

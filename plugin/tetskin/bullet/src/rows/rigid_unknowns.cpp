@@ -5,6 +5,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/rows/rigid_unknowns.h>
+#include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/cross_matrix.h>
 
 #include <Eigen/Geometry>
@@ -51,7 +52,10 @@ Eigen::MatrixXd inverseMassOf(btMultiBody& body) {
 btVector3 bend(const btVector3& turning, const btVector3& arm, btScalar seconds) {
   const btScalar rate = turning.length();
   if (!(rate * seconds > SIMD_EPSILON)) return {0, 0, 0};
-  const btVector3 turned = quatRotate(btQuaternion(turning / rate, rate * seconds), arm);
+  const SineAndCosine half = sineAndCosine(static_cast<double>(rate * seconds) / 2);
+  const btVector3 part = turning * (static_cast<btScalar>(half.sine) / rate);
+  const btQuaternion turn(part.x(), part.y(), part.z(), static_cast<btScalar>(half.cosine));
+  const btVector3 turned = quatRotate(turn, arm);
   return (turned - arm) / seconds - turning.cross(arm);
 }
 

@@ -25,6 +25,9 @@ DeformableSolver::~DeformableSolver() = default;
 void DeformableSolver::setThreads(ParallelFor* threads) {
   impl_->threads = threads;
 }
+void DeformableSolver::setDeterministic(bool on) {
+  impl_->deterministic = on;
+}
 void DeformableSolver::setNodeNormals(bool on) {
   impl_->nodeNormals = on;
 }

@@ -216,6 +216,7 @@ void DeformableSolver::Impl::predict() {
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     if (!continuesLastStep(body)) body.dynamics->forget();
     readNodes(*body.body, *body.dynamics);
+    body.dynamics->setDeterministic(deterministic);
     staggerHeld(body, dt());
   });
   for (SolvedBody& body : bodies.bodies()) prepareSearch(body);

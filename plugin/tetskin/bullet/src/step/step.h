@@ -120,6 +120,7 @@ struct DeformableSolver::Impl {
   std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
   RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;
+  bool deterministic = false;
   bool nodeNormals = true;
   bool always = false;  ///< see DeformableSolver::requireOwnSolve
   bool solving = true;  ///< value for this step

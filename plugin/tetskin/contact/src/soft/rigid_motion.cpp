@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btQuaternion.h>
 #include <tetskin/contact/src/soft/rigid_motion.h>
+#include <tetskin/core/src/base/arithmetic/turns.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,9 @@ void RigidMotion::turn(const btVector3& moment, const btMatrix3x3& inertia) {
   const btVector3 turns = regular.inverse() * moment;  // the sine of the angle, along the axis
   const btScalar sine = turns.length();
   if (!(sine > kMinAngle)) return;
-  rotation_.setRotation(btQuaternion(turns / sine, std::asin(std::min(sine, btScalar(1)))));
+  const SineAndCosine half = sineAndCosine(0.5 * arcSine(std::min(static_cast<double>(sine), 1.0)));
+  const btVector3 part = turns * (static_cast<btScalar>(half.sine) / sine);
+  rotation_.setRotation(btQuaternion(part.x(), part.y(), part.z(), static_cast<btScalar>(half.cosine)));
   turns_ = true;
 }
 

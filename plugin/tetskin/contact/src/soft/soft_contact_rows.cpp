@@ -3,6 +3,7 @@
 #include <tetskin/bullet/src/base/contact_filter.h>
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
+#include <tetskin/core/src/base/arithmetic/turns.h>
 
 #include <algorithm>
 #include <cassert>
@@ -67,10 +68,10 @@ bool isMostlyWithin(const ContactBody& body, const Overlap& overlap) {
 btVector3 directionOf(int id) {
   // In radians; and the golden section.
   constexpr double kGoldenAngle = 2.39996322972865332, kGoldenPart = 0.61803398874989485;
-  const double y = 2.0 * std::fmod(kGoldenPart * id, 1.0) - 1.0, angle = kGoldenAngle * id;
-  const double radius = std::sqrt(1.0 - y * y);
-  return {static_cast<btScalar>(radius * std::cos(angle)), static_cast<btScalar>(y),
-          static_cast<btScalar>(radius * std::sin(angle))};
+  const double y = 2.0 * std::fmod(kGoldenPart * id, 1.0) - 1.0, radius = std::sqrt(1.0 - y * y);
+  const SineAndCosine turned = sineAndCosine(kGoldenAngle * (id % 100000));
+  return {static_cast<btScalar>(radius * turned.cosine), static_cast<btScalar>(y),
+          static_cast<btScalar>(radius * turned.sine)};
 }
 
 }  // namespace

@@ -156,12 +156,23 @@ struct ElasticTable {
 TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const ElasticTable<float> elasticFloat;
                                  extern const ElasticTable<double> elasticDouble;)
 
+// The same bits on every processor: as wide as AVX2's, but without fused multiply-adds.
+namespace unfused {
+extern const ElasticTable<float> elasticFloat;
+extern const ElasticTable<double> elasticDouble;
+}  // namespace unfused
+namespace unfused_avx2 {
+extern const ElasticTable<float> elasticFloat;
+extern const ElasticTable<double> elasticDouble;
+}  // namespace unfused_avx2
+
 /// The table for the processor's `instructionSet()`.
+/// deterministic  one of those with the same bits whatever the processor, unless the compiler has no vector types
 template <class S>
-const ElasticTable<S>& elasticInUse();
+const ElasticTable<S>& elasticInUse(bool deterministic);
 template <>
-const ElasticTable<float>& elasticInUse();
+const ElasticTable<float>& elasticInUse(bool deterministic);
 template <>
-const ElasticTable<double>& elasticInUse();
+const ElasticTable<double>& elasticInUse(bool deterministic);
 
 }  // namespace tetskin::kernels

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/cross_matrix.h>
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 
@@ -40,7 +41,12 @@ Matrix3d inertiaOf(const Matrix3d& turn, const Matrix3d& spread) {
 
 Matrix3d rotationBy(const Vector3d& angle) {
   const double size = angle.norm();
-  return size > 0.0 ? Eigen::AngleAxisd(size, angle / size).toRotationMatrix() : Matrix3d::Identity();
+  if (!(size > 0.0)) return Matrix3d::Identity();
+  const SineAndCosine half = sineAndCosine(0.5 * size);
+  Eigen::Quaterniond rotation;
+  rotation.w() = half.cosine;
+  rotation.vec() = half.sine / size * angle;
+  return rotation.toRotationMatrix();
 }
 
 /// The smallest rotation that takes one unit vector to the other. Eigen's own brings half a singular value
@@ -82,7 +88,7 @@ Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
 Matrix3d turnAround(const Vector3d& axis, double moment, const Matrix3d& spread) {
   const double sine = moment / axis.dot(inertiaOf(Matrix3d::Identity(), spread) * axis);
   if (!std::isfinite(sine)) return Matrix3d::Identity();
-  return rotationBy(std::asin(std::clamp(sine, -kMaxSineOfTurn, kMaxSineOfTurn)) * axis);
+  return rotationBy(arcSine(std::clamp(sine, -kMaxSineOfTurn, kMaxSineOfTurn)) * axis);
 }
 
 void keep(const Vector3d& v, double out[3]) {
@@ -198,7 +204,9 @@ RigidVelocity ComponentMotion::velocities(double seconds) const {
 Vector3d ComponentMotion::anchor() const {
   const double spread = mass_ > 0.0 ? std::sqrt(second_.trace() / mass_) : 0.0;
   if (!(spread > 0.0)) return about_;
-  const double grid = std::exp2(std::ceil(std::log2(spread)));
+  int exponent = 0;
+  static_cast<void>(std::frexp(spread, &exponent));
+  const double grid = std::ldexp(1.0, exponent);  // a power of two
   return grid * (about_ / grid).array().round().matrix();
 }
 

@@ -101,6 +101,14 @@ void BodyDynamics<S>::setDamping(double damping) {
 }
 
 template <class S>
+void BodyDynamics<S>::setDeterministic(bool on) {
+  changed_ |= on != deterministic_;
+  deterministic_ = on;
+  matrix_.setDeterministic(on);
+  if (tets_) tets_->setDeterministic(on);
+}
+
+template <class S>
 void BodyDynamics<S>::setMass(std::size_t node, S mass) {
   assert(!(mass < S(0)));
   const S before = matrix_.mass(node);

@@ -54,6 +54,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void setMaterial(const Lame& lame);
   /// damping  seconds
   void setDamping(double damping);
+  /// Whether each step has the same bits on every processor; see `elasticInUse`.
+  void setDeterministic(bool on);
   /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
   void setPressed(bool pressed) { pressed_ = pressed; }
   /// Whether the body had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
@@ -196,7 +198,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
-  bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false;
+  bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false, deterministic_ = false;
   bool remembered_ = false;  ///< the last step
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
   /// each time that it bounces.

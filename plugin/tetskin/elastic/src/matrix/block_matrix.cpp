@@ -129,7 +129,7 @@ double BlockMatrix<S>::summed() const {
 template <class S>
 void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads) {
   assert(corners || pattern_.neighbours.empty());
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.corners = corners;
@@ -302,7 +302,7 @@ void BlockMatrix<S>::fixAlong(std::size_t node, const S n[3]) {
 template <class S>
 void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) const {
   assert(points && wide);
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.stepPoints = const_cast<S*>(points);
@@ -313,7 +313,7 @@ void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) co
 
 template <class S>
 double BlockMatrix<S>::lowerInto(S* wide, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.rest = wide;
@@ -336,7 +336,7 @@ template <class S>
 void BlockMatrix<S>::multiplyDifference(const S* first, const S* second, S* difference, S* image,
                                         ParallelFor* threads) {
   assert(first && difference && image);
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   everywhere(threads, [&](std::size_t, std::size_t firstChunk, std::size_t lastChunk) {
     auto part = work(firstChunk, lastChunk);
     part.first = first;
@@ -350,7 +350,7 @@ void BlockMatrix<S>::multiplyDifference(const S* first, const S* second, S* diff
 template <class S>
 double BlockMatrix<S>::inner(const S* first, const S* second, ParallelFor* threads) const {
   assert(first && second);
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   everywhere(threads, [&](std::size_t range, std::size_t firstChunk, std::size_t lastChunk) {
     auto part = work(firstChunk, lastChunk);
     part.first = first;
@@ -362,7 +362,7 @@ double BlockMatrix<S>::inner(const S* first, const S* second, ParallelFor* threa
 
 template <class S>
 void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   backwards(threads, [&](std::size_t, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.factor = factor;
@@ -372,7 +372,7 @@ void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
 
 template <class S>
 double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.extra = extra;
@@ -388,7 +388,7 @@ void BlockMatrix<S>::clear() {
 
 template <class S>
 double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   everywhere(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
     part.factor = factor;

@@ -75,6 +75,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void setMass(std::size_t node, S mass) { masses_[slotOf(node)] = mass; }
   double totalMass() const;
 
+  /// See `elasticInUse`.
+  void setDeterministic(bool on) { deterministic_ = on; }
+
   /// corners  see CorotatedTets::cornersForMatrix; null: without tets, so that A = M
   /// ratio    lambda / mu
   void assemble(const S* corners, S ratio, ParallelFor* threads);
@@ -138,6 +141,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void backwards(ParallelFor* threads, Kernel&& kernel) const;
   double lowerInto(S* wide, ParallelFor* threads);
   double summed() const;
+
+  bool deterministic_ = false;
   void setInverse(std::size_t slot, const S inverse[6]);
   /// Index of the first scalar of the block of two slots, which is one of nine per lane of a group.
   std::optional<std::size_t> blockOf(std::size_t slot, std::size_t neighbour) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/base/lists.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
@@ -137,7 +138,7 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
 template <class S>
 template <class Kernel>
 void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   runTasks(threads, findings_.size(), [&](std::size_t task) {
     if (task < linear_.tasks) {
       kernel(work(linear_, task), table.linear, task);
@@ -176,7 +177,7 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
     cornerForces(points, out, false, nullptr);
     return;
   }
-  const auto& table = kernels::elasticInUse<S>();
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
   cornerForces(points, nullptr, false, threads);
   runTasks(threads, std::max<std::size_t>(1, tasksFor(slots_, kSlotsPerTask)), [&](std::size_t task) {
     kernels::SumWork<S> work;
@@ -212,7 +213,7 @@ double CorotatedTets<S>::meanTurn() const {
 
 template <class S>
 double CorotatedTets<S>::maxTurn() const {
-  return 4.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
+  return 4.0 * arcSine(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
 }
 
 template <class S>

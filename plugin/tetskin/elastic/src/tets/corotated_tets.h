@@ -26,6 +26,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   const RestTets& rest() const { return rest_; }
 
   void setMaterial(const Lame& lame);
+  /// See `elasticInUse`.
+  void setDeterministic(bool on) { deterministic_ = on; }
 
   /// Elastic forces at `points`, both 4 scalars per slot; updates the tets' rotations.
   void forces(const S* points, S* out, ParallelFor* threads);
@@ -86,6 +88,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   AlignedVector<S> corners_;                             ///< see RestTets
   std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot: those that get forces
   std::size_t slots_ = 0;
+  bool deterministic_ = false;
   const S* points_ = nullptr;  ///< of the last `forces`
   S ratio_ = 0;
   S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: it has no such value

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/types.h>
 
 #include <cassert>
@@ -57,7 +58,7 @@ Status checkStiffness(double youngsModulus, double damping, double mass, double 
   // Seconds. Damping adds stiffness times damping over the step to the matrix; the limit was tested in steps of this
   // length.
   constexpr double kLongStep = 1.0 / 60.0;
-  const double size = std::cbrt(volume), density = mass / volume;
+  const double size = cubeRoot(volume), density = mass / volume;
   const double maximum = kMaxStiffness<Scalar> * density * size * size / (1.0 + damping / kLongStep);
   if (!(mass > 0.0 && volume > 0.0) || youngsModulus <= maximum) return {};
   char text[256];
