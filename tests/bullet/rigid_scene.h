@@ -108,7 +108,7 @@ class RigidScene {
 
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btTriangleMesh>> meshes_;
-  DeformableWorld world;
+  tetskin::DeformableWorld world;
   std::vector<std::unique_ptr<btRigidBody>> bodies;
   std::vector<std::unique_ptr<btTypedConstraint>> joints;
   std::vector<std::unique_ptr<btMultiBody>> multibodies;

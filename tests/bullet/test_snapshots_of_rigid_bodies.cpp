@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(, SnapshotsOfRigidBodies,
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 TEST(SnapshotsOfRigidWorlds, OfAnEmptyWorldChangeNothing) {
-  DeformableWorld world;
+  tetskin::DeformableWorld world;
   const Snapshot snapshot = saved(world);
   EXPECT_TRUE(world.restore(snapshot.data(), snapshot.size()).ok());
   EXPECT_EQ(saved(world), snapshot);

@@ -22,8 +22,12 @@ class Hanging : public ReplayedScene {
     const auto time = btScalar(0.2) * static_cast<btScalar>(number);
     EXPECT_EQ(spring_->setTarget(target_ + btScalar(0.1) * btVector3(std::sin(time), 0, std::cos(time))),
               StatusCode::Ok);
-    if (number == 10) EXPECT_EQ(spring_->setStiffness(30), StatusCode::Ok);
-    if (!weld_ && number % 5 == 0) EXPECT_EQ(low_.applyForce(btVector3(3, 0, 0), 16), StatusCode::Ok);
+    if (number == 10) {
+      EXPECT_EQ(spring_->setStiffness(30), StatusCode::Ok);
+    }
+    if (!weld_ && number % 5 == 0) {
+      EXPECT_EQ(low_.applyForce(btVector3(3, 0, 0), 16), StatusCode::Ok);
+    }
     step(*world_, 1);
   }
 

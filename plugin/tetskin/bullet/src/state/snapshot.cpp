@@ -110,6 +110,7 @@ Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t s
   WorldStream stream = bytes ? WorldStream(saved, bytes + (room > 0 ? begin : 0), room) : WorldStream(saved);
   Header header;
   WorldDirectory(saved).visit(stream);
+  checkForces(stream, *solver);
   header.ends[0] = stream.count();
   for (std::size_t k = 0; k < kPartCount; ++k) {
     kParts[k](stream, *solver);
@@ -141,12 +142,21 @@ Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
   WorldStream stream(world, bytes + Header::bytes(), static_cast<std::size_t>(header.length));
   WorldDirectory directory;
   directory.visit(stream);
-  if (stream.failed() || stream.count() != header.ends[0]) return malformed("its list of objects does not end");
-  status = directory.find(world);
+  if (stream.failed()) return malformed("its list of objects does not end");
+  WorldDirectory now(world);
+  status = directory.find(now);
   if (!status.ok()) return status;
+  directory.order(world);
+  checkForces(stream, *solver);
+  if (stream.failed() || stream.count() != header.ends[0]) {
+    // The lists go back to the order that they have had.
+    [[maybe_unused]] const Status found = now.find(WorldDirectory(world));
+    assert(found.ok());
+    now.order(world);
+    return {StatusCode::SnapshotMismatch, "the snapshot is of another world: " + stream.refusal()};
+  }
 
   removePairs(stream);
-  directory.order(world);
   for (std::size_t k = 0; k < kPartCount; ++k) {
     kParts[k](stream, *solver);
     if (stream.failed() || stream.count() != header.ends[k + 1]) {

@@ -47,7 +47,7 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
   for (int b = 0; b < bodies.size() && !stream.failed(); ++b) {
     stream.same(bodies[b]->m_nodes.size(), "a soft body had another number of nodes");
     stream.same(bodies[b]->m_deformableAnchors.size(), "a soft body had another number of anchors");
-    if (bodies[b]->m_reducedModel) stream.refuse("a reduced body cannot be saved");
+    if (bodies[b]->m_reducedModel) stream.refuse("a reduced body");
   }
 }
 

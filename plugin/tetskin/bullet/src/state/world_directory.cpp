@@ -274,8 +274,7 @@ bool WorldDirectory::listsFit() const {
          static_cast<std::size_t>(std::count_if(objects_.begin(), objects_.end(), soft)) == softs_.size();
 }
 
-Status WorldDirectory::find(World& world) {
-  WorldDirectory now(world);
+Status WorldDirectory::find(WorldDirectory now) {
   const bool all = findById(now);
   bool same = all && objects_.size() == now.objects_.size();
   for (std::size_t k = 0; same && k < objects_.size(); ++k) same = isSame(now, k);

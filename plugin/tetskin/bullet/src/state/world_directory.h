@@ -21,9 +21,10 @@ class WorldDirectory {
 
   void visit(WorldStream& stream);
 
-  /// Finds its objects in a world: by their ids if all are there, else by their order. Changes nothing.
+  /// Finds its objects among those of a world: by their ids if all are there, else by their order.
+  /// now     of the world
   /// Errors  SnapshotMismatch, with the name of the first object that is missing, another one, or not in here
-  Status find(btDeformableMultiBodyDynamicsWorld& world);
+  Status find(WorldDirectory now);
   /// After `find`: gives the world's lists the order that they had when it was saved.
   void order(btDeformableMultiBodyDynamicsWorld& world) const;
 

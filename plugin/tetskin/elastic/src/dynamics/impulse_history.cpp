@@ -104,13 +104,13 @@ void ImpulseHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S
 }
 
 template <class S>
-void ImpulseHistory<S>::visitState(StateStream& stream, std::size_t wideSize) {
+void ImpulseHistory<S>::visitState(StateStream& stream, const BlockMatrix<S>& matrix) {
   stream(seconds_);
   stream(calm_);
   for (AlignedVector<S>* v : {&mean_, &last_}) {
-    if (stream.restoring()) v->resize(wideSize);
-    assert(v->size() == wideSize);
-    stream.plain(v->data(), wideSize);
+    if (stream.restoring()) v->resize(matrix.wideSize());
+    assert(v->size() == matrix.wideSize());
+    matrix.visitWide(stream, v->data());
   }
 }
 

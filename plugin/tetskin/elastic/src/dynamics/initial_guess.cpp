@@ -127,10 +127,10 @@ void InitialGuess<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
   stream(known);
   if (stream.restoring()) known_ = std::min(known, 2u);
   if (!used_) return;
-  stream.plain(matrix.solution(), matrix.wideSize());
+  matrix.visitWide(stream, matrix.solution());
   const auto visit = [&](Wide& solution) {
     if (stream.restoring()) solution.resize(matrix.wideSize());
-    stream.plain(solution.data(), solution.size());
+    matrix.visitWide(stream, solution.data());
   };
   if (known_ > 0) visit(last_);
   if (known_ > 1) visit(before_);

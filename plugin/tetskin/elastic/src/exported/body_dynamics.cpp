@@ -640,7 +640,7 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
   if (!known) return;
   stream(length_);
   stream(near_);
-  history_.visitState(stream, matrix_.wideSize());
+  history_.visitState(stream, matrix_);
 }
 
 template <class S>

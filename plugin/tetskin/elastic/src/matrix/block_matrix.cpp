@@ -76,6 +76,18 @@ kernels::RowWork<S> BlockMatrix<S>::work(std::size_t firstChunk, std::size_t las
 }
 
 template <class S>
+void BlockMatrix<S>::visitWide(StateStream& stream, S* wide) const {
+  if (stream.restoring()) std::fill(wide, wide + wideSize(), S(0));
+  for (const std::uint32_t slot : pattern_.slotOf) {
+    S* at = wide + wideOfSlot(slot);
+    S values[3] = {at[0], at[kernels::kGroup], at[2 * kernels::kGroup]};
+    stream.plain(values, 3);
+    if (!stream.restoring()) continue;
+    for (std::size_t k = 0; k < 3; ++k) at[k * kernels::kGroup] = values[k];
+  }
+}
+
+template <class S>
 double BlockMatrix<S>::totalMass() const {
   return std::accumulate(masses_.begin(), masses_.end(), 0.0);
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <tetskin/core/parallel_for.h>
+#include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
@@ -65,6 +66,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
     return slot / kernels::kGroup * kernels::kWideVector + slot % kernels::kGroup;
   }
   std::size_t wideSize() const { return pattern_.chunkCount() * kernels::kWideVector; }
+  /// A vector in the wide layout, by node: what is in lanes without a node is not defined, and 0 after reading.
+  void visitWide(StateStream& stream, S* wide) const;
 
   /// Masses by slot; 0: pinned. They take effect at the next assembly.
   S mass(std::size_t node) const { return masses_[slotOf(node)]; }
