@@ -6,20 +6,14 @@
 #include <tetskin/tetskin.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-#ifdef _WIN32
-#include <process.h>
-#else
-#include <sys/wait.h>
-#include <unistd.h>
-#endif
 
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
+#include "scenes/system.h"
 
 namespace {
 
@@ -43,44 +37,26 @@ Call callOf(const std::string& file) {
   }
 }
 
-/// Runs a program; returns its exit status.
-int runProgram(const std::string& path, const std::vector<std::string>& arguments) {
-  std::vector<char*> raw;
-  raw.push_back(const_cast<char*>(path.c_str()));
-  for (const std::string& argument : arguments) raw.push_back(const_cast<char*>(argument.c_str()));
-  raw.push_back(nullptr);
-  std::fflush(stdout);
-#ifdef _WIN32
-  const std::intptr_t status = _spawnv(_P_WAIT, path.c_str(), raw.data());
-  if (status < 0) throw InputError(path + ": cannot be run; build the demos");
-  return static_cast<int>(status);
-#else
-  const pid_t child = fork();
-  if (child == 0) {
-    execv(path.c_str(), raw.data());
-    std::_Exit(127);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return kRunFailed;
-  if (WEXITSTATUS(status) == 127) throw InputError(path + ": cannot be run; build the demos");
-  return WEXITSTATUS(status);
-#endif
-}
-
 int replay(const std::string& folder, const std::string& file, bool quiet) {
   const Call call = callOf(file);
   const std::filesystem::path name = std::filesystem::path(call.program).filename();  // never one from elsewhere
   if (name.string().rfind("tetskin_", 0) != 0) throw InputError(file + ": names no demo");
-  std::vector<std::string> arguments = call.arguments;
-  std::string line = call.program;
-  for (const std::string& argument : arguments) line += " " + argument;
-  if (!quiet) std::printf("%s\n", line.c_str());
+  std::vector<std::string> command = {(std::filesystem::path(folder) / name).string()};
+  command.insert(command.end(), call.arguments.begin(), call.arguments.end());
+  if (!quiet) {
+    std::printf("%s", call.program.c_str());
+    for (const std::string& argument : call.arguments) std::printf(" %s", argument.c_str());
+    std::printf("\n");
+  }
   if (call.version != TETSKIN_VERSION) {
     std::printf("recorded with tetskin %s, played with %s: steps may differ\n", call.version.c_str(), TETSKIN_VERSION);
   }
-  arguments.insert(arguments.end(), {"--replay", file});
-  if (quiet) arguments.emplace_back("--quiet");
-  return runProgram((std::filesystem::path(folder) / name).string(), arguments);
+  std::fflush(stdout);
+  command.insert(command.end(), {"--replay", file});
+  if (quiet) command.emplace_back("--quiet");
+  const int status = runCommand(command);
+  if (status < 0) throw InputError(command[0] + ": cannot be run; build the demos");
+  return status;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr const char* kProgram = TETSKIN_PLOTS "/error_vs_time.py";
 /// The first Python with matplotlib: the one in the path may differ from the system's, which has the package.
 std::string pythonWithMatplotlib() {
   for (const char* python : {"python3", "/usr/bin/python3"}) {
-    if (scenes::runCommand({python, "-c", "import matplotlib"}, true)) return python;
+    if (scenes::runCommand({python, "-c", "import matplotlib"}, true) == 0) return python;
   }
   return {};
 }
@@ -42,7 +42,7 @@ void makeTablesAndPlots(const ReportOptions& options) {
     return;
   }
   std::fflush(stdout);
-  if (!scenes::runCommand(command))
+  if (scenes::runCommand(command) != 0)
     std::fprintf(stderr, "tetskin_error_vs_time: warning: %s failed; tables or plots are missing\n", kProgram);
 }
 

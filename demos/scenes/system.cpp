@@ -82,7 +82,7 @@ bool mayWriteInto(const std::filesystem::path& folder) {
   return std::filesystem::is_directory(folder, error);
 }
 
-bool runCommand(const std::vector<std::string>& command, bool silent) {
+int runCommand(const std::vector<std::string>& command, bool silent) {
   assert(!command.empty());
   int kept[2] = {-1, -1};
   const int nowhere = silent ? _open("NUL", _O_WRONLY) : -1;
@@ -99,7 +99,7 @@ bool runCommand(const std::vector<std::string>& command, bool silent) {
     _close(kept[stream - 1]);
   }
   if (nowhere >= 0) _close(nowhere);
-  return status == 0;
+  return static_cast<int>(status);
 }
 
 #else
@@ -112,7 +112,7 @@ bool mayWriteInto(const std::filesystem::path& folder) {
   return access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
-bool runCommand(const std::vector<std::string>& command, bool silent) {
+int runCommand(const std::vector<std::string>& command, bool silent) {
   assert(!command.empty());
   std::vector<char*> arguments = argumentsOf(command);
   posix_spawn_file_actions_t actions;
@@ -124,11 +124,11 @@ bool runCommand(const std::vector<std::string>& command, bool silent) {
   const int error = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
-  if (error != 0) return false;
+  if (error != 0) return -1;
   while (waitpid(process, &status, 0) < 0) {
-    if (errno != EINTR) return false;
+    if (errno != EINTR) return -1;
   }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 #endif

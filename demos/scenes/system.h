@@ -23,8 +23,9 @@ std::size_t lastLevelCacheBytes();
 /// Paths of this program and of the shared libraries of tetskin and Bullet that it has loaded; empty where the system
 /// does not tell.
 std::vector<std::string> loadedCode();
-/// Runs a command found in the path, and waits for it; returns true if it succeeded.
+/// Runs a command found in the path, and waits for it. Returns its exit status; below 0: it could not be run, or was
+/// killed.
 /// silent  without its output
-bool runCommand(const std::vector<std::string>& command, bool silent = false);
+int runCommand(const std::vector<std::string>& command, bool silent = false);
 
 }  // namespace tetskin::scenes

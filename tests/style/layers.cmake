@@ -1,11 +1,11 @@
 # Includes have one direction: from a library to core, from bullet to elastic, contact, touch and reduced to bullet, and
 # inside a library from a stage to itself and to earlier ones; its own files, in src/ itself, come last. Of another
 # library, only public headers, and those in its src/base (the ground) and src/exported (the roof), may be included.
-set(core_stages base base/state base/bvh base/mesh base/kernels base/embedding kernels search embedding skinning normals exported)
+set(core_stages base base/arithmetic base/state base/bvh base/mesh base/kernels base/embedding kernels search embedding skinning normals exported)
 set(cage_stages surface lattice material split fit fill)
 set(io_stages text mesh tets animation)
 set(elastic_stages base kernels tets matrix modes calibration dynamics exported)
-set(bullet_stages base bodies skins forces search rows motion system step state exported)
+set(bullet_stages base bodies skins forces search rows motion system step state record exported)
 set(contact_stages rigid soft)
 set(touch_stages points rows joints tree)
 set(reduced_stages modes bodies)

@@ -80,8 +80,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 
   /// Whether steps have the same bits, to the last one, on every processor, with every compiler and at every level of
   /// optimisation, from the next step on; off by default. Costs some percent of a step: nothing is computed by fused
-  /// multiply-adds or the C library then. Holds where compilers have vector types (GCC, clang, Emscripten; not MSVC, and
-  /// not with TETSKIN_PORTABLE), in one precision of Bullet, where Bullet is compiled without contraction
+  /// multiply-adds or the C library then. Holds where compilers have vector types (GCC, clang, Emscripten; not MSVC,
+  /// and not with TETSKIN_PORTABLE), in one precision of Bullet, where Bullet is compiled without contraction
   /// (-ffp-contract=off) and without its own vector code; see the guide.
   void setDeterministic(bool on);
 
@@ -131,7 +131,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 struct DeformableWorldOptions {
   btVector3 gravity{0, btScalar(-9.81), 0};  ///< world length / s^2
   ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
-  bool deterministic = false;  ///< see `DeformableSolver::setDeterministic`
+  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`
 };
 
 /// Internal to DeformableWorld: the objects that a world needs, as a base class so that they are destroyed after it.

@@ -4,7 +4,8 @@
 #include <tetskin/elastic/src/base/elastic_kernels.h>
 
 #ifdef TETSKIN_X86_KERNELS
-#define TETSKIN_RETURN_UNFUSED(name) return instructionSet() >= InstructionSet::Avx2 ? unfused_avx2::name : unfused::name
+#define TETSKIN_RETURN_UNFUSED(name) \
+  return instructionSet() >= InstructionSet::Avx2 ? unfused_avx2::name : unfused::name
 #elif defined(TETSKIN_VECTOR_KERNELS)
 #define TETSKIN_RETURN_UNFUSED(name) return unfused::name
 #else

@@ -8,8 +8,8 @@
 #pragma once
 
 #include <tetskin/core/parallel_for.h>
-#include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/core/src/base/aligned.h>
+#include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
