@@ -19,7 +19,6 @@
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 #ifdef TETSKIN_HAS_BULLET
 #include <tetskin/bullet/deformable_body.h>

@@ -9,7 +9,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <btBulletCollisionCommon.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/types.h>
 
 #include <cstddef>
 #include <memory>

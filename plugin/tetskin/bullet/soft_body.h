@@ -10,7 +10,6 @@
 #include <LinearMath/btThreads.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 
 #include <cassert>

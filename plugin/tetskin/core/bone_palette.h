@@ -3,7 +3,6 @@
 #pragma once
 
 #include <tetskin/core/mesh_skin.h>
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 
 #include <array>

@@ -4,7 +4,6 @@
 
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 
 #include <limits>

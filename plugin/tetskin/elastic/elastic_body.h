@@ -5,7 +5,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
-#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/types.h>
 
 #include <array>
 #include <memory>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/types.h>
 #include <tetskin/export.h>
 
 #include <cstddef>

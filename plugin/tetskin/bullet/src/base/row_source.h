@@ -8,7 +8,7 @@
 #include <LinearMath/btMatrix3x3.h>
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/point_contacts.h>
-#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/types.h>
 
 class btSoftBody;
 

@@ -4,7 +4,7 @@
 // Tasks of different sizes on threads that do not nest.
 #pragma once
 
-#include <tetskin/core/parallel_for.h>
+#include <tetskin/core/types.h>
 
 #include <cstddef>
 #include <vector>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 
 #include <cstdint>

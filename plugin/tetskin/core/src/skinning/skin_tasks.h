@@ -5,10 +5,10 @@
 // threads.
 #pragma once
 
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/kernels/kernel_tables.h>
 #include <tetskin/core/src/skinning/skinning.h>
+#include <tetskin/core/types.h>
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/types.h>
 
 #include <vector>

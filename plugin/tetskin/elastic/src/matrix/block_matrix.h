@@ -7,9 +7,9 @@
 // once: see elastic_kernels.h.
 #pragma once
 
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/core/src/base/state/state_stream.h>
+#include <tetskin/core/types.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 

@@ -5,9 +5,9 @@
 // see corotation.h.
 #pragma once
 
-#include <tetskin/core/parallel_for.h>
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/core/src/base/state/state_stream.h>
+#include <tetskin/core/types.h>
 #include <tetskin/elastic/src/tets/material.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
