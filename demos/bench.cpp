@@ -21,6 +21,7 @@
 #include "bench/contact_cases.h"
 #include "bench/palette_cases.h"
 #include "bench/pile_cases.h"
+#include "bench/snapshot_cases.h"
 #include "bench/step_cases.h"
 #include "bench/touch_cases.h"
 #include "scenes/caged_mesh.h"
@@ -356,6 +357,7 @@ int main(int argc, char** argv) {
       registerBuildBodySizes();
       bench::registerBodyCases();
       bench::registerStepCases();
+      bench::registerSnapshotCases();
       bench::registerContactCases();
       bench::registerPileCases();
       bench::registerTouchCases();

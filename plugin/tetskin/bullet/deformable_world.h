@@ -78,11 +78,10 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// with any number.
   void setThreads(ParallelFor* threads);
 
-  /// Whether steps have the same bits, to the last one, on every processor, with every compiler and at every level of
-  /// optimisation, from the next step on; off by default. Costs some percent of a step: nothing is computed by fused
-  /// multiply-adds or the C library then. Holds where compilers have vector types (GCC, clang, Emscripten; not MSVC,
-  /// and not with TETSKIN_PORTABLE), in one precision of Bullet, where Bullet is compiled without contraction
-  /// (-ffp-contract=off) and without its own vector code; see the guide.
+  /// Whether elasticity is computed in the same order of operations on every processor, without fused multiply-adds,
+  /// from the next step on; off by default. Costs some percent of a step. It is what tetskin can do for the same bits
+  /// on other processors and with other compilers; what else that takes, and how far it has been measured, is in the
+  /// guide (docs/replay.md).
   void setDeterministic(bool on);
 
   /// Whether to compute Bullet's node normals (`m_n`), which drawing a body's own faces needs and a skin does not. On

@@ -40,7 +40,7 @@ struct ElasticOptions {
   std::vector<double> nodeMasses;
   double tolerance = 5e-3;  ///< residual of a step relative to that at its start; 0 to below 1
   int maxIterations = 200;  ///< limit of the conjugate gradient per step; at least 1
-  /// Whether steps have the same bits on every processor and with every compiler, see
+  /// Whether all is computed in the same order of operations on every processor, without fused multiply-adds, see
   /// `DeformableSolver::setDeterministic`.
   bool deterministic = false;
 };
