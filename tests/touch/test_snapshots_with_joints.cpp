@@ -18,6 +18,7 @@ class Hanging : public ReplayedScene {
     if (welded) weld_ = SurfaceWeld::add(world(), low_, *box_).value();
   }
   btDeformableMultiBodyDynamicsWorld& world() override { return world_->deformable(); }
+  void releaseSpring() { spring_->release(); }
   void frame(int number) override {
     const auto time = btScalar(0.2) * static_cast<btScalar>(number);
     EXPECT_EQ(spring_->setTarget(target_ + btScalar(0.1) * btVector3(std::sin(time), 0, std::cos(time))),
@@ -43,6 +44,19 @@ class Hanging : public ReplayedScene {
 
 TEST(SnapshotsWithJoints, OfASpringAndAWeld) {
   expectReplays([] { return std::make_unique<Hanging>(true); }, 40, {0, 9, 10, 25});
+}
+
+TEST(SnapshotsWithJoints, ThatAreGoneAreRefusedAndChangeNothing) {
+  Hanging scene(true);
+  for (int f = 0; f < 5; ++f) scene.frame(f);
+  const Bytes withSpring = saved(scene);
+  scene.releaseSpring();
+  scene.world().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  const Bytes before = saved(scene);
+  const Status refused = restoreSnapshot(scene.world(), withSpring.data(), withSpring.size());
+  EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
+  EXPECT_NE(refused.message.find("other springs, welds or loads"), std::string::npos) << refused.message;
+  EXPECT_TRUE(saved(scene) == before);
 }
 
 TEST(SnapshotsWithJoints, OfALoadThatActsOn) {

@@ -80,7 +80,7 @@ void visitNodes(WorldStream& stream, btSoftBody& body) {
   }
 }
 
-/// Nodes are pinned, and given other masses, while a world runs. Nearly always, all have the mass of one of two lists.
+/// Nodes are pinned, and given other masses, while a world runs.
 void visitMasses(WorldStream& stream, btSoftBody& body) {
   for (int n = 0; n < body.m_nodes.size(); ++n) stream(body.m_nodes[n].m_im);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/state/world_state.h>
 #include <tetskin/bullet/src/step/step.h>
 
@@ -48,6 +49,9 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
     stream.same(bodies[b]->m_nodes.size(), "a soft body had another number of nodes");
     stream.same(bodies[b]->m_deformableAnchors.size(), "a soft body had another number of anchors");
     if (bodies[b]->m_reducedModel) stream.refuse("a reduced body");
+    const BodyWithTrees* own = bodyWithTrees(*bodies[b]);
+    const bool atSurface = own && own->surfaceContacts().lock();
+    stream.same(atSurface, "a soft body had contact at its surface, or had none");
   }
 }
 

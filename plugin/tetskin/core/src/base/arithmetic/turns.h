@@ -39,7 +39,7 @@ inline SineAndCosine sineAndCosine(double x) {
   }
 }
 
-/// Radians, from -pi/2 to pi/2.
+/// Radians, from -pi/2 to pi/2; near the ends of that, its error is some ten last digits.
 /// sine  of -1 to 1
 inline double arcSine(double sine) {
   assert(std::abs(sine) <= 1.0);

@@ -24,7 +24,7 @@ class StateStream {
 
   /// Counts bytes.
   StateStream() = default;
-  /// Writes up to so many bytes; beyond, it counts, and `failed` is true.
+  /// Writes up to so many bytes; beyond, it only counts.
   StateStream(unsigned char* to, std::size_t capacity) : way_(Way::Save), to_(to), size_(capacity) {}
   /// Reads.
   StateStream(const unsigned char* from, std::size_t size) : way_(Way::Restore), from_(from), size_(size) {}
@@ -46,12 +46,12 @@ class StateStream {
       return;
     }
     if (failed_ || count > size_ - at_) {
-      failed_ = true;
-      if (way_ == Way::Restore) {
-        if (count > 0) std::memset(data, 0, count);
-      } else {
+      if (way_ == Way::Save) {  // from here on, it counts
+        way_ = Way::Count;
         at_ = end;
-        size_ = end;
+      } else {
+        failed_ = true;
+        if (count > 0) std::memset(data, 0, count);
       }
       return;
     }
