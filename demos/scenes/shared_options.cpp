@@ -54,7 +54,7 @@ const std::vector<SharedOption>& sharedOptions() {
       {"--check-determinism", "Output",
        "Make each step twice, from a snapshot, and compare every bit; takes twice the time"},
       {"--record", "Output", "Write the run to this file, which tetskin_replay plays again"},
-      {"--replay", "Simulation", "Play the run of this file, compare every step, and stop where one differs"},
+      {"--replay", "Output", "Play the run of this file, compare every step, and stop where one differs"},
       {"--quiet", "Output", "Print errors only"}};
   return options;
 }
