@@ -80,7 +80,7 @@ Result<std::vector<QuadraticShape>> quadraticShapes(const Cage& cage, const std:
   for (RestQuadraticTet& rest : elastic_detail::restQuadraticTets(cage, tets.value(), stiffnessScale)) {
     const double volume = 1.0 / (6.0 * std::abs(gradientsOf(rest.gradients).bottomRows<3>().determinant()));
     const double share = rest.volume / volume;
-    shapes.push_back({tets.value()[shapes.size()], std::move(rest), share});
+    shapes.push_back({tets.value()[shapes.size()], rest, share});
   }
   return shapes;
 }

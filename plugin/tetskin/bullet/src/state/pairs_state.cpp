@@ -36,6 +36,7 @@ struct PointCache {
 
 }  // namespace
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a class
 #define TETSKIN_CACHE_OF(Class)                                                                 \
   struct Class##Manifold {                                                                      \
     friend btPersistentManifold* Class::*memberOf(Class##Manifold);                             \
@@ -48,6 +49,7 @@ struct PointCache {
   static PointCache cacheOf(Class& algorithm) {                                                 \
     return {&(algorithm.*memberOf(Class##Manifold())), &(algorithm.*memberOf(Class##Owned()))}; \
   }
+// NOLINTEND(bugprone-macro-parentheses)
 TETSKIN_CACHE_OF(btConvexConvexAlgorithm)
 TETSKIN_CACHE_OF(btBoxBoxCollisionAlgorithm)
 TETSKIN_CACHE_OF(btSphereSphereCollisionAlgorithm)

@@ -165,6 +165,7 @@ Status compareKeys(const char* kind, int missing, std::size_t saved, std::size_t
 template <class Item>
 void reorder(btAlignedObjectArray<Item*>& list, const std::vector<int>& at) {
   std::vector<Item*> ordered;
+  ordered.reserve(at.size());
   for (const int k : at) ordered.push_back(list[k]);
   for (std::size_t k = 0; k < at.size(); ++k) list[static_cast<int>(k)] = ordered[k];
 }

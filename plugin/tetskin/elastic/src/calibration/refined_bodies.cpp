@@ -82,7 +82,8 @@ Eigen::RowVectorXd quotients(const Eigen::RowVectorXd& a, const Eigen::RowVector
 
 }  // namespace
 
-RefinedBodies::Level::Level(Refinement made, double poissonRatio, std::vector<double> fill, const Cage& quadratic)
+RefinedBodies::Level::Level(Refinement made, double poissonRatio, const std::vector<double>& fill,
+                            const Cage& quadratic)
     : refinement(std::move(made)),
       scale(atLeast(fill, kMinScale)),
       stiffness(quadratic.mesh.nodes.empty() ? BlockRows(refinement.mesh, poissonRatio, scale)

@@ -53,7 +53,7 @@ class RefinedBodies {
  private:
   struct Level {
     /// quadratic  empty: linear tets; otherwise what the cage of quadratic ones is
-    Level(Refinement refinement, double poissonRatio, std::vector<double> fill, const Cage& quadratic);
+    Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill, const Cage& quadratic);
     Refinement refinement;      ///< of the coarser level
     std::vector<double> scale;  ///< by tet
     BlockRows stiffness;

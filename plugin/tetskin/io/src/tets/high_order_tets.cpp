@@ -186,7 +186,7 @@ void Cutter::placeMiddles() {
   const std::size_t before = mesh_.nodeCount();
   const std::vector<Eigen::Vector3d> given = mesh_.nodes;
   for (HalvedEdge& edge : edges_) {
-    const Eigen::Vector3d a = given[edge.ends[0]], b = given[edge.ends[1]], middle = 0.5 * (a + b);
+    const Eigen::Vector3d &a = given[edge.ends[0]], &b = given[edge.ends[1]], middle = 0.5 * (a + b);
     if (edge.middle < 0) {
       edge.middle = static_cast<int>(mesh_.nodeCount());
       mesh_.nodes.push_back(middle);
