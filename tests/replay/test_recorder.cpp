@@ -206,6 +206,24 @@ TEST(Replay, AsksForWhatTheApplicationAddedInTheMiddle) {
   EXPECT_EQ(replay->report().steps, 30u);
 }
 
+TEST(Snapshots, OfADeterministicWorldGoOnInANewOne) {
+  DeformableWorldOptions options;
+  options.deterministic = true;
+  for (const char* name : {"twist", "drop"}) {
+    const auto scene = ReplayScene::create(name, options);
+    for (int frame = 0; frame < 20; ++frame) scene->step(frame);
+    std::vector<unsigned char> snapshot(scene->world().save(nullptr, 0).value());
+    ASSERT_TRUE(scene->world().save(snapshot.data(), snapshot.size()).ok());
+    const auto other = ReplayScene::create(name, options);
+    ASSERT_TRUE(other->world().restore(snapshot.data(), snapshot.size()).ok());
+    for (int frame = 20; frame < 40; ++frame) {
+      scene->step(frame);
+      other->step(frame);
+      ASSERT_EQ(stateHash(other->world()), stateHash(scene->world())) << name << " " << frame;
+    }
+  }
+}
+
 TEST(Recorder, RefusesOptionsAndPlacesThatItCannotUse) {
   const auto scene = ReplayScene::create("drag");
   const TemporaryFile file("refused");

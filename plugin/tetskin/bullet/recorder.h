@@ -36,7 +36,7 @@ struct RecorderOptions {
 /// Every step is in the file when it returns: also the one before a crash.
 ///
 /// Lifetime  destroy it before the world
-/// Cost      per step that of two snapshots, and some 40 bytes of the file, with 4 per object and what has changed
+/// Cost      per step that of two snapshots, and some 50 bytes of the file, with 4 per object and what has changed
 class TETSKIN_BULLET_API Recorder {
  public:
   /// Starts recording; a file of that name is replaced.

@@ -3,6 +3,7 @@
 #include <tetskin/bullet/src/record/record_file.h>
 #include <tetskin/core/src/base/bytes.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace tetskin::bullet_detail {

@@ -615,6 +615,9 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
 /// Of the steps before, only what the next one would not forget.
 template <class S>
 void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues) {
+  bool deterministic = deterministic_;
+  stream(deterministic);
+  setDeterministic(deterministic);  // a step that found it changed would make the matrix anew
   bool changed = changed_ || outdated;
   bool known = history_.isKnown() && remembered_ && continues && !changed;
   double alpha = alpha_;
