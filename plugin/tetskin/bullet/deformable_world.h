@@ -24,6 +24,7 @@ class RecordedForces;
 class WorldStream;
 bool isWithinStep(const DeformableSolver& solver);
 void visitSolver(WorldStream& stream, DeformableSolver& solver);
+void visitSolverSettings(WorldStream& stream, DeformableSolver& solver);
 }  // namespace bullet_detail
 
 /// Seconds that the stages of a DeformableSolver's steps have taken, wall time, in the order in which a step runs them.
@@ -122,6 +123,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   struct Impl;
   friend class ForceRecord;
   friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
+  friend void bullet_detail::visitSolverSettings(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   friend bool bullet_detail::isWithinStep(const DeformableSolver& solver);
   std::unique_ptr<Impl> impl_;
 };

@@ -86,6 +86,13 @@ void visitSolver(WorldStream& stream, DeformableSolver& solver) {
   visitRecord(stream, impl.recorded);
 }
 
+void visitSolverSettings(WorldStream& stream, DeformableSolver& solver) {
+  DeformableSolver::Impl& impl = *solver.impl_;
+  stream(impl.deterministic);
+  stream(impl.nodeNormals);
+  stream(impl.always);
+}
+
 }  // namespace tetskin::bullet_detail
 
 namespace tetskin {
