@@ -12,13 +12,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <typeinfo>
 #include <utility>
 #include <vector>
 
 namespace tetskin::bullet_detail {
 
 class RowSource;
+
+/// What several objects may share.
+enum class SharedKind { Nothing, CollisionShape, ContactShape };
 
 /// The large values of a file. A value has a number, in the order in which they were first described.
 struct CopyStore {
@@ -37,9 +39,9 @@ class BuildStream : public WorldStream {
       : WorldStream(world, arguments...), store_(store) {}
 
   /// Something that several objects share, by its address: described, and built, once.
-  /// build()  describes `*shared`, or returns what it has built; null: it could not
+  /// build  describes `*shared`, or returns what it has built; null: it could not
   template <class Shared, class Build>
-  auto shared(const Shared* shared, Build&& build) -> decltype(build()) {
+  auto shared(SharedKind kind, const Shared* shared, Build&& build) -> decltype(build()) {
     std::uint32_t index = 0;
     if (saving()) {
       index = static_cast<std::uint32_t>(std::find(described_.begin(), described_.end(), shared) - described_.begin());
@@ -58,16 +60,16 @@ class BuildStream : public WorldStream {
       built_.push_back({});
       auto made = build();
       if (!made) fail();
-      built_[index] = {&typeid(Shared), std::move(made)};
+      built_[index] = {kind, std::move(made)};
     }
-    if (!built_[index].type || *built_[index].type != typeid(Shared)) fail();  // also one that holds itself
+    if (built_[index].kind != kind) fail();  // also for one that holds itself
     using Element = typename decltype(build())::element_type;
     return failed() ? nullptr : std::static_pointer_cast<Element>(std::const_pointer_cast<void>(built_[index].object));
   }
 
   /// A large value of which several objects have equal copies, or which stays the same when a world is described again:
   /// its bytes are kept once, in the store.
-  /// visit(stream)  of the value
+  /// visit  (stream) of the value
   template <class Visit>
   void copied(Visit&& visit) {
     std::uint32_t index = 0;
@@ -95,7 +97,7 @@ class BuildStream : public WorldStream {
 
  private:
   struct Built {
-    const std::type_info* type = nullptr;
+    SharedKind kind = SharedKind::Nothing;
     std::shared_ptr<const void> object;
   };
   CopyStore& store_;

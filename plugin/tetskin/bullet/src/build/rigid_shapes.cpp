@@ -261,7 +261,7 @@ struct CompoundData {
 std::shared_ptr<btCollisionShape> buildAnyShape(BuildStream& stream, const btCollisionShape* shape, int depth);
 
 std::shared_ptr<btCollisionShape> buildSharedShape(BuildStream& stream, const btCollisionShape* shape, int depth) {
-  return stream.shared(shape, [&] { return buildAnyShape(stream, shape, depth); });
+  return stream.shared(SharedKind::CollisionShape, shape, [&] { return buildAnyShape(stream, shape, depth); });
 }
 
 std::shared_ptr<btCollisionShape> buildCompound(BuildStream& stream, const btCompoundShape* shape, int depth) {

@@ -12,6 +12,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
+/// By tet: see BodyParts::rest.
 constexpr std::size_t kRestNumbers = 10;
 
 template <class Values>

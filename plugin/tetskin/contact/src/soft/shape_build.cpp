@@ -106,7 +106,7 @@ std::shared_ptr<const ContactShape> buildNew(BuildStream& stream, const ContactS
 }  // namespace
 
 std::shared_ptr<const ContactShape> buildContactShape(BuildStream& stream, const ContactShape* shape) {
-  return stream.shared(shape, [&] { return buildNew(stream, shape); });
+  return stream.shared(bullet_detail::SharedKind::ContactShape, shape, [&] { return buildNew(stream, shape); });
 }
 
 }  // namespace tetskin::contact_detail
