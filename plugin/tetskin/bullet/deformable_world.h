@@ -121,6 +121,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 
  private:
   struct Impl;
+  friend class DeformableWorld;
   friend class ForceRecord;
   friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   friend void bullet_detail::visitSolverSettings(bullet_detail::WorldStream& stream, DeformableSolver& solver);
@@ -169,6 +170,9 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   btDeformableMultiBodyConstraintSolver& constraintSolver();  ///< solver of rigid bodies; owned by this
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
+
+  int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
+                     btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
 
   /// Saves the state of the world, see `saveSnapshot`.
   Result<std::size_t> save(void* buffer, std::size_t size) const;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/step/step.h>
 #include <tetskin/bullet/src/step/watched_detection.h>
 
 namespace tetskin {
@@ -34,6 +35,13 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
 }
 
 DeformableWorld::~DeformableWorld() = default;
+
+/// Between the steps of one call rigid bodies have forces that the next one does not clear, such as gravity: it is no
+/// state to be saved or restored.
+int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
+  const Running simulation(impl_->deformableSolver.impl_->inSimulation);
+  return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+}
 
 DeformableSolver& DeformableWorld::deformableSolver() {
   return impl_->deformableSolver;

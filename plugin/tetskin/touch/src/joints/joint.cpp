@@ -207,7 +207,8 @@ void Joint::visitState(WorldStream& stream) {
 void Joint::checkState(WorldStream& stream) {
   const char* const kOthers = "other springs or welds";
   stream.same(settings_.turns, kOthers);
-  stream.same(anchor_.object != nullptr, kOthers);
+  stream.sameObject(body(), kOthers);
+  stream.sameObject(anchor_.object, kOthers);
   stream.same(carried_.count, kOthers);
   for (std::uint32_t k = 0; k < carried_.count && !stream.failed(); ++k) {
     stream.same(carried_.nodes[k], kOthers);

@@ -51,6 +51,7 @@ class Load : public ActiveJoint {
     for (NodePush& push : forces_) stream.plain(push.push.data(), 3);
   }
   void checkState(WorldStream& stream) override {
+    stream.sameObject(body(), "other loads");
     stream.same(forces_.size(), "other loads");
     for (const NodePush& push : forces_) stream.same(push.node, "other loads");
   }
