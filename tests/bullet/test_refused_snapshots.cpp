@@ -168,7 +168,7 @@ TEST_F(RefusedSnapshots, AreNoneOfAWorldWithinAStep) {
   for (const Status& status : during) expectStatus(status, StatusCode::NotSaved, "within a step");
 }
 
-/// Gravity has been applied for all steps of the frame: another frame would apply it again.
+/// How many steps are left, and whose forces last until then, is not known there.
 TEST_F(RefusedSnapshots, AreNoneBetweenTheStepsOfAFrame) {
   static Snapshot buffer;
   buffer = snapshot;

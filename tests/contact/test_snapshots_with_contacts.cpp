@@ -6,6 +6,7 @@
 
 #include "contact_test.h"
 #include "support/replays.h"
+#include "support/snapshot_parts.h"
 
 namespace tetskin::test {
 namespace {
@@ -103,6 +104,31 @@ class OnKinds : public ReplayedScene {
 
 TEST(SnapshotsWithContacts, OfSoftBodiesOnShapesOfAllKinds) {
   expectReplays([] { return std::make_unique<OnKinds>(); }, 120, {5, 40, 80, 110});
+}
+
+/// The other parts: test_snapshot_parts.cpp.
+TEST(SnapshotsWithContacts, NeedWhatTheSearchRemembers) {
+  OnKinds scene;
+  int number = 0, needed = 0;
+  for (const int from : {10, 20, 30, 40, 60, 80, 100}) {
+    while (number < from) scene.frame(number++);
+    const Bytes snapshot = saved(scene);
+    scene.frame(number++);
+    const Bytes later = saved(scene);
+    const auto run = [&](const Bytes& bytes) {
+      std::vector<btScalar> all;
+      restore(scene, bytes);
+      for (int f = from; f < from + 20; ++f) {
+        scene.frame(f);
+        const std::vector<btScalar> now = seen(scene);
+        all.insert(all.end(), now.begin(), now.end());
+      }
+      return all;
+    };
+    needed += !haveSameBits(run(snapshot), run(withPartOf(later, kContactSearch, snapshot)));
+    restore(scene, later);
+  }
+  EXPECT_GT(needed, 0);
 }
 
 /// A snapshot has no clearances, so that restoring drops them: what is far away is searched for again. A run that drops

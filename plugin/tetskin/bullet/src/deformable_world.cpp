@@ -36,8 +36,8 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
 
 DeformableWorld::~DeformableWorld() = default;
 
-/// Between the steps of one call rigid bodies have forces that the next one does not clear, such as gravity: it is no
-/// state to be saved or restored.
+/// Between the steps of one call, a world is in no state of its own: Bullet knows how many steps are left, and clears
+/// the application's forces after the last one.
 int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
   const Running simulation(impl_->deformableSolver.impl_->inSimulation);
   return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
