@@ -14,7 +14,7 @@ btMatrix3x3 turned(const btTransform& from, const btVector3& velocity, btScalar 
   btScalar speed = squared > SIMD_EPSILON ? btSqrt(squared) : btScalar(0);
   if (speed * seconds > ANGULAR_MOTION_THRESHOLD) speed = ANGULAR_MOTION_THRESHOLD / seconds;
   const SineAndCosine half = sineAndCosine(static_cast<double>(btScalar(0.5) * speed * seconds));
-  constexpr auto kSlow = btScalar(0.001);
+  constexpr auto kSlow = btScalar(0.001);  // below, a series takes the place of the sine
   const btScalar part =
       speed < kSlow ? btScalar(0.5) * seconds - seconds * seconds * seconds * btScalar(0.020833333333) * speed * speed
                     : static_cast<btScalar>(half.sine) / speed;
