@@ -124,6 +124,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   struct Impl;
   friend class DeformableWorld;
   friend class ForceRecord;
+  friend struct Access<DeformableSolver>;
   friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   friend void bullet_detail::visitSolverSettings(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   friend bool bullet_detail::isWithinStep(const DeformableSolver& solver);

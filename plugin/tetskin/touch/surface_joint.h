@@ -137,7 +137,7 @@ class TETSKIN_TOUCH_API SurfaceWeld {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For `Replay::open`: builds the springs, welds and loads of a recorded run.
+/// For `Replay::open`: builds the springs and welds of a recorded run.
 TETSKIN_TOUCH_API const bullet_detail::SourceBuilder* builderOfJoints();
 
 }  // namespace tetskin

@@ -74,8 +74,7 @@ class TETSKIN_TOUCH_API SurfacePoint {
   /// impulse  world space, mass times velocity
   /// Errors   InvalidOption for reduced bodies; those of `status`; NonFinite
   StatusCode applyImpulse(const btVector3& impulse);
-  /// Applies a force through the next of Bullet's steps, as part of their solve. Wakes the body. For a body that was
-  /// not created by `createSoftBody`, the point must exist until then.
+  /// Applies a force through the next of Bullet's steps, as part of their solve. Wakes the body.
   /// force   world space, mass times length / s^2; forces add up
   /// steps   number of Bullet's steps, that is substeps, 1 or more
   /// Errors  NotInWorld; InvalidOption in a world without a `DeformableSolver`, or for steps below 1; those of
@@ -98,7 +97,6 @@ class TETSKIN_TOUCH_API SurfacePoint {
   btSoftBody* body_ = nullptr;
   bool watched_ = false;            ///< the body reports its deletion
   std::weak_ptr<const void> life_;  ///< lifetime of a watched body
-  std::shared_ptr<void> forces_;    ///< for a body that is not watched: owner of its applied forces
   int nodeCount_ = 0, tetCount_ = 0;
   Data data_;
 };

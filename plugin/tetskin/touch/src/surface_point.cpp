@@ -154,7 +154,7 @@ StatusCode SurfacePoint::applyForce(const btVector3& force, int steps) {
   if (!touch_detail::isFiniteVector(force)) return StatusCode::NonFinite;
   touch_detail::NodePushes pushes;
   touch_detail::addPush(touch_detail::jacobianAt(data_, *body_), toEigen(force), pushes);
-  return touch_detail::applyForces(std::move(pushes), steps, *body_, watched_ ? nullptr : &forces_);
+  return touch_detail::applyForces(std::move(pushes), steps, *body_);
 }
 
 }  // namespace tetskin

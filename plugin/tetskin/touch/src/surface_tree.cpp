@@ -164,7 +164,7 @@ ImpulseResult SurfaceTree::applyForce(btSoftBody& body, const RadialImpulse& for
   if (!impl().checkBody(body).ok()) return push;
   push = touch_detail::pushesOf(force, impl().binding->embedding(), impl().areas, body, pushes);
   if (push.status != StatusCode::Ok) return push;
-  const StatusCode done = touch_detail::applyForces(std::move(pushes), steps, body, nullptr);
+  const StatusCode done = touch_detail::applyForces(std::move(pushes), steps, body);
   if (done != StatusCode::Ok) return {done};
   return push;
 }

@@ -54,8 +54,6 @@ class BodyWithTrees : public btSoftBody {
 
   /// Expires when the body is destroyed.
   std::weak_ptr<const void> lifetime() const { return lifetime_; }
-  /// An object that must live as long as the body: only one, owned by whoever sets it.
-  std::shared_ptr<void>& companion() { return companion_; }
   /// What finds the contacts of other points than the nodes with rigid objects; expired if there is nothing.
   const std::weak_ptr<BodyContacts>& surfaceContacts() const { return surfaceContacts_; }
   void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
@@ -120,7 +118,6 @@ class BodyWithTrees : public btSoftBody {
   unsigned predictions_ = 0;
   bool searchWaits_ = false;
   std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
-  std::shared_ptr<void> companion_;
   PointContacts pointContacts_;
   std::weak_ptr<BodyContacts> surfaceContacts_;
   std::shared_ptr<BodyContacts> nodeContacts_;

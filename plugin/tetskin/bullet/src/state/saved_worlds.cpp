@@ -17,10 +17,6 @@ namespace tetskin::bullet_detail {
 
 using World = btDeformableMultiBodyDynamicsWorld;
 
-struct SolverMember {
-  friend btDeformableBodySolver* World::*memberOf(SolverMember);
-};
-template struct Opened<SolverMember, &World::m_deformableBodySolver>;
 struct ActionsMember {
   friend btAlignedObjectArray<btActionInterface*> btDiscreteDynamicsWorld::*memberOf(ActionsMember);
 };
@@ -28,10 +24,6 @@ template struct Opened<ActionsMember, &btDiscreteDynamicsWorld::m_actions>;
 
 bool isWithinStep(const DeformableSolver& solver) {
   return solver.impl_->inStep || solver.impl_->inSimulation;
-}
-
-DeformableSolver* savedSolverOf(World& world) {
-  return deformableSolver(world.*memberOf(SolverMember()));
 }
 
 namespace {

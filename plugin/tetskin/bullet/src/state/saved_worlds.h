@@ -9,9 +9,6 @@
 
 namespace tetskin::bullet_detail {
 
-/// The solver with which the world was created, known without a change of the world; null if it is another one.
-DeformableSolver* savedSolverOf(btDeformableMultiBodyDynamicsWorld& world);
-
 /// Errors  NotSaved, which names what it is
 Status checkIsSaved(btDeformableMultiBodyDynamicsWorld& world, const DeformableSolver& solver);
 

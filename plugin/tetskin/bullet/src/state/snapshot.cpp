@@ -101,7 +101,7 @@ Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) 
 
 Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t size) {
   auto& saved = const_cast<World&>(world);  // NOLINT: Bullet has no const accessors
-  DeformableSolver* solver = savedSolverOf(saved);
+  DeformableSolver* solver = deformableSolverOf(saved);
   if (!solver) return refusal("a snapshot", {kUseDeformableSolver});
   if (Status status = checkIsSaved(saved, *solver); !status.ok()) return status;
   const std::size_t begin = Header::bytes();
@@ -132,7 +132,7 @@ Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t s
 }
 
 Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
-  DeformableSolver* solver = savedSolverOf(world);
+  DeformableSolver* solver = deformableSolverOf(world);
   if (!solver) return refusal("a snapshot", {kUseDeformableSolver});
   const auto* bytes = static_cast<const unsigned char*>(snapshot);
   Header header;

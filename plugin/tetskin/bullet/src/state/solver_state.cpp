@@ -69,7 +69,7 @@ void checkAnchors(WorldStream& stream, const btSoftBody& body) {
 
 void checkForces(WorldStream& stream, DeformableSolver& solver) {
   const std::vector<btDeformableLagrangianForce*> forces = forcesOf(solver);
-  const char* const kOthers = "other soft bodies, contacts of soft bodies, springs, welds or loads were there";
+  const char* const kOthers = "other soft bodies, contacts of soft bodies, springs or welds were there";
   std::unordered_set<const btSoftBody*> solvedHere;
   stream.same(forces.size(), kOthers);
   for (btDeformableLagrangianForce* force : forces) {
@@ -121,6 +121,7 @@ void visitSolver(WorldStream& stream, DeformableSolver& solver) {
   impl.visitFlags(stream);
   impl.bodies.visitState(stream);
   impl.driven.visitState(stream);
+  impl.loads.visitState(stream);
   impl.sleepers.visitState(stream);
   impl.stillness.visitState(stream);
   impl.rigids.paths().visitState(stream);

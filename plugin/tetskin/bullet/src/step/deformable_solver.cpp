@@ -31,6 +31,10 @@ void DeformableSolver::setDeterministic(bool on) {
 bool DeformableSolver::deterministic() const {
   return impl_->deterministic;
 }
+void Access<DeformableSolver>::addLoads(DeformableSolver& solver, btSoftBody& body, NodePushes forces, int steps) {
+  solver.requireOwnSolve();
+  solver.impl_->loads.add(body, std::move(forces), steps);
+}
 void DeformableSolver::setNodeNormals(bool on) {
   impl_->nodeNormals = on;
 }
@@ -55,6 +59,7 @@ const StepTimes& DeformableSolver::stepTimes() const {
 
 /// Bullet calls this when a step begins, and, with a time below 0, when a body has left the world.
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
+  impl_->loads.dropAllBut(softBodies);
   if (!(dt > 0)) return impl_->dropRemoved(softBodies);
   impl_->clock.restart();
   impl_->gather(softBodies, dt);

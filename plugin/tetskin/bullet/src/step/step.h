@@ -13,6 +13,7 @@
 #pragma once
 
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/base/node_loads.h>
 #include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/bullet/src/motion/driven_nodes.h>
 #include <tetskin/bullet/src/motion/sleepers.h>
@@ -107,6 +108,7 @@ struct DeformableSolver::Impl {
   OwnObject registered{OwnObject::Kind::DeformableSolver, static_cast<const btSoftBodySolver*>(&solver)};
   SolverBodies bodies;
   DrivenNodes driven;
+  NodeLoads loads;
   Sleepers sleepers;
   Stillness stillness;
   ObstacleChanges obstacleChanges;

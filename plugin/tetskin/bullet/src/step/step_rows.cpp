@@ -80,6 +80,7 @@ std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
   for (int i = 0; i < forces().size(); ++i) {
     if (auto* source = dynamic_cast<RowSource*>(inactiveForce(forces()[i]))) sources.push_back(source);
   }
+  if (!loads.empty()) sources.push_back(&loads);
   return sources;
 }
 

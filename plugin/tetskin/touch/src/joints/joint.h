@@ -57,7 +57,6 @@ class Joint : public ActiveJoint {
   void finish(btScalar seconds, const PointJoint* joints) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
-  Kind kind() const override { return Kind::Joint; }
   void describe(BuildStream& stream) override;
   /// A joint that was described; null: it is damaged.
   static std::shared_ptr<Joint> build(BuildStream& stream);

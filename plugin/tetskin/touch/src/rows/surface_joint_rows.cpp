@@ -85,7 +85,7 @@ void SurfaceJointRows::visitState(WorldStream& stream) {
 
 void SurfaceJointRows::checkState(WorldStream& stream) {
   const auto count = std::count_if(active_.begin(), active_.end(), [](const auto& joint) { return !joint->spent(); });
-  stream.same(count, "other springs, welds or loads");
+  stream.same(count, "other springs or welds");
   for (const auto& joint : active_) {
     if (!joint->spent() && !stream.failed()) joint->checkState(stream);
   }
@@ -94,11 +94,7 @@ void SurfaceJointRows::checkState(WorldStream& stream) {
 void SurfaceJointRows::describe(BuildStream& stream) {
   eraseSpent();
   (void)stream.length(active_.size());
-  for (const auto& joint : active_) {
-    ActiveJoint::Kind kind = joint->kind();
-    stream(kind);
-    joint->describe(stream);
-  }
+  for (const auto& joint : active_) joint->describe(stream);
 }
 
 }  // namespace tetskin::touch_detail
