@@ -69,9 +69,9 @@ int main(int argc, char** argv) try {
 
   tetskin::MeshSkin<double> free;
   if (!free.bind(cage, mesh).ok()) return 1;
-  std::printf("step %.3f\n", microseconds(4001, [&] { empty.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 60 / 4); }));
-  std::printf("update %.3f\n",
-              microseconds(4001, [&] { (void)free.update(tetskin::viewOf(cage.mesh.nodes)); }));
+  std::printf("step %.3f\n",
+              microseconds(4001, [&] { empty.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 60 / 4); }));
+  std::printf("update %.3f\n", microseconds(4001, [&] { (void)free.update(tetskin::viewOf(cage.mesh.nodes)); }));
   world.removeRigidBody(&ground);
   return file.good() ? 0 : 1;
 } catch (const std::exception& fault) {

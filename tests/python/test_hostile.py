@@ -90,7 +90,7 @@ CALLS = {
     "a motor of no hinge": (lambda t: t.w.add_fixed_joint(t.r).set_motor(1.0, 1.0), error("INVALID_OPTION")),
     "a free node that is moved": (lambda t: t.b.set_pinned_positions([0], [[0.0, 0, 0]]), error("INVALID_OPTION")),
     "forces that are not recorded": (lambda t: ts.World(record_forces=False).forces_on(t.r), error("NOT_ADDED")),
-    "a pickle of something else": (lambda t: t.c.__class__.__new__(ts.Cage).__setstate__((b"",) * 12), error("EMPTY")),
+    "a pickle of something else": (lambda t: t.c.__class__.__new__(ts.Cage).__setstate__((b"",) * 12), error("MALFORMED")),
     "an attribute that is not there": (lambda t: setattr(t.b, "positions", t.c.nodes), AttributeError),
 }
 

@@ -52,10 +52,12 @@ std::string shapeOf(const Py_buffer& buffer) {
   return text + (buffer.ndim == 1 ? ",)" : ")");
 }
 
-/// Lists and the like become arrays of NumPy.
-nb::object asArray(const nb::object& object) {
+/// Lists and the like become arrays of NumPy; in these, a number without a point is a real one where such are wanted.
+nb::object asArray(const nb::object& object, bool real = false) {
   if (PyObject_CheckBuffer(object.ptr())) return object;
-  return nb::module_::import_("numpy").attr("asarray")(object);
+  const nb::object array = nb::module_::import_("numpy").attr("asarray")(object);
+  const bool whole = nb::cast<std::string>(array.attr("dtype").attr("kind")) == "i";
+  return real && whole ? array.attr("astype")("float64") : array;
 }
 
 void getBuffer(const nb::object& array, Py_buffer& buffer, const char* name) {
@@ -68,8 +70,8 @@ void getBuffer(const nb::object& array, Py_buffer& buffer, const char* name) {
 
 template <class Number>
 Numbers<Number>::Numbers(const ArrayLike& array, const char* name, int columns) {
-  getBuffer(asArray(array.object), buffer_, name);
   const bool real = std::is_floating_point_v<Number>;
+  getBuffer(asArray(array.object, real), buffer_, name);
   const auto refuse = [&](auto fault, const std::string& what) {
     PyBuffer_Release(&buffer_);
     throw fault((std::string(name) + ": " + what).c_str());

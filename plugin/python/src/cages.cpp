@@ -156,7 +156,13 @@ void bindCages(nb::module_& module) {
           },
           "scale"_a, "A copy of another size, with its masses.")
       .def("__getstate__", stateOf)
-      .def("__setstate__", [](CageModel& self, const nb::tuple& state) { new (&self) CageModel(cageOfState(state)); });
+      .def("__setstate__", [](CageModel& self, const nb::tuple& state) {
+        try {
+          new (&self) CageModel(cageOfState(state));
+        } catch (const nb::cast_error&) {
+          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+        }
+      });
 
   module.def("create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
              "fit"_a = true, "progress"_a = nb::none(),

@@ -133,7 +133,13 @@ void bindMeshes(nb::module_& module) {
       .def_prop_ro(
           "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.")
       .def("__getstate__", stateOf)
-      .def("__setstate__", [](MeshModel& self, const nb::tuple& state) { new (&self) MeshModel(meshOfState(state)); });
+      .def("__setstate__", [](MeshModel& self, const nb::tuple& state) {
+        try {
+          new (&self) MeshModel(meshOfState(state));
+        } catch (const nb::cast_error&) {
+          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+        }
+      });
 
   module.def(
       "load_mesh", loaded, "path"_a,

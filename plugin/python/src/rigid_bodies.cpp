@@ -257,8 +257,8 @@ JointHandle addHinge(const std::shared_ptr<World>& world, const RigidHandle& a, 
   const Locked lock(*world);
   const Ends ends(world, a, b);
   const btTransform at = frameAt(pivot, axis, 2);
-  // The angle is that of the first body against the second one, about the axis.
-  auto joint = std::make_unique<btHingeConstraint>(ends.bodyA(), ends.bodyB(), ends.inA(at), ends.inB(at), true);
+  // The angle is that of the first body against the second one, about the axis: Bullet measures its second one.
+  auto joint = std::make_unique<btHingeConstraint>(ends.bodyB(), ends.bodyA(), ends.inB(at), ends.inA(at), true);
   JointHandle handle = added(world, ends, std::move(joint), collide);
   if (limits) setLimits(handle, *limits);
   return handle;

@@ -189,9 +189,8 @@ std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const s
 /// The equality and hash of handles.
 template <class Of>
 void bindIdentity(Class<Of>& type) {
-  type.def("__eq__", [](const Of& a, nb::handle b) {
-    return nb::isinstance<Of>(b) && nb::cast<const Of&>(b).state == a.state;
-  });
+  type.def("__eq__",
+           [](const Of& a, nb::handle b) { return nb::isinstance<Of>(b) && nb::cast<const Of&>(b).state == a.state; });
   type.def("__hash__", [](const Of& a) { return std::hash<const void*>()(a.state.get()); });
 }
 
