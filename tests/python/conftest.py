@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """What the tests of the Python package share. They need the installed package, NumPy and pytest alone."""
+
 import numpy as np
 import pytest
 

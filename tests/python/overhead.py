@@ -5,6 +5,7 @@
 
 overhead.py MESH REFERENCE   MESH: a file; REFERENCE: the program tetskin_reference, which tests/python/run builds
 """
+
 import subprocess
 import sys
 import tempfile
@@ -25,7 +26,9 @@ def loop(call, count=20000):
 
 def main(path, reference):
     with tempfile.NamedTemporaryFile() as out:
-        said = subprocess.run([reference, path, "200", "1", out.name], check=True, capture_output=True, text=True).stdout
+        said = subprocess.run(
+            [reference, path, "200", "1", out.name], check=True, capture_output=True, text=True
+        ).stdout
     cpp = {name: float(number) for name, number in (line.split() for line in said.splitlines())}
     mesh = ts.load_mesh(path)
     cage = ts.create_cage(mesh, target_tets=200)

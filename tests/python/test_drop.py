@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """The first program, and that it does what the same program in C++ does."""
+
 import os
 import re
 import subprocess

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Bad input: an exception each, and nothing changes."""
+
 import pickle
 
 import numpy as np
@@ -17,8 +18,8 @@ def error(code):
     return ts.Error, getattr(ts.StatusCode, code)
 
 
-# What is called, with a world w, its body b, a rigid body r, a spring s, a skin k, an elastic body e, the cage c and the
-# mesh m; and what it raises: a type, or an Error of a code.
+# What is called, with a world w, its body b, a rigid body r, a spring s, a skin k, an elastic body e, the cage c and
+# the mesh m; and what it raises: a type, or an Error of a code.
 CALLS = {
     # shapes
     "positions of two columns": (lambda t: ts.TriangleMesh(np.zeros((4, 2)), [[0, 1, 2]]), ValueError),
@@ -30,7 +31,10 @@ CALLS = {
     "too few nodes": (lambda t: t.k.update(t.c.nodes[:-1]), error("SIZE_MISMATCH")),
     "too few nodes for bones": (lambda t: ts.BonePalette(t.c, t.m).update(t.c.nodes[1:]), error("SIZE_MISMATCH")),
     "too few velocities": (lambda t: setattr(t.b, "velocities", t.c.nodes[1:]), error("SIZE_MISMATCH")),
-    "normals of other vertices": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2]], normals=CORNERS[:2]), error("SIZE_MISMATCH")),
+    "normals of other vertices": (
+        lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2]], normals=CORNERS[:2]),
+        error("SIZE_MISMATCH"),
+    ),
     "masses of other nodes": (lambda t: t.w.add_body(t.c, t.m, node_masses=[1.0]), error("SIZE_MISMATCH")),
     "a position of two numbers": (lambda t: t.w.add_body(t.c, t.m, position=(0, 0)), TypeError),
     # types
@@ -52,7 +56,10 @@ CALLS = {
     "nodes that are not finite": (lambda t: t.k.update(t.c.nodes * NAN), error("NON_FINITE")),
     "velocities that are not finite": (lambda t: setattr(t.b, "velocities", t.c.nodes * NAN), error("NON_FINITE")),
     "a place that is not finite": (lambda t: t.w.add_body(t.c, t.m, position=(0, NAN, 0)), error("NON_FINITE")),
-    "an impulse that is not finite": (lambda t: t.w.point_at_vertex(t.b, 0).apply_impulse((NAN, 0, 0)), error("NON_FINITE")),
+    "an impulse that is not finite": (
+        lambda t: t.w.point_at_vertex(t.b, 0).apply_impulse((NAN, 0, 0)),
+        error("NON_FINITE"),
+    ),
     "a target that is not finite": (lambda t: t.s.set_target((0, float("inf"), 0)), error("NON_FINITE")),
     "a gravity that is not finite": (lambda t: setattr(t.w, "gravity", (0, NAN, 0)), error("NON_FINITE")),
     "no rotation": (lambda t: t.w.add_box((1, 1, 1), rotation=(0, 0, 0, 0)), error("INVALID_OPTION")),
@@ -79,18 +86,27 @@ CALLS = {
     "a flat cage": (lambda t: ts.Cage(CORNERS * [1, 1, 0], TETS), error("DEGENERATE")),
     "a file that is not there": (lambda t: ts.load_mesh("/no/such.obj"), error("FILE_NOT_FOUND")),
     "a format that is not read": (lambda t: ts.load_mesh(__file__), error("UNSUPPORTED_FORMAT")),
-    "a mesh of another cage": (lambda t: ts.Skin(t.c, ts.TriangleMesh(t.m.positions + 0.1, t.m.triangles)), error("CAGE_MISMATCH")),
+    "a mesh of another cage": (
+        lambda t: ts.Skin(t.c, ts.TriangleMesh(t.m.positions + 0.1, t.m.triangles)),
+        error("CAGE_MISMATCH"),
+    ),
     "a folder that is not there": (lambda t: t.c.save("/no/such/cage.vtk"), error("FILE_NOT_WRITABLE")),
     # worlds
     "a body without a surface": (lambda t: t.w.add_body(t.c).positions, error("UNBOUND")),
     "bytes that are no snapshot": (lambda t: t.w.restore(b"snapshot"), error("MALFORMED")),
     "a snapshot of another world": (lambda t: ts.World().restore(t.w.save()), error("SNAPSHOT_MISMATCH")),
     "a joint with itself": (lambda t: t.w.add_fixed_joint(t.r, t.r), error("INVALID_OPTION")),
-    "a joint with another world's": (lambda t: t.w.add_fixed_joint(t.r, ts.World().add_sphere(1)), error("NOT_IN_WORLD")),
+    "a joint with another world's": (
+        lambda t: t.w.add_fixed_joint(t.r, ts.World().add_sphere(1)),
+        error("NOT_IN_WORLD"),
+    ),
     "a motor of no hinge": (lambda t: t.w.add_fixed_joint(t.r).set_motor(1.0, 1.0), error("INVALID_OPTION")),
     "a free node that is moved": (lambda t: t.b.set_pinned_positions([0], [[0.0, 0, 0]]), error("INVALID_OPTION")),
     "forces that are not recorded": (lambda t: ts.World(record_forces=False).forces_on(t.r), error("NOT_ADDED")),
-    "a pickle of something else": (lambda t: t.c.__class__.__new__(ts.Cage).__setstate__((b"",) * 12), error("MALFORMED")),
+    "a pickle of something else": (
+        lambda t: t.c.__class__.__new__(ts.Cage).__setstate__((b"",) * 12),
+        error("MALFORMED"),
+    ),
     "an attribute that is not there": (lambda t: setattr(t.b, "positions", t.c.nodes), AttributeError),
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Meshes and cages: from files and arrays, to files and pickles; long work with progress; what needs no world."""
+
 import json
 import pickle
 import struct
@@ -38,22 +39,46 @@ def stl(positions, triangles):
 
 
 def ply(positions, triangles):
-    head = (f"ply\nformat ascii 1.0\nelement vertex {len(positions)}\nproperty double x\nproperty double y\nproperty double z\n"
-            f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n")
-    return (head + "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in positions.tolist()) +
-            "".join(f"3 {a} {b} {c}\n" for a, b, c in triangles.tolist())).encode()
+    head = (
+        f"ply\nformat ascii 1.0\nelement vertex {len(positions)}\nproperty double x\nproperty double y\n"
+        "property double z\n"
+        f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    return (
+        head
+        + "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in positions.tolist())
+        + "".join(f"3 {a} {b} {c}\n" for a, b, c in triangles.tolist())
+    ).encode()
 
 
 def glb(positions, triangles):
     data = positions.astype("<f4").tobytes() + triangles.astype("<u4").tobytes()
     split = 12 * len(positions)
-    text = json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}], "buffers": [{"byteLength": len(data)}],
-        "bufferViews": [{"buffer": 0, "byteLength": split}, {"buffer": 0, "byteOffset": split, "byteLength": len(data) - split}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(positions), "type": "VEC3",
-                       "min": positions.min(0).tolist(), "max": positions.max(0).tolist()},
-                      {"bufferView": 1, "componentType": 5125, "count": 3 * len(triangles), "type": "SCALAR"}]}).encode()
+    text = json.dumps(
+        {
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "buffers": [{"byteLength": len(data)}],
+            "bufferViews": [
+                {"buffer": 0, "byteLength": split},
+                {"buffer": 0, "byteOffset": split, "byteLength": len(data) - split},
+            ],
+            "accessors": [
+                {
+                    "bufferView": 0,
+                    "componentType": 5126,
+                    "count": len(positions),
+                    "type": "VEC3",
+                    "min": positions.min(0).tolist(),
+                    "max": positions.max(0).tolist(),
+                },
+                {"bufferView": 1, "componentType": 5125, "count": 3 * len(triangles), "type": "SCALAR"},
+            ],
+        }
+    ).encode()
     text += b" " * (-len(text) % 4)
     body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
     return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
@@ -77,7 +102,17 @@ def test_other_formats_name_trimesh(tmp_path):
     assert error.value.code == ts.StatusCode.UNSUPPORTED_FORMAT
 
 
-ARRAYS = ["nodes", "tets", "vertex_tets", "volume_fraction", "stiffness_factor", "masses", "component", "source_tet", "quadratic_tet"]
+ARRAYS = [
+    "nodes",
+    "tets",
+    "vertex_tets",
+    "volume_fraction",
+    "stiffness_factor",
+    "masses",
+    "component",
+    "source_tet",
+    "quadratic_tet",
+]
 
 
 def equal(a, b):
@@ -86,7 +121,10 @@ def equal(a, b):
 
 def test_cages_and_meshes_travel(mesh, cage, tmp_path):
     calibrated = ts.calibrate(cage, poisson_ratio=0.25)
-    assert 0 < calibrated.stiffness_factor.min() <= calibrated.stiffness_factor.max() <= 1 and len(cage.stiffness_factor) == 0
+    assert (
+        0 < calibrated.stiffness_factor.min() <= calibrated.stiffness_factor.max() <= 1
+        and len(cage.stiffness_factor) == 0
+    )
     copy = pickle.loads(pickle.dumps(calibrated))
     assert equal(copy, calibrated) and copy.report == calibrated.report
     calibrated.save(tmp_path / "cage.vtk")
@@ -104,8 +142,13 @@ def test_cages_are_made_with_options(mesh):
     assert quadratic.tet_count == 8 * coarse.tet_count and quadratic.quadratic_tet.max() == coarse.tet_count - 1
 
 
-@pytest.mark.parametrize("work", [lambda mesh, cage, tell: ts.create_cage(mesh, progress=tell),
-                                  lambda mesh, cage, tell: ts.calibrate(cage, progress=tell)])
+@pytest.mark.parametrize(
+    "work",
+    [
+        lambda mesh, cage, tell: ts.create_cage(mesh, progress=tell),
+        lambda mesh, cage, tell: ts.calibrate(cage, progress=tell),
+    ],
+)
 def test_long_work_tells_its_progress_and_can_be_cancelled(mesh, cage, work):
     told = []
     work(mesh, cage, told.append)
@@ -132,7 +175,11 @@ def test_bones_draw_the_surface_of_the_skin(mesh, cage):
     rest = np.concatenate([mesh.positions, np.ones((mesh.vertex_count, 1))], 1)
     drawn = np.einsum("vb,vbij,vj->vi", palette.vertex_weights, bones, rest)
     assert np.abs(drawn - expected).max() < 1e-5
-    assert ts.BonePalette(cage, mesh, interpolation="quadratic", layout="columns").bones.shape == (cage.node_count, 4, 4)
+    assert ts.BonePalette(cage, mesh, interpolation="quadratic", layout="columns").bones.shape == (
+        cage.node_count,
+        4,
+        4,
+    )
     assert ts.BonePalette(cage, mesh, gradients=True).bones.shape == (cage.node_count, 3, 4)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Nothing dangles, whatever Python lets go of first; nothing leaks."""
+
 import gc
 import sys
 import threading
@@ -36,8 +37,17 @@ def test_views_outlive_their_owners(mesh, cage):
     palette = ts.BonePalette(cage, mesh)
     elastic = ts.ElasticBody(cage)
     own = ts.Cage(cage.nodes, cage.tets)
-    views = [body.positions, body.normals, body.nodes, body.velocities, skin.positions, palette.bones, elastic.positions,
-             own.nodes, own.tets]
+    views = [
+        body.positions,
+        body.normals,
+        body.nodes,
+        body.velocities,
+        skin.positions,
+        palette.bones,
+        elastic.positions,
+        own.nodes,
+        own.tets,
+    ]
     sums = [float(np.abs(view).sum()) for view in views]
     body.remove()
     del world, body, skin, palette, elastic, own
@@ -70,8 +80,16 @@ def test_what_was_removed_refuses_to_be_used(dropped):
     body.remove()
     body.remove()
     assert spring.released and world.bodies == []
-    for use in (lambda: body.positions, lambda: body.nodes, lambda: body.set_pinned([0]), lambda: body.youngs_modulus,
-                lambda: point.position, lambda: box.position, lambda: world.forces_on(body), lambda: world.contacts(body)):
+    for use in (
+        lambda: body.positions,
+        lambda: body.nodes,
+        lambda: body.set_pinned([0]),
+        lambda: body.youngs_modulus,
+        lambda: point.position,
+        lambda: box.position,
+        lambda: world.forces_on(body),
+        lambda: world.contacts(body),
+    ):
         with pytest.raises(ts.Error) as error:
             use()
         assert error.value.code == ts.StatusCode.BODY_DELETED
@@ -130,8 +148,13 @@ def test_threads_take_turns(dropped):
     def add_and_remove():
         world.add_sphere(0.1, mass=1, position=(0, 9, 0)).remove()
 
-    calls = [world.step, lambda: body.positions.sum(), add_and_remove, lambda: world.contacts(body),
-             lambda: world.restore(world.save()) if not failures else None]
+    calls = [
+        world.step,
+        lambda: body.positions.sum(),
+        add_and_remove,
+        lambda: world.contacts(body),
+        lambda: world.restore(world.save()) if not failures else None,
+    ]
     threads = [threading.Thread(target=work, args=(call,)) for call in calls[:4]]
     for thread in threads:
         thread.start()

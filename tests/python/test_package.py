@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """What is in the package: one symbol, few libraries, the licences, the types."""
+
 import importlib.metadata
 import shutil
 import subprocess
@@ -26,15 +27,22 @@ def test_the_module_exports_one_symbol():
 
 
 def test_the_module_needs_the_systems_libraries_alone():
-    needed = [line.split("[")[1].rstrip("]") for line in output("readelf", "-d", str(MODULE)).splitlines() if "NEEDED" in line]
+    needed = [
+        line.split("[")[1].rstrip("]") for line in output("readelf", "-d", str(MODULE)).splitlines() if "NEEDED" in line
+    ]
     assert needed and all(name.startswith(LIBRARIES) for name in needed), needed
 
 
 def test_licences_of_all_that_is_inside_are_in_the_package():
     files = {file.name: file.read_text() for file in importlib.metadata.files("tetskin") if "licences" in str(file)}
-    for name, words in {"tetskin.txt": "2026 the tetskin authors", "bullet.txt": "bulletphysics.org",
-                        "eigen.txt": "Mozilla Public License Version 2.0", "tinygltf.txt": "Syoyo Fujita",
-                        "json.txt": "Niels Lohmann", "nanobind.txt": "Wenzel Jakob"}.items():
+    for name, words in {
+        "tetskin.txt": "2026 the tetskin authors",
+        "bullet.txt": "bulletphysics.org",
+        "eigen.txt": "Mozilla Public License Version 2.0",
+        "tinygltf.txt": "Syoyo Fujita",
+        "json.txt": "Niels Lohmann",
+        "nanobind.txt": "Wenzel Jakob",
+    }.items():
         assert words in files[name]
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """What one world has: shapes, joints, bodies, contacts, touch, snapshots, runs, animations."""
+
 import json
 import struct
 
@@ -16,9 +17,14 @@ def settle(world, frames=60):
 
 
 HULL = [(x, y, z) for x in (-0.3, 0.3) for y in (-0.3, 0.3) for z in (-0.3, 0.3)]
-SHAPES = {"box": ts.Shape.box((0.3, 0.3, 0.3)), "sphere": ts.Shape.sphere(0.3), "capsule": ts.Shape.capsule(0.3, 0.01),
-          "cylinder": ts.Shape.cylinder(0.3, 0.6), "hull": ts.Shape.convex_hull(HULL),
-          "compound": ts.Shape.compound([(ts.Shape.box((0.3, 0.3, 0.15)), (0, 0, z), (0, 0, 0, 1)) for z in (-0.15, 0.15)])}
+SHAPES = {
+    "box": ts.Shape.box((0.3, 0.3, 0.3)),
+    "sphere": ts.Shape.sphere(0.3),
+    "capsule": ts.Shape.capsule(0.3, 0.01),
+    "cylinder": ts.Shape.cylinder(0.3, 0.6),
+    "hull": ts.Shape.convex_hull(HULL),
+    "compound": ts.Shape.compound([(ts.Shape.box((0.3, 0.3, 0.15)), (0, 0, z), (0, 0, 0, 1)) for z in (-0.15, 0.15)]),
+}
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -95,7 +101,10 @@ def test_pins_are_masks_and_move(mesh, cage):
     body = world.add_body(cage, mesh, pinned=held)
     assert np.array_equal(body.pinned, held)
     settle(world, 20)
-    assert np.abs(body.nodes[held] - cage.nodes[held]).max() < 1e-6 and body.nodes[:, 1].min() < cage.nodes[:, 1].min() - 0.05
+    assert (
+        np.abs(body.nodes[held] - cage.nodes[held]).max() < 1e-6
+        and body.nodes[:, 1].min() < cage.nodes[:, 1].min() - 0.05
+    )
     body.set_pinned_positions(held, cage.nodes[held] + [0, 0.1, 0])
     world.step()
     assert np.abs(body.nodes[held] - cage.nodes[held] - [0, 0.1, 0]).max() < 1e-5
@@ -105,11 +114,17 @@ def test_pins_are_masks_and_move(mesh, cage):
 
 def test_materials_are_read_and_set(mesh, cage):
     world = ts.World()
-    body = world.add_body(cage, mesh, mass=3, youngs_modulus=2e4, poisson_ratio=0.2, stiffness_damping=0.01, friction=0.9)
+    body = world.add_body(
+        cage, mesh, mass=3, youngs_modulus=2e4, poisson_ratio=0.2, stiffness_damping=0.01, friction=0.9
+    )
     assert body.mass == pytest.approx(3) and body.youngs_modulus == 2e4 and body.poisson_ratio == 0.2
     assert body.friction == pytest.approx(0.9) and body.stiffness_damping == 0.01
     body.youngs_modulus, body.poisson_ratio, body.stiffness_damping, body.friction = 1e5, 0.4, 0.0, 0.1
-    assert (body.youngs_modulus, body.poisson_ratio, body.stiffness_damping) == (1e5, 0.4, 0.0) and body.relative_stiffness > 0
+    assert (body.youngs_modulus, body.poisson_ratio, body.stiffness_damping) == (
+        1e5,
+        0.4,
+        0.0,
+    ) and body.relative_stiffness > 0
     body.set_gravity((0, 0, 0))
     settle(world, 10)
     assert np.abs(body.nodes - cage.nodes).max() < 1e-3
@@ -158,7 +173,11 @@ def test_rays_points_springs_and_welds(mesh, cage):
     world = ts.World(gravity=(0, 0, 0))
     body = world.add_body(cage, mesh)
     hit = world.raycast((1, 5, 0), (1, -5, 0))
-    assert hit.body == body and hit.point == pytest.approx([1, 0.35, 0], abs=0.02) and hit.distance == pytest.approx(4.65, abs=0.02)
+    assert (
+        hit.body == body
+        and hit.point == pytest.approx([1, 0.35, 0], abs=0.02)
+        and hit.distance == pytest.approx(4.65, abs=0.02)
+    )
     assert hit.weights.sum() == pytest.approx(1) and hit.normal[1] > 0.9
     assert world.raycast((0, 5, 0), (0, -5, 0)) is None and world.raycast_body(body, (0, 5, 0), (0, -5, 0)) is None
     point = world.point_at(hit)
@@ -256,8 +275,8 @@ def test_a_run_is_written_as_glb(mesh, cage, tmp_path):
             world.step(1 / 30)
             glb.add_frame()
     data = (tmp_path / "run.glb").read_bytes()
-    length, = struct.unpack_from("<I", data, 12)
-    document = json.loads(data[20:20 + length])
+    (length,) = struct.unpack_from("<I", data, 12)
+    document = json.loads(data[20 : 20 + length])
     assert len(document["animations"]) == 1 and {"torus", "box"} <= {node.get("name") for node in document["nodes"]}
     with pytest.raises(ts.Error):
         glb.add_frame()

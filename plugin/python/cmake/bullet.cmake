@@ -1,6 +1,6 @@
 # Bullet for the wheel, from its sources: in float, static, position-independent, and seen by nothing outside.
-#   BULLET_SOURCE  a variable of CMake or of the environment: the folder of Bullet's sources. Empty: the folder `bullet`,
-#                  which a staged source package has, or else what fetch_bullet fetches, in a checkout
+#   BULLET_SOURCE  a variable of CMake or of the environment: the folder of Bullet's sources. Empty: the folder
+#                  `bullet`, which a staged source package has, or else what fetch_bullet fetches, in a checkout
 set(BULLET_SOURCE "$ENV{BULLET_SOURCE}" CACHE PATH "Folder of the sources of Bullet 3.24; empty: they are fetched")
 set(bullet "${BULLET_SOURCE}")
 set(cure "Set BULLET_SOURCE, in the environment, to a folder of the sources of Bullet 3.24 (of its release on GitHub, "

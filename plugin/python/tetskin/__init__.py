@@ -13,8 +13,8 @@
     body.positions  # (vertices, 3) float32, a read-only view
 """
 from ._core import (AppliedForces, Body, BonePalette, Cage, Contacts, ElasticBody, Error, GlbWriter, Hit, ImpulseResult,
-                    Joint, Recorder, Replay, RigidBody, Shape, Skin, Spring, StatusCode, SurfacePoint, TriangleMesh, Weld,
-                    World, Wrench, __version__, calibrate, create_cage, load_cage, load_mesh, refine_quadratic)
+                    Joint, Recorder, Replay, RigidBody, Shape, Skin, Spring, StatusCode, SurfacePoint, TriangleMesh,
+                    Weld, World, Wrench, __version__, calibrate, create_cage, load_cage, load_mesh, refine_quadratic)
 
 __all__ = ["AppliedForces", "Body", "BonePalette", "Cage", "Contacts", "ElasticBody", "Error", "GlbWriter", "Hit",
            "ImpulseResult", "Joint", "Recorder", "Replay", "RigidBody", "Shape", "Skin", "Spring", "StatusCode",
