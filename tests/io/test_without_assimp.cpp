@@ -62,8 +62,9 @@ TEST(LoadMeshWithoutAssimp, RefusesDamagedStl) {
     expectError(loadMeshText("m.stl", binaryStl(count)), kMalformed,
                 {"m.stl: states " + std::to_string(count) + " triangles", "contains 134 bytes", "complete"});
   }
-  expectError(loadMeshText("m.stl", "solid x\n facet\n outer loop\n vertex 0 0 0\n"), kMalformed, {"line 4", "within"});
-  expectError(loadMeshText("m.stl", "solid x\n vertex 0 0\n"), kMalformed, {"line 2", "three numbers"});
+  expectError(loadMeshText("m.stl", "solid x\n facet\n outer loop\n vertex 0 0 0\n"), kMalformed,
+              {"m.stl:4: ", "within"});
+  expectError(loadMeshText("m.stl", "solid x\n vertex 0 0\n"), kMalformed, {"m.stl:2: ", "three numbers"});
   expectError(loadMeshText("m.stl", "solid x\n vertex 0 0 1e30\n"), kNonFinite, {"vertex 0"});
   for (const char* empty : {"", "solid x\nendsolid x\n", "# nothing"}) {
     expectError(loadMeshText("m.stl", empty), StatusCode::Empty, {"m.stl", "no triangles"});
