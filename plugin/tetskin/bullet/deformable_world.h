@@ -84,6 +84,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// on other processors and with other compilers; what else that takes, and how far it has been measured, is in the
   /// guide (docs/replay.md).
   void setDeterministic(bool on);
+  bool deterministic() const;
 
   /// Whether to compute Bullet's node normals (`m_n`), which drawing a body's own faces needs and a skin does not. On
   /// by default.
@@ -133,7 +134,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 struct DeformableWorldOptions {
   btVector3 gravity{0, btScalar(-9.81), 0};  ///< world length / s^2
   ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
-  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`
+  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; the world then turns rigid bodies, too
 };
 
 /// Internal to DeformableWorld: the objects that a world needs, as a base class so that they are destroyed after it.
@@ -178,6 +179,12 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   Result<std::size_t> save(void* buffer, std::size_t size) const;
   /// Restores a state in place, see `restoreSnapshot`.
   Status restore(const void* snapshot, std::size_t size);
+
+  // What Bullet calls. With a deterministic solver, rigid bodies turn by arithmetic and square roots alone.
+  void predictUnconstraintMotion(btScalar dt) override;
+
+ protected:
+  void integrateTransforms(btScalar dt) override;
 };
 
 /// Saves the state of a world, from which `restoreSnapshot` goes on: what steps change, and the application between
