@@ -19,6 +19,7 @@
 
 #include "bench/body_cases.h"
 #include "bench/contact_cases.h"
+#include "bench/deterministic_cases.h"
 #include "bench/palette_cases.h"
 #include "bench/pile_cases.h"
 #include "bench/snapshot_cases.h"
@@ -358,6 +359,7 @@ int main(int argc, char** argv) {
       bench::registerBodyCases();
       bench::registerStepCases();
       bench::registerSnapshotCases();
+      bench::registerDeterministicCases();
       bench::registerContactCases();
       bench::registerPileCases();
       bench::registerTouchCases();

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Plays a run that a demo has recorded by --record: calls that demo with its arguments, and with --replay.
+// Plays a recorded run. Of one that a demo has recorded by --record, it calls that demo with its arguments, and with
+// --replay. Of others, it builds the world from the file.
 #include <tetskin/bullet/recorder.h>
+#include <tetskin/contact/soft_contacts.h>
 #include <tetskin/tetskin.h>
+#include <tetskin/touch/surface_joint.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
+#include "scenes/stepping.h"
 #include "scenes/system.h"
 
 namespace {
@@ -25,20 +30,28 @@ struct Call {
   std::vector<std::string> arguments;
 };
 
-Call callOf(const std::string& file) {
-  const Result<std::string> description = Replay::descriptionOf(file);
-  require(description.status());
-  const nlohmann::json made = nlohmann::json::parse(description.value(), nullptr, false);
+/// Empty: it was recorded by another program than a demo.
+std::optional<Call> callOf(const std::string& description) {
+  const nlohmann::json made = nlohmann::json::parse(description, nullptr, false);
   try {
-    return {made.at("program"), made.at("tetskin"), made.at("arguments")};
+    return Call{made.at("program"), made.at("tetskin"), made.at("arguments")};
   } catch (const nlohmann::json::exception&) {
-    throw InputError(file +
-                     ": was recorded by another program than a demo; build its world, and play it by tetskin::Replay");
+    return {};
   }
 }
 
-int replay(const std::string& folder, const std::string& file, bool quiet) {
-  const Call call = callOf(file);
+int playFile(const std::string& file, const std::string& description, bool quiet) {
+  Result<std::unique_ptr<Replay>> opened = Replay::open(file, {builderOfSoftContacts(), builderOfJoints()});
+  require(opened.status());
+  Replay& replay = *opened.value();
+  if (!quiet && !description.empty()) std::printf("%s\n", description.c_str());
+  while (replay.step()) {
+  }
+  std::printf("%s\n", findingOf(replay).c_str());
+  return replay.status().ok() && !replay.report().differs ? 0 : 1;
+}
+
+int callDemo(const std::string& folder, const std::string& file, const Call& call, bool quiet) {
   const std::filesystem::path name = std::filesystem::path(call.program).filename();  // never one from elsewhere
   if (name.string().rfind("tetskin_", 0) != 0) throw InputError(file + ": names no demo");
   std::vector<std::string> command = {(std::filesystem::path(folder) / name).string()};
@@ -59,14 +72,21 @@ int replay(const std::string& folder, const std::string& file, bool quiet) {
   return status;
 }
 
+int replay(const std::string& folder, const std::string& file, bool quiet) {
+  const Result<std::string> description = Replay::descriptionOf(file);
+  require(description.status());
+  const std::optional<Call> call = callOf(description.value());
+  return call ? callDemo(folder, file, *call, quiet) : playFile(file, description.value(), quiet);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::string file;
   bool quiet = false;
   CommandLine line(
-      "Plays a run again that a demo has recorded by --record, and says the first step that differs, and in "
-      "which body.",
+      "Plays a run again that a demo has recorded by --record, or any program by tetskin::Recorder, and says the first "
+      "step that differs, and in which body.",
       {{{"tetskin_drop --record drop.replay", "records"}, {"tetskin_replay drop.replay", "plays, in its folder"}},
        "a step differs from the recorded one, or the run failed"});
   line.addInput("file,--file", file, "The recorded run", CommandLine::Need::Required);

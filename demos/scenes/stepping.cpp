@@ -63,6 +63,7 @@ class IntoAFile : public Stepping {
     const nlohmann::ordered_json made = {
         {"program", output.program}, {"arguments", output.arguments}, {"tetskin", TETSKIN_VERSION}};
     options.description = made.dump();
+    options.buildUp = false;  // the demo builds its world
     Result<std::unique_ptr<Recorder>> started = Recorder::start(world, path_, options);
     require(started.status());
     recorder_ = std::move(started).value();
@@ -93,13 +94,7 @@ class FromAFile : public Stepping {
     return ended_ ? 0 : 1;
   }
   bool hasEnded() const override { return ended_ || replay_->report().differs; }
-  std::string finding() const override {
-    const ReplayReport& report = replay_->report();
-    if (!replay_->status().ok()) return replay_->status().message;
-    if (report.differs) return "step " + std::to_string(report.steps) + " differs, first in " + report.object;
-    return std::to_string(report.steps) + " steps are as recorded, to the last bit" +
-           (report.cutShort ? "; the file ends within the next one" : "");
-  }
+  std::string finding() const override { return findingOf(*replay_); }
   bool holds() const override { return replay_->status().ok() && !replay_->report().differs; }
 
  private:
@@ -108,6 +103,14 @@ class FromAFile : public Stepping {
 };
 
 }  // namespace
+
+std::string findingOf(const Replay& replay) {
+  const ReplayReport& report = replay.report();
+  if (!replay.status().ok()) return replay.status().message;
+  if (report.differs) return "step " + std::to_string(report.steps) + " differs, first in " + report.object;
+  return std::to_string(report.steps) + " steps are as recorded, to the last bit" +
+         (report.cutShort ? "; the file ends within the next one" : "");
+}
 
 std::unique_ptr<Stepping> steppingBy(const OutputOptions& options, BulletWorld* world) {
   const int wanted =

@@ -9,6 +9,10 @@
 
 class btDeformableMultiBodyDynamicsWorld;
 
+namespace tetskin {
+class Replay;
+}
+
 namespace tetskin::scenes {
 
 struct OutputOptions;
@@ -25,6 +29,9 @@ class Stepping {
   /// False if the run has been another one than it should have been.
   virtual bool holds() const { return true; }
 };
+
+/// What a run has found that was played, in a line.
+std::string findingOf(const Replay& replay);
 
 /// By the options; null: as they come. Throws InputError where a file cannot be used, or the world has something that
 /// cannot be saved.

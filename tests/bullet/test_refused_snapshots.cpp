@@ -168,6 +168,27 @@ TEST_F(RefusedSnapshots, AreNoneOfAWorldWithinAStep) {
   for (const Status& status : during) expectStatus(status, StatusCode::NotSaved, "within a step");
 }
 
+/// How many steps are left, and whose forces last until then, is not known there.
+TEST_F(RefusedSnapshots, AreNoneBetweenTheStepsOfAFrame) {
+  static Snapshot buffer;
+  buffer = snapshot;
+  static std::vector<Status> during;
+  for (const bool before : {true, false}) {
+    during.clear();
+    const auto tick = [](btDynamicsWorld* of, btScalar) {
+      auto& world = static_cast<btDeformableMultiBodyDynamicsWorld&>(*of);
+      during.push_back(saveSnapshot(world, buffer.data(), buffer.size()).status());
+      during.push_back(restoreSnapshot(world, buffer.data(), buffer.size()));
+    };
+    scene.world.setInternalTickCallback(tick, nullptr, before);
+    scene.step();
+    scene.world.setInternalTickCallback(nullptr, nullptr, before);
+    EXPECT_EQ(during.size(), 4u) << "two steps";
+    for (const Status& status : during) expectStatus(status, StatusCode::NotSaved, "until stepSimulation ends");
+  }
+  EXPECT_TRUE(scene.world.restore(snapshot.data(), snapshot.size()).ok());
+}
+
 TEST_F(RefusedSnapshots, OfAnotherKindOfMachineOrVersion) {
   const auto changed = [this](std::size_t at) {
     Snapshot bytes = snapshot;

@@ -4,6 +4,7 @@
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
 #include <functional>
+#include <string>
 
 #include "deformable_test.h"
 #include "support/bars.h"
@@ -123,6 +124,69 @@ TEST(SnapshotsOfSoftBodies, OfBulletsOwnForces) {
     };
     expectReplays(make, 30, {0, 9, 20});
   }
+}
+
+TEST(SnapshotsOfSoftBodies, OfBulletsOwnForcesOnAFloor) {
+  const auto make = [] {
+    SoftBodyOptions options;
+    options.forceModel = ForceModel::NeoHookean;
+    auto scene = withBar(0.02, false, options);
+    scene->soft().rotate(btQuaternion(btVector3(0, 0, 1), btScalar(0.3)));
+    return scene;
+  };
+  expectReplays(make, 90, {0, 9, 20, 60});
+}
+
+void expectMismatch(Scene& scene, const Bytes& snapshot, const std::string& named) {
+  const Bytes before = saved(scene);
+  const Status status = restoreSnapshot(scene.world(), snapshot.data(), snapshot.size());
+  EXPECT_EQ(status.code, StatusCode::SnapshotMismatch) << status.message;
+  EXPECT_NE(status.message.find(named), std::string::npos) << status.message;
+  EXPECT_EQ(saved(scene), before);
+}
+
+/// Moving a body by hand turns the tree of its nodes, by which Bullet searches.
+TEST(SnapshotsOfSoftBodies, WhoseTreesHaveChangedAreRefusedWhereBulletSearches) {
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::NeoHookean;
+  const auto bullets = withBar(0.1, false, options), ours = withBar(0.1, false);
+  for (Scene* scene : {bullets.get(), ours.get()}) {
+    scene->frame(0);
+    const Bytes snapshot = saved(*scene);
+    scene->soft().rotate(btQuaternion(btVector3(0, 0, 1), 1));
+    if (scene == bullets.get()) {
+      expectMismatch(*scene, snapshot, "other trees");
+    } else {
+      restore(*scene, snapshot);
+    }
+  }
+}
+
+TEST(SnapshotsOfSoftBodies, WithOtherAnchorsAreRefused) {
+  struct Anchored : Scene {
+    explicit Anchored(int node) {
+      bodies.push_back(added(worldOf, makeBox({8, 2, 2}, {2.0, 0.5, 0.5})));
+      world().addRigidBody(&box);
+      soft().appendDeformableAnchor(node, &box);
+    }
+    ~Anchored() override {
+      bodies.clear();
+      world().removeRigidBody(&box);
+    }
+    btBoxShape shape{btVector3(1, 1, 1)};
+    btRigidBody box{1, nullptr, &shape, btVector3(1, 1, 1)};
+  };
+  Anchored first(0), same(0), other(1);
+  expectMismatch(other, saved(first), "other anchors");
+  restore(same, saved(first));
+}
+
+TEST(SnapshotsOfSoftBodies, WithClustersAreNotSaved) {
+  const auto scene = withBar(kFarUp, false);
+  scene->soft().generateClusters(4);
+  const Status status = saveSnapshot(scene->world(), nullptr, 0).status();
+  EXPECT_EQ(status.code, StatusCode::NotSaved);
+  EXPECT_NE(status.message.find("clusters"), std::string::npos) << status.message;
 }
 
 TEST(SnapshotsOfSoftBodies, OfSettingsThatTheApplicationChanges) {

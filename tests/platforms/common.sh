@@ -172,6 +172,22 @@ drop_hashes() {
   done <"$repository/tests/platforms/hashes.txt"
 }
 
+# scene_hashes FRAMES COMMAND...: runs replay_hashes, the scenes of tests/replay, for this many frames, of which 60, 120
+# and 240 have hashes. They must be those in hashes.txt.
+scene_hashes() {
+  "${@:2}" "$1" >"$folder/scenes.txt" || fail "${*:2} ended with status $?"
+  tr -d '\r' <"$folder/scenes.txt" >"$folder/found_scenes.txt"
+  cat "$folder/found_scenes.txt"
+  local scene found expected count=0
+  while read -r scene found; do
+    expected=$(sed -n "s/^$scene //p" "$repository/tests/platforms/hashes.txt")
+    [ -n "$found" ] && [[ "$expected " == "$found "* ]] ||
+      fail "the hashes of the scene $scene are not those in hashes.txt, $expected"
+    count=$((count + 1))
+  done <"$folder/found_scenes.txt"
+  [ $count -eq 5 ] || fail "${*:2} printed $count scenes of 5"
+}
+
 # run_tests FILTER PROGRAM [LAUNCHER...]: builds a program with tests in the application's folder, and runs those that
 # match.
 run_tests() {
@@ -187,7 +203,7 @@ cross() {
   [ -d "$folder_of_gtest" ] || not_run "no sources of GoogleTest (apt-get install libgtest-dev)"
   set -- "$@" -DGTEST_FOLDER="$folder_of_gtest"
   bullet_source
-  form -DBULLET_FOLDER="$bullet" -DCMAKE_DISABLE_FIND_PACKAGE_Bullet=ON "${bullet_options[@]}" \
+  form -DREPLAY_HASHES=ON -DBULLET_FOLDER="$bullet" -DCMAKE_DISABLE_FIND_PACKAGE_Bullet=ON "${bullet_options[@]}" \
     -DEigen3_DIR=/usr/share/eigen3/cmake "$@"
-  cmake --build "$folder/form" --target hello drop_hash --parallel "$(nproc)" | tail -n 3
+  cmake --build "$folder/form" --target hello drop_hash replay_hashes --parallel "$(nproc)" | tail -n 3
 }

@@ -224,6 +224,15 @@ TEST(Snapshots, OfADeterministicWorldGoOnInANewOne) {
   }
 }
 
+TEST(Snapshots, OfAWorldWithoutSoftBodiesChangeNothing) {
+  DeformableWorld world;
+  const Newcomer ball(world);
+  std::vector<unsigned char> first(world.save(nullptr, 0).value()), second(first.size());
+  ASSERT_TRUE(world.save(first.data(), first.size()).ok());
+  ASSERT_TRUE(world.save(second.data(), second.size()).ok());
+  EXPECT_EQ(first, second);
+}
+
 TEST(Recorder, RefusesOptionsAndPlacesThatItCannotUse) {
   const auto scene = ReplayScene::create("drag");
   const TemporaryFile file("refused");

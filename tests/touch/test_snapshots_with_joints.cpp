@@ -59,6 +59,37 @@ TEST(SnapshotsWithJoints, ThatAreGoneAreRefusedAndChangeNothing) {
   EXPECT_TRUE(saved(scene) == before);
 }
 
+/// Two bodies, on one of which something acts.
+struct Two {
+  Two() = default;
+  Status restoreInto(Two& other) {
+    Bytes snapshot(saveSnapshot(world->deformable(), nullptr, 0).value());
+    (void)saveSnapshot(world->deformable(), snapshot.data(), snapshot.size()).value();
+    return restoreSnapshot(other.world->deformable(), snapshot.data(), snapshot.size());
+  }
+  std::unique_ptr<TetskinWorld> world = deformableWorld(10);
+  TouchedBody bodies[2] = {TouchedBody(*world, TouchModel(0.38, 3.0)), TouchedBody(*world, TouchModel(0.38, 6.0))};
+  SurfacePoint points[2] = {bodies[0].vertex(7), bodies[1].vertex(7)};
+};
+
+TEST(SnapshotsWithJoints, OfALoadOnAnotherBodyAreRefused) {
+  Two first, same, other;
+  EXPECT_EQ(first.points[0].applyForce(btVector3(3, 0, 0), 100), StatusCode::Ok);
+  EXPECT_EQ(same.points[0].applyForce(btVector3(1, 0, 0), 5), StatusCode::Ok);
+  EXPECT_EQ(other.points[1].applyForce(btVector3(3, 0, 0), 100), StatusCode::Ok);
+  EXPECT_TRUE(first.restoreInto(same).ok());
+  const Status refused = first.restoreInto(other);
+  EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch);
+  EXPECT_NE(refused.message.find("loads"), std::string::npos) << refused.message;
+}
+
+TEST(SnapshotsWithJoints, OfASpringOfAnotherBodyAreRefused) {
+  Two first, other;
+  const auto spring = SurfaceSpring::add(first.world->deformable(), first.points[0]).value();
+  const auto otherSpring = SurfaceSpring::add(other.world->deformable(), other.points[1]).value();
+  EXPECT_EQ(first.restoreInto(other).code, StatusCode::SnapshotMismatch);
+}
+
 TEST(SnapshotsWithJoints, OfALoadThatActsOn) {
   Hanging first(false), second(false);
   for (int f = 0; f < 11; ++f) {

@@ -24,6 +24,7 @@ class RecordedForces;
 class WorldStream;
 bool isWithinStep(const DeformableSolver& solver);
 void visitSolver(WorldStream& stream, DeformableSolver& solver);
+void visitSolverSettings(WorldStream& stream, DeformableSolver& solver);
 }  // namespace bullet_detail
 
 /// Seconds that the stages of a DeformableSolver's steps have taken, wall time, in the order in which a step runs them.
@@ -83,6 +84,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// on other processors and with other compilers; what else that takes, and how far it has been measured, is in the
   /// guide (docs/replay.md).
   void setDeterministic(bool on);
+  bool deterministic() const;
 
   /// Whether to compute Bullet's node normals (`m_n`), which drawing a body's own faces needs and a skin does not. On
   /// by default.
@@ -120,8 +122,10 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 
  private:
   struct Impl;
+  friend class DeformableWorld;
   friend class ForceRecord;
   friend void bullet_detail::visitSolver(bullet_detail::WorldStream& stream, DeformableSolver& solver);
+  friend void bullet_detail::visitSolverSettings(bullet_detail::WorldStream& stream, DeformableSolver& solver);
   friend bool bullet_detail::isWithinStep(const DeformableSolver& solver);
   std::unique_ptr<Impl> impl_;
 };
@@ -130,7 +134,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
 struct DeformableWorldOptions {
   btVector3 gravity{0, btScalar(-9.81), 0};  ///< world length / s^2
   ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
-  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`
+  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; the world then turns rigid bodies, too
 };
 
 /// Internal to DeformableWorld: the objects that a world needs, as a base class so that they are destroyed after it.
@@ -168,10 +172,19 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
 
+  int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
+                     btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
+
   /// Saves the state of the world, see `saveSnapshot`.
   Result<std::size_t> save(void* buffer, std::size_t size) const;
   /// Restores a state in place, see `restoreSnapshot`.
   Status restore(const void* snapshot, std::size_t size);
+
+  // What Bullet calls. With a deterministic solver, rigid bodies turn by arithmetic and square roots alone.
+  void predictUnconstraintMotion(btScalar dt) override;
+
+ protected:
+  void integrateTransforms(btScalar dt) override;
 };
 
 /// Saves the state of a world, from which `restoreSnapshot` goes on: what steps change, and the application between

@@ -6,8 +6,9 @@
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/src/base/body_elements.h>
 #include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
-#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/bullet/src/build/soft_bodies.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
@@ -128,14 +129,14 @@ Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
 }  // namespace
 
 /// The members of a DeformableBody, in such an order that forces are destroyed before the body on which they act.
-struct DeformableBody::Impl {
+struct DeformableBody::Impl final : BodyOwner {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
       : world(ofWorld),
         solver(ofSolver),
         hasOwnSolver(deformableSolver(&ofSolver)),
         list(*ofSolver.getLagrangianForceArray()),
         body(std::move(made)),
-        gravity(ofWorld, list, !hasOwnSolver) {}
+        gravity(ofWorld, list, !hasOwnSolver, *this) {}
 
   btDeformableMultiBodyDynamicsWorld& world;
   btDeformableBodySolver& solver;
@@ -172,7 +173,12 @@ struct DeformableBody::Impl {
     if (status.ok()) apply(now);
     return status;
   }
-  void visitState(WorldStream& stream);
+  void enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
+             std::vector<QuadraticShape> quadratic);
+  void visitState(WorldStream& stream) override;
+  void describe(BuildStream& stream) override;
+  btSoftBody& ownedBody() override { return *body; }
+  btDeformableLagrangianForce& elasticForce() override { return *elasticity; }
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
@@ -230,24 +236,27 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
 
   auto impl = std::make_unique<Impl>(world, solver, std::move(body));
   for (const double m : masses) impl->masses.push_back(static_cast<btScalar>(m));
-  impl->forceModel = options.forceModel;
   impl->material = material;
   impl->weightPressure = pressure;
-  impl->makeElasticity(options, rest.value(), std::move(quadratic).value());
-  impl->gravity.setOwnersState([own = impl.get()](WorldStream& stream) { own->visitState(stream); });
-  for (btDeformableLagrangianForce* force :
-       {static_cast<btDeformableLagrangianForce*>(&impl->gravity), impl->elasticity.get()}) {
+  impl->enter(options, rest.value(), std::move(quadratic).value());
+  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
+}
+
+/// The body is in the world: adds its forces.
+void DeformableBody::Impl::enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
+                                 std::vector<QuadraticShape> quadratic) {
+  forceModel = options.forceModel;
+  makeElasticity(options, linear, std::move(quadratic));
+  for (btDeformableLagrangianForce* force : {static_cast<btDeformableLagrangianForce*>(&gravity), elasticity.get()}) {
     force->setIndices(solver.getIndices());
   }
-  addToList(impl->list, impl->gravity, *impl->elasticity, *impl->body);
-  if (corotated) {
-    static_cast<DeformableSolver&>(solver).requireOwnSolve();
-    btDispatcher& dispatcher = *world.getDispatcher();
-    if (!isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
-      registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
-    }
+  addToList(list, gravity, *elasticity, *body);
+  if (forceModel != ForceModel::Corotated) return;
+  static_cast<DeformableSolver&>(solver).requireOwnSolve();
+  btDispatcher& dispatcher = *world.getDispatcher();
+  if (!isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
+    registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
   }
-  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
 }
 
 void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
@@ -279,6 +288,44 @@ void DeformableBody::Impl::visitState(WorldStream& stream) {
   if (now == material) return;
   material = now;
   applyMaterial(now);
+}
+
+void DeformableBody::Impl::describe(BuildStream& stream) {
+  BodyParts parts;
+  parts.readFrom(stream, *body);
+  parts.masses.assign(masses.begin(), masses.end());
+  parts.material = material;
+  parts.weightPressure = weightPressure;
+  parts.forceModel = static_cast<int>(forceModel);
+  if (forceModel == ForceModel::Corotated) {
+    auto& force = static_cast<ElasticForce&>(*elasticity);
+    parts.settings = force.settings();
+    parts.stiffnessScale = force.body().stiffnessScale;
+    parts.quadratic = force.body().quadratic;
+  }
+  parts.visit(stream);
+}
+
+std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& stream) {
+  btDeformableMultiBodyDynamicsWorld& world = stream.world();
+  BodyParts parts;
+  parts.visit(stream);
+  const SoftBodyOptions options = parts.options();
+  std::unique_ptr<btSoftBody> body = parts.build(stream, options);
+  if (!body) return nullptr;
+  const bool corotated = options.forceModel == ForceModel::Corotated;
+  Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
+  for (const Status& status : {rest.status(), checkMaterial(parts.material), checkStiffness(*body, parts.material)}) {
+    if (!status.ok()) stream.refuse(status.message);
+  }
+  if (stream.failed()) return nullptr;
+  world.addSoftBody(body.get(), parts.filters.group, parts.filters.mask);
+  auto impl = std::make_unique<DeformableBody::Impl>(world, solverOf(world), std::move(body));
+  impl->masses = std::move(parts.masses);
+  impl->material = parts.material;
+  impl->weightPressure = parts.weightPressure;
+  impl->enter(options, rest.value(), std::move(parts.quadratic));
+  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
 }
 
 ForceModel DeformableBody::forceModel() const {

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/motion/rigid_turns.h>
+#include <tetskin/bullet/src/step/step.h>
 #include <tetskin/bullet/src/step/watched_detection.h>
 
 namespace tetskin {
@@ -19,6 +21,7 @@ struct DeformableWorldObjects::Impl {
   WatchedBroadphase broadphase;
   DeformableSolver deformableSolver;
   btDeformableMultiBodyConstraintSolver constraintSolver;
+  RigidTurns turns;
 };
 
 DeformableWorldObjects::DeformableWorldObjects() : impl_(std::make_unique<Impl>()) {}
@@ -35,6 +38,13 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
 
 DeformableWorld::~DeformableWorld() = default;
 
+/// Between the steps of one call, a world is in no state of its own: Bullet knows how many steps are left, and clears
+/// the application's forces after the last one.
+int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
+  const Running simulation(impl_->deformableSolver.impl_->inSimulation);
+  return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+}
+
 DeformableSolver& DeformableWorld::deformableSolver() {
   return impl_->deformableSolver;
 }
@@ -46,6 +56,26 @@ btDbvtBroadphase& DeformableWorld::broadphase() {
 }
 btCollisionDispatcher& DeformableWorld::dispatcher() {
   return impl_->dispatcher;
+}
+
+/// As of btDeformableMultiBodyDynamicsWorld, with turns by our own sine after Bullet's.
+void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
+  if (!impl_->deformableSolver.deterministic()) {
+    return btDeformableMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
+  }
+  btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
+  RigidTurns::predict(m_nonStaticRigidBodies, dt);
+  impl_->deformableSolver.predictMotion(dt);
+}
+
+/// As of btDeformableMultiBodyDynamicsWorld, likewise.
+void DeformableWorld::integrateTransforms(btScalar dt) {
+  if (!impl_->deformableSolver.deterministic()) return btDeformableMultiBodyDynamicsWorld::integrateTransforms(dt);
+  positionCorrection(dt);
+  impl_->turns.begin(m_nonStaticRigidBodies);
+  btMultiBodyDynamicsWorld::integrateTransforms(dt);
+  impl_->turns.end(m_nonStaticRigidBodies, dt);
+  impl_->deformableSolver.applyTransforms(dt);
 }
 
 }  // namespace tetskin

@@ -53,10 +53,12 @@ void addToList(ForceList& list, BodyGravity& gravity, btDeformableLagrangianForc
   }
 }
 
-BodyGravity::BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals)
+BodyGravity::BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals,
+                         BodyOwner& owner)
     : OwnForce<btDeformableGravityForce>(list, world.getGravity()),
       world_(world),
-      isToldOfRemovals_(isToldOfRemovals) {}
+      isToldOfRemovals_(isToldOfRemovals),
+      owner_(owner) {}
 
 btDeformableLagrangianForceType BodyGravity::getForceType() {
   return inCallback_ ? BT_GRAVITY_FORCE : kOwnForceType;
@@ -87,7 +89,7 @@ void BodyGravity::visitState(WorldStream& stream) {
   if (stream.restoring()) own_ = isSet ? std::optional<btVector3>(m_gravity) : std::nullopt;
   if (isSet) stream(*own_);
   stream(m_gravity);
-  if (visitOwners_) visitOwners_(stream);
+  owner_.visitState(stream);
 }
 
 /// Explicit worlds do not ask for gravity.

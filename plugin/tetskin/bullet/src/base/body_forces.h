@@ -13,12 +13,12 @@
 #include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/export.h>
 
-#include <functional>
 #include <optional>
 #include <utility>
 
 namespace tetskin::bullet_detail {
 
+class BuildStream;
 class WorldStream;
 
 using ForceList = btAlignedObjectArray<btDeformableLagrangianForce*>;
@@ -45,6 +45,9 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
   virtual void visitState(WorldStream& /*stream*/) {}
   /// Writes what a snapshot takes for granted; refuses, while reading, where it is not so.
   virtual void checkState(WorldStream& /*stream*/) {}
+  /// Which SourceBuilder makes such an entry from what `describe` writes; null: none.
+  virtual const char* builderName() const { return nullptr; }
+  virtual void describe(BuildStream& /*stream*/) {}
 
  private:
   OwnObject registered_{OwnObject::Kind::InactiveForce, static_cast<const btDeformableLagrangianForce*>(this)};
@@ -83,6 +86,20 @@ class OwnForce : public Force {
   ForceList& list_;
 };
 
+/// What has created a body, its gravity and its elasticity.
+class BodyOwner {
+ public:
+  /// Writes or reads what it has of the body beside Bullet's state.
+  virtual void visitState(WorldStream& stream) = 0;
+  /// Describes the body, so that it can be built again.
+  virtual void describe(BuildStream& stream) = 0;
+  virtual btSoftBody& ownedBody() = 0;
+  virtual btDeformableLagrangianForce& elasticForce() = 0;
+
+ protected:
+  ~BodyOwner() = default;
+};
+
 /// Gravity of one body: that of the world in each substep, unless it is set.
 ///
 /// In implicit worlds Bullet asks the list for the last force of type BT_GRAVITY_FORCE, gives all bodies that gravity
@@ -92,7 +109,8 @@ class OwnForce : public Force {
 class BodyGravity : public OwnForce<btDeformableGravityForce> {
  public:
   /// isToldOfRemovals  the solver calls `reinitialize` when a body has been removed, as Bullet's does
-  BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals);
+  BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals, BodyOwner& owner);
+  BodyOwner& owner() const { return owner_; }
   btDeformableMultiBodyDynamicsWorld& world() const { return world_; }
 
   /// gravity  world units per second squared; empty: the world's
@@ -100,7 +118,6 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
 
   /// Writes or reads the gravity, and what else its owner has of the body.
   void visitState(WorldStream& stream);
-  void setOwnersState(std::function<void(WorldStream&)> visit) { visitOwners_ = std::move(visit); }
 
   btDeformableLagrangianForceType getForceType() override;
   /// Called for any body: forces are told before it leaves the world.
@@ -126,7 +143,7 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   std::optional<btVector3> own_;
   const btSoftBody* removed_ = nullptr;  ///< until the next call of `reinitialize`
   bool inCallback_ = false;
-  std::function<void(WorldStream&)> visitOwners_;
+  BodyOwner& owner_;
 };
 
 /// Adds forces for a body to the list: gravity before all others, elasticity after them.

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/base/opened_member.h>
 #include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 
 namespace tetskin::bullet_detail {
+
+struct SolverOfWorld {
+  friend btDeformableBodySolver* btDeformableMultiBodyDynamicsWorld::*memberOf(SolverOfWorld);
+};
+template struct Opened<SolverOfWorld, &btDeformableMultiBodyDynamicsWorld::m_deformableBodySolver>;
 
 DeformableSolver* deformableSolver(btSoftBodySolver* solver) {
   return asOwn<DeformableSolver>(OwnObject::Kind::DeformableSolver, solver);
@@ -16,15 +22,7 @@ DeformableSolver* deformableSolverOf(const btSoftBody& body) {
 }
 
 btDeformableBodySolver& solverOf(btDeformableMultiBodyDynamicsWorld& world) {
-  const auto named = [](btSoftBody& body) -> btDeformableBodySolver& {
-    return static_cast<btDeformableBodySolver&>(*body.getSoftBodySolver());
-  };
-  if (world.getSoftBodyArray().size() > 0) return named(*world.getSoftBodyArray()[0]);
-  btSoftBody nothing(&world.getWorldInfo());
-  world.addSoftBody(&nothing);
-  btDeformableBodySolver& solver = named(nothing);
-  world.removeSoftBody(&nothing);
-  return solver;
+  return *(world.*memberOf(SolverOfWorld()));
 }
 
 DeformableSolver* deformableSolverOf(btDeformableMultiBodyDynamicsWorld& world) {

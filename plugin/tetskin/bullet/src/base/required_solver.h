@@ -21,8 +21,7 @@ TETSKIN_BULLET_API DeformableSolver* deformableSolver(btSoftBodySolver* solver);
 /// The solver of the body's world; null if the body is in none, or its world has another solver.
 TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(const btSoftBody& body);
 
-/// The solver of any deformable world. Bullet reveals it to bodies only: if there is no body, an empty one is added for
-/// the duration of the call.
+/// The solver of any deformable world. Bullet reveals it to bodies only; adding one would change the ids of others.
 TETSKIN_BULLET_API btDeformableBodySolver& solverOf(btDeformableMultiBodyDynamicsWorld& world);
 /// Null if the world has another solver.
 TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(btDeformableMultiBodyDynamicsWorld& world);

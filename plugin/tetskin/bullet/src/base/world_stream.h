@@ -99,6 +99,10 @@ class WorldStream : public StateStream {
     (*this)(saved);
     if (saved != now) refuse(otherwise);
   }
+  /// The object must be the same one: that which has its place in the world. Null, or not in the world: none.
+  void sameObject(const btCollisionObject* object, const char* otherwise) {
+    same(object ? indexOf(*object) : -1, otherwise);
+  }
 
  private:
   /// -1: it is not in the world. The same one is asked for many times in succession.

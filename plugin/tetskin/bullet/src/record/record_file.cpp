@@ -93,6 +93,22 @@ std::optional<StepChunk> StepChunk::fromBytes(const Bytes& bytes) {
   return step;
 }
 
+Bytes WorldBuildUp::toBytes() const {
+  Bytes bytes;
+  putList(bytes, described);
+  putList(bytes, reason);
+  return bytes;
+}
+
+std::optional<WorldBuildUp> WorldBuildUp::fromBytes(const Bytes& bytes) {
+  WorldBuildUp buildUp;
+  Taker taker(bytes);
+  taker.takeList(buildUp.described);
+  taker.takeList(buildUp.reason);
+  if (!taker.isWhole()) return {};
+  return buildUp;
+}
+
 Status RecordWriter::open(const std::string& path) {
   path_ = path;
   file_.open(std::filesystem::u8path(path), std::ios::binary | std::ios::trunc);

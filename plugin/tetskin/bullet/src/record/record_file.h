@@ -21,6 +21,8 @@ enum class ChunkKind : std::uint32_t {
   Snapshot = 2,     ///< the state before the next step
   Change = 3,       ///< the same, after objects were added or removed
   Step = 4,         ///< see StepChunk
+  BuildUp = 5,      ///< of the world in the snapshot that follows: see WorldBuildUp
+  Copy = 6,         ///< a large value of build-ups: see CopyStore
 };
 
 struct Chunk {
@@ -40,6 +42,15 @@ struct StepChunk {
   Bytes toBytes() const;
   /// Empty for bytes that are no such chunk.
   static std::optional<StepChunk> fromBytes(const Bytes& bytes);
+};
+
+/// How a world is built, or why this cannot be said.
+struct WorldBuildUp {
+  Bytes described;     ///< see `describeWorld`
+  std::string reason;  ///< empty: it could be described
+
+  Bytes toBytes() const;
+  static std::optional<WorldBuildUp> fromBytes(const Bytes& bytes);
 };
 
 class RecordWriter {

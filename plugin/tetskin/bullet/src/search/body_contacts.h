@@ -62,6 +62,7 @@ class BodyContacts {
 
   BodyWithTrees& body() const { return body_; }
   const PointCollider& search() const { return search_; }
+  btScalar thickness() const { return thickness_; }
 
  private:
   /// An object that is met, and its shape and path at that moment.

@@ -21,11 +21,15 @@ bool collidesWithSoftBodies(btSoftBody& body) {
   return (body.m_cfg.collisions & btSoftBody::fCollision::SVSmask) != 0 || body.useSelfCollision();
 }
 
-bool needsBulletsTrees(btSoftBody& body) {
+bool collidesByBulletsTrees(btSoftBody& body) {
   constexpr int kFaces = btSoftBody::fCollision::SDF_RDF | btSoftBody::fCollision::SDF_MDF;
   const int rigid = body.m_cfg.collisions & btSoftBody::fCollision::RVSmask;
   const bool atNodes = rigid == 0 || rigid == btSoftBody::fCollision::SDF_RD;
-  return body.m_bUpdateRtCst || !atNodes || (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
+  return !atNodes || (body.m_cfg.collisions & kFaces) != 0 || collidesWithSoftBodies(body);
+}
+
+bool needsBulletsTrees(btSoftBody& body) {
+  return body.m_bUpdateRtCst || collidesByBulletsTrees(body);
 }
 
 void PaddedTrees::fit(btSoftBody& body, Dynamics& dynamics, btScalar step) {

@@ -16,6 +16,8 @@ bool collidesWithSoftBodies(btSoftBody& body);
 /// True if Bullet's own search for contacts is going to use the body's trees, as the application wants contact at its
 /// faces, or of another kind than at nodes. Its nodes must then be at their predicted positions.
 bool needsBulletsTrees(btSoftBody& body);
+/// True if Bullet searches for its contacts by these trees.
+bool collidesByBulletsTrees(btSoftBody& body);
 
 /// Where the nodes were when a body's tree of faces was fitted. The leaves are padded: as long as nodes stay in them,
 /// rays miss nothing.

@@ -2,11 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to snapshots: members of Bullet's classes that it does not show. A world goes on to the last bit only if
-// they are put back as they were, and Bullet's setters compute or round. Access is not checked where a template is
-// instantiated explicitly ([temp.spec.general]), so that this is C++ as it is written, and breaks at compile time when
-// a member is renamed. Nothing else in the library may reach into Bullet in this way.
+// they are put back as they were, and Bullet's setters compute or round.
 #pragma once
 
+#include <tetskin/bullet/src/base/opened_member.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 
 #include <type_traits>
@@ -36,14 +35,6 @@ void visitAll(WorldStream& stream, Members&... members) {
 template <class Object, auto... members>
 struct Visited {
   friend void visitMembers(WorldStream& stream, Object& object) { visitAll(stream, object.*members...); }
-};
-
-/// One member: after `struct Name { friend Type Object::*memberOf(Name); }`,
-///     template struct Opened<Name, &Object::m_hidden>;
-/// makes `object.*memberOf(Name())` that member.
-template <class Name, auto member>
-struct Opened {
-  friend decltype(member) memberOf(Name) { return member; }
 };
 
 }  // namespace tetskin::bullet_detail

@@ -17,7 +17,9 @@
 #include <tetskin/bullet/src/state/bullet_members.h>
 #include <tetskin/bullet/src/state/world_state.h>
 
+#include <cassert>
 #include <memory>
+#include <type_traits>
 
 namespace tetskin::bullet_detail {
 
@@ -202,38 +204,63 @@ struct JointClass {
   std::unique_ptr<Base> sample;
   void (*visit)(WorldStream&, Base&);
 };
-template <class Base>
-const JointClass<Base>* classOf(const std::vector<JointClass<Base>>& classes, const Base& joint) {
-  for (const JointClass<Base>& known : classes) {
+template <class Classes, class Base>
+const typename Classes::value_type* classOf(const Classes& classes, const Base& joint) {
+  for (const auto& known : classes) {
     if (isOfSameClass(joint, *known.sample)) return &known;
   }
   return nullptr;
 }
 
-using JointClasses = std::vector<JointClass<btTypedConstraint>>;
+/// Of joints between rigid bodies, also how one is made; its settings are replaced.
+struct RigidJointClass : JointClass<btTypedConstraint> {
+  btTypedConstraint* (*make)(btRigidBody& a, btRigidBody& b);
+};
+using JointClasses = std::vector<RigidJointClass>;
+
+template <class Joint>
+btTypedConstraint* makeByFrames(btRigidBody& a, btRigidBody& b) {
+  const btTransform frame = btTransform::getIdentity();
+  if constexpr (std::is_constructible_v<Joint, btRigidBody&, btRigidBody&, const btTransform&, const btTransform&>) {
+    return new Joint(a, b, frame, frame);
+  } else {
+    return new Joint(a, b, frame, frame, false);
+  }
+}
+template <class Joint>
+btTypedConstraint* makeByAxes(btRigidBody& a, btRigidBody& b) {
+  btVector3 origin(0, 0, 0), x(1, 0, 0), y(0, 1, 0);
+  if constexpr (std::is_constructible_v<Joint, btRigidBody&, btRigidBody&, btVector3&, btVector3&, btVector3&>) {
+    return new Joint(a, b, origin, x, y);
+  } else {
+    return new Joint(a, b, origin, origin);
+  }
+}
+btTypedConstraint* makeGear(btRigidBody& a, btRigidBody& b) {
+  return new GearJoint(a, b, btVector3(1, 0, 0), btVector3(0, 1, 0));
+}
 
 const JointClasses& jointClasses() {
   static const JointClasses* const classes = [] {
     auto& body = *new btRigidBody(1, nullptr, nullptr);
-    const btTransform frame = btTransform::getIdentity();
-    btVector3 origin(0, 0, 0), x(1, 0, 0), y(0, 1, 0);
     auto* all = new JointClasses;
-    const auto add = [all](btTypedConstraint* sample, void (*visit)(WorldStream&, btTypedConstraint&)) {
-      all->push_back({std::unique_ptr<btTypedConstraint>(sample), visit});
+    const auto add = [&](btTypedConstraint* (*make)(btRigidBody&, btRigidBody&),
+                         void (*visit)(WorldStream&, btTypedConstraint&)) {
+      all->push_back({{std::unique_ptr<btTypedConstraint>(make(body, body)), visit}, make});
     };
-    add(new BallJoint(body, origin), visitAs<BallJoint, BallJoint>);
-    add(new HingeJoint(body, frame), visitAs<HingeJoint, HingeJoint>);
+    add(makeByAxes<BallJoint>, visitAs<BallJoint, BallJoint>);
+    add(makeByFrames<HingeJoint>, visitAs<HingeJoint, HingeJoint>);
     using Turns = btHingeAccumulatedAngleConstraint;
-    add(new Turns(body, frame), visitAs<Turns, HingeJoint, Turns>);
-    add(new ConeJoint(body, frame), visitAs<ConeJoint, ConeJoint>);
-    add(new SliderJoint(body, frame, false), visitAs<SliderJoint, SliderJoint>);
-    add(new SixDofJoint(body, frame, false), visitAs<SixDofJoint, SixDofJoint>);
-    add(new btUniversalConstraint(body, body, origin, x, y), visitAs<btUniversalConstraint, SixDofJoint>);
-    add(new SpringJoint(body, frame, false), visitAs<SpringJoint, SixDofJoint, SpringJoint>);
-    add(new SpringJoint2(body, frame), visitAs<SpringJoint2, SpringJoint2>);
-    add(new btHinge2Constraint(body, body, origin, x, y), visitAs<btHinge2Constraint, SpringJoint2>);
-    add(new btFixedConstraint(body, body, frame, frame), visitAs<btFixedConstraint, SpringJoint2>);
-    add(new GearJoint(body, body, x, y), visitAs<GearJoint, GearJoint>);
+    add(makeByFrames<Turns>, visitAs<Turns, HingeJoint, Turns>);
+    add(makeByFrames<ConeJoint>, visitAs<ConeJoint, ConeJoint>);
+    add(makeByFrames<SliderJoint>, visitAs<SliderJoint, SliderJoint>);
+    add(makeByFrames<SixDofJoint>, visitAs<SixDofJoint, SixDofJoint>);
+    add(makeByAxes<btUniversalConstraint>, visitAs<btUniversalConstraint, SixDofJoint>);
+    add(makeByFrames<SpringJoint>, visitAs<SpringJoint, SixDofJoint, SpringJoint>);
+    add(makeByFrames<SpringJoint2>, visitAs<SpringJoint2, SpringJoint2>);
+    add(makeByAxes<btHinge2Constraint>, visitAs<btHinge2Constraint, SpringJoint2>);
+    add(makeByFrames<btFixedConstraint>, visitAs<btFixedConstraint, SpringJoint2>);
+    add(makeGear, visitAs<GearJoint, GearJoint>);
     return all;
   }();
   return *classes;
@@ -293,6 +320,17 @@ bool isSaved(const btTypedConstraint& joint) {
 }
 bool isSaved(const btMultiBodyConstraint& joint) {
   return classOf(bodyJointClasses(), joint);
+}
+
+int classOfJoint(const btTypedConstraint& joint) {
+  const auto* found = classOf(jointClasses(), joint);
+  assert(found);
+  return static_cast<int>(found - jointClasses().data());
+}
+
+std::unique_ptr<btTypedConstraint> makeJoint(int ofClass, btRigidBody& a, btRigidBody& b) {
+  if (ofClass < 0 || static_cast<std::size_t>(ofClass) >= jointClasses().size()) return nullptr;
+  return std::unique_ptr<btTypedConstraint>(jointClasses()[static_cast<std::size_t>(ofClass)].make(a, b));
 }
 
 void visitJoints(WorldStream& stream) {

@@ -27,7 +27,7 @@ struct ActionsMember {
 template struct Opened<ActionsMember, &btDiscreteDynamicsWorld::m_actions>;
 
 bool isWithinStep(const DeformableSolver& solver) {
-  return solver.impl_->inStep;
+  return solver.impl_->inStep || solver.impl_->inSimulation;
 }
 
 DeformableSolver* savedSolverOf(World& world) {
@@ -100,7 +100,8 @@ std::string unsavedPart(World& world) {
 }  // namespace
 
 Status checkIsSaved(World& world, const DeformableSolver& solver) {
-  if (isWithinStep(solver)) return {StatusCode::NotSaved, "a snapshot has no world within a step: wait until it ends"};
+  if (isWithinStep(solver))
+    return {StatusCode::NotSaved, "a snapshot has no world within a step: wait until stepSimulation ends"};
   const std::string part = unsavedPart(world);
   if (part.empty()) return {};
   return {StatusCode::NotSaved, "a snapshot cannot hold " + part};

@@ -8,6 +8,8 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 
+#include <memory>
+
 namespace tetskin::bullet_detail {
 
 /// Motion and settings of rigid bodies, links, multibodies and other objects; of soft bodies, what they have as a
@@ -20,6 +22,10 @@ void visitJoints(WorldStream& stream);
 /// False for classes other than Bullet's own.
 bool isSaved(const btTypedConstraint& joint);
 bool isSaved(const btMultiBodyConstraint& joint);
+/// Number of the joint's class, for `makeJoint`. `isSaved(joint)` must be true.
+int classOfJoint(const btTypedConstraint& joint);
+/// A joint of a class, with settings that a snapshot replaces; null for a number that is none.
+std::unique_ptr<btTypedConstraint> makeJoint(int ofClass, btRigidBody& a, btRigidBody& b);
 /// Boxes, trees and ids of the broadphase. broadphase_state.cpp
 void visitBroadphase(WorldStream& stream);
 /// Overlapping pairs with what their algorithms remember: contact caches with impulses. pairs_state.cpp
@@ -32,6 +38,8 @@ bool isBulletsDispatcher(const btDispatcher& dispatcher);
 void visitSoftBodies(WorldStream& stream);
 /// What the solver remembers from step to step. solver_state.cpp
 void visitSolver(WorldStream& stream, DeformableSolver& solver);
+/// How the application has set the solver: not part of a snapshot. solver_state.cpp
+void visitSolverSettings(WorldStream& stream, DeformableSolver& solver);
 /// The entries of the solver's list of forces: elasticity, soft contacts, joints at surfaces. solver_state.cpp
 void visitForces(WorldStream& stream, DeformableSolver& solver);
 /// Before any part: what the solver's bodies and forces must be. Refuses what cannot be saved, and, while a snapshot is

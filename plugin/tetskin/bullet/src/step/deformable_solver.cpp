@@ -28,6 +28,9 @@ void DeformableSolver::setThreads(ParallelFor* threads) {
 void DeformableSolver::setDeterministic(bool on) {
   impl_->deterministic = on;
 }
+bool DeformableSolver::deterministic() const {
+  return impl_->deterministic;
+}
 void DeformableSolver::setNodeNormals(bool on) {
   impl_->nodeNormals = on;
 }

@@ -116,6 +116,7 @@ struct DeformableSolver::Impl {
   StepClock clock;
   HiddenBodies hidden;
   StepObjects objects;
+  bool inSimulation = false;               ///< within `stepSimulation`, of a DeformableWorld alone
   bool inStep = false;                     ///< from `gather` until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
   RecordDrawing recordDrawing;

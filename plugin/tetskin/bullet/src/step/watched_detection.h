@@ -11,13 +11,14 @@
 
 namespace tetskin::bullet_detail {
 
-/// True while Bullet detects contacts: it then goes through pairs and trees that adding or removing an object changes.
-class Detection {
+/// True as long as this exists. For detection: while Bullet detects contacts, it goes through pairs and trees that
+/// adding or removing an object changes.
+class Running {
  public:
-  explicit Detection(bool& runs) : runs_(runs), before_(runs) { runs_ = true; }
-  ~Detection() { runs_ = before_; }
-  Detection(const Detection&) = delete;
-  Detection& operator=(const Detection&) = delete;
+  explicit Running(bool& runs) : runs_(runs), before_(runs) { runs_ = true; }
+  ~Running() { runs_ = before_; }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
 
  private:
   bool& runs_;
@@ -30,7 +31,7 @@ class WatchedDispatcher : public btCollisionDispatcher {
       : btCollisionDispatcher(&configuration), detects_(detects) {}
   void dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const btDispatcherInfo& info,
                                  btDispatcher* dispatcher) override {
-    const Detection detection(detects_);
+    const Running detection(detects_);
     btCollisionDispatcher::dispatchAllCollisionPairs(pairs, info, dispatcher);
   }
 
@@ -45,7 +46,7 @@ class WatchedBroadphase : public btDbvtBroadphase {
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int type, void* object, int group,
                                  int mask, btDispatcher* dispatcher) override {
     assert(!detects_ && "nothing may be added in a filter, near or contact callback: do it in a tick callback");
-    const Detection detection(detects_);
+    const Running detection(detects_);
     return btDbvtBroadphase::createProxy(low, high, type, object, group, mask, dispatcher);
   }
   void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
@@ -55,11 +56,11 @@ class WatchedBroadphase : public btDbvtBroadphase {
   /// Looks for new pairs, and asks the filters.
   void setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high,
                btDispatcher* dispatcher) override {
-    const Detection detection(detects_);
+    const Running detection(detects_);
     btDbvtBroadphase::setAabb(proxy, low, high, dispatcher);
   }
   void calculateOverlappingPairs(btDispatcher* dispatcher) override {
-    const Detection detection(detects_);
+    const Running detection(detects_);
     btDbvtBroadphase::calculateOverlappingPairs(dispatcher);
   }
 

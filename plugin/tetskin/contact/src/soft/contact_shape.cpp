@@ -197,7 +197,6 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
   for (std::size_t t = 0; t < data.tets.size(); ++t) {
     tetBoxes.push_back(restBox(data, static_cast<int>(t)));
     const Tet& n = data.tets[t];
-    data.centroids.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
     const TetCorners corners = cornersOf(cage, cage.tets[t]);
     data.filled.push_back(filledSubregion(data, n, static_cast<btScalar>(tetSize(corners))));
     if (!isFlat(corners) && data.filled.back().left > 0) filled.push_back(static_cast<int>(t));
@@ -206,6 +205,9 @@ void makeTrees(const TetMesh& cage, ShapeData& data) {
   std::iota(runs.begin(), runs.end(), 0);
   data.runTree = SearchTree(Bvh(runBoxes, runs, kLeafSize));
   data.tetTree = SearchTree(Bvh(tetBoxes, filled, kLeafSize));
+}
+
+void makeGroups(ShapeData& data) {
   for (const Bvh::Node& node : data.tetTree.tree.nodes()) {
     if (!node.isLeaf()) continue;
     assert(node.last - node.first <= kLanes);
@@ -328,6 +330,17 @@ int CarriedCells::cellOf(const btScalar weights[4]) {
 
 }  // namespace contact_detail
 
+void contact_detail::completeShape(ShapeData& data) {
+  assert(data.sampleNodes.size() == data.samples.size());
+  for (const Tet& n : data.tets) {
+    data.centroids.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
+  }
+  makeGroups(data);
+  boundRuns(data);
+  data.otherComponents = tetsOfOtherComponents(data);
+  findNearGroups(data);
+}
+
 using contact_detail::ShapeData;
 
 ContactShape::ContactShape(std::unique_ptr<const ShapeData> data) : data_(std::move(data)) {}
@@ -370,10 +383,7 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
   makeRuns(cage.mesh, samples, sampleNormals(mesh, visible, samples, data->grid), tets, *data);
   makeTrees(cage.mesh, *data);
   findCopies(cage, mesh, surface, *data);
-  boundRuns(*data);
-  data->otherComponents = tetsOfOtherComponents(*data);
-  findNearGroups(*data);
-  assert(data->otherComponents.size() == data->runs.size() && data->sampleNodes.size() == data->samples.size());
+  completeShape(*data);
   return Access<ContactShape>::create(std::move(data));
 }
 

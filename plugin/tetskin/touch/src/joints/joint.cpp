@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
-#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/touch/src/joints/joint.h>
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/src/points/point_data.h>
@@ -207,12 +207,104 @@ void Joint::visitState(WorldStream& stream) {
 void Joint::checkState(WorldStream& stream) {
   const char* const kOthers = "other springs or welds";
   stream.same(settings_.turns, kOthers);
-  stream.same(anchor_.object != nullptr, kOthers);
+  stream.sameObject(body(), kOthers);
+  stream.sameObject(anchor_.object, kOthers);
   stream.same(carried_.count, kOthers);
   for (std::uint32_t k = 0; k < carried_.count && !stream.failed(); ++k) {
     stream.same(carried_.nodes[k], kOthers);
     stream.same(carried_.weights[k], kOthers);
   }
+}
+
+namespace {
+
+void visitCarried(BuildStream& stream, CarriedPoint& point) {
+  stream(point.count);
+  stream.plain(point.nodes.data(), point.nodes.size());
+  stream.plain(point.weights.data(), point.weights.size());
+}
+
+bool isOf(const btSoftBody& body, const CarriedPoint& point) {
+  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+    if (point.nodes[k] < 0 || point.nodes[k] >= body.m_nodes.size() || !std::isfinite(point.weights[k])) return false;
+  }
+  return point.count > 0 && point.count <= kMaxPointNodes;
+}
+
+void visitPoint(BuildStream& stream, PointData& data) {
+  for (EmbeddedPoint<btScalar>& corner : data.corners) {
+    stream.plain(corner.nodes.data(), corner.nodes.size());
+    stream.plain(corner.weights.data(), corner.weights.size());
+    stream.plain(corner.clampedWeights.data(), corner.clampedWeights.size());
+    stream(corner.tet);
+    stream(corner.inside);
+  }
+  stream.plain(data.weights.data(), data.weights.size());
+  stream(data.restNormal);
+}
+
+bool isOf(const btSoftBody& body, const PointData& data) {
+  for (const EmbeddedPoint<btScalar>& corner : data.corners) {
+    if (corner.tet < 0 || corner.tet >= body.m_tetras.size()) return false;
+    for (const int node : corner.nodes) {
+      if (node < 0 || node >= body.m_nodes.size()) return false;
+    }
+  }
+  return true;
+}
+
+void visitSettings(BuildStream& stream, JointSettings& settings) {
+  stream(settings.turns);
+  stream(settings.stiffness);
+  stream(settings.damping);
+  stream(settings.maxForce);
+  stream(settings.collide);
+}
+
+bool areValid(const JointSettings& settings) {
+  return settings.stiffness > 0.0 && settings.damping >= 0.0 && settings.maxForce > 0.0;
+}
+
+}  // namespace
+
+/// Where it holds the body: some of these were computed from where the nodes were when it was created.
+void Joint::visitPoints(BuildStream& stream) {
+  visitCarried(stream, carried_);
+  for (CarriedPoint& point : beside_) visitCarried(stream, point);
+  stream(arm_);
+}
+
+void Joint::describe(BuildStream& stream) {
+  btSoftBody* held = body();
+  PointData data = dataOf(point_);
+  stream.object(held);
+  stream.object(anchor_.object);
+  stream(anchor_.frame);
+  visitPoint(stream, data);
+  visitSettings(stream, settings_);
+  visitPoints(stream);
+}
+
+std::shared_ptr<Joint> Joint::build(BuildStream& stream) {
+  btSoftBody* held = nullptr;
+  PointData data;
+  JointAnchor anchor;
+  JointSettings settings;
+  stream.object(held);
+  stream.object(anchor.object);
+  stream(anchor.frame);
+  visitPoint(stream, data);
+  visitSettings(stream, settings);
+  stream.require(held && isOf(*held, data) && areValid(settings), "a spring or weld is damaged");
+  if (stream.failed()) return nullptr;
+  const SurfacePoint point = Access<SurfacePoint>::create(*held, data);
+  stream.require(point.status() == StatusCode::Ok, "a spring or weld is damaged");
+  if (stream.failed()) return nullptr;
+  auto joint = std::make_shared<Joint>(point, anchor, settings);
+  joint->visitPoints(stream);
+  const bool beside = !(joint->arm_ > 0) || (isOf(*held, joint->beside_[0]) && isOf(*held, joint->beside_[1]));
+  stream.require(isOf(*held, joint->carried_) && beside, "a spring or weld is damaged");
+  return stream.failed() ? nullptr : joint;
 }
 
 }  // namespace tetskin::touch_detail

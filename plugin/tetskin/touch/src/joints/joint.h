@@ -17,6 +17,7 @@
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <limits>
+#include <memory>
 
 namespace tetskin::touch_detail {
 
@@ -56,8 +57,13 @@ class Joint : public ActiveJoint {
   void finish(btScalar seconds, const PointJoint* joints) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
+  Kind kind() const override { return Kind::Joint; }
+  void describe(BuildStream& stream) override;
+  /// A joint that was described; null: it is damaged.
+  static std::shared_ptr<Joint> build(BuildStream& stream);
 
  private:
+  void visitPoints(BuildStream& stream);
   CarriedPoint carriedPoint() const;
   CarriedPoint pointBeside(const btVector3& at) const;
   void weld();

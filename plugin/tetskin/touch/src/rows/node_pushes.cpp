@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
-#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/rows/node_pushes.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
+#include <algorithm>
 #include <cassert>
 
 namespace tetskin::touch_detail {
 namespace {
+
+void visitPushes(BuildStream& stream, NodePushes& pushes) {
+  stream.each(pushes, [&](NodePush& push) {
+    stream(push.node);
+    stream.plain(push.push.data(), 3);
+  });
+}
 
 /// Constant forces on nodes that act for a number of steps.
 class Load : public ActiveJoint {
@@ -43,8 +51,15 @@ class Load : public ActiveJoint {
     for (NodePush& push : forces_) stream.plain(push.push.data(), 3);
   }
   void checkState(WorldStream& stream) override {
+    stream.sameObject(body(), "other loads");
     stream.same(forces_.size(), "other loads");
     for (const NodePush& push : forces_) stream.same(push.node, "other loads");
+  }
+  Kind kind() const override { return Kind::Load; }
+  void describe(BuildStream& stream) override {
+    stream.object(body_);
+    stream(left_);
+    visitPushes(stream, forces_);
   }
 
  private:
@@ -89,6 +104,21 @@ StatusCode applyForces(NodePushes forces, int steps, btSoftBody& body, std::shar
   forceFor(*solver, keeper)->add(std::make_shared<Load>(body, std::move(forces), steps));
   body.activate();
   return StatusCode::Ok;
+}
+
+std::shared_ptr<ActiveJoint> buildLoad(BuildStream& stream) {
+  btSoftBody* body = nullptr;
+  int left = 0;
+  NodePushes pushes;
+  stream.object(body);
+  stream(left);
+  visitPushes(stream, pushes);
+  const auto fits = [&](const NodePush& push) {
+    return push.node >= 0 && push.node < body->m_nodes.size() && push.push.allFinite();
+  };
+  stream.require(body && left > 0 && std::all_of(pushes.begin(), pushes.end(), fits), "a load is damaged");
+  if (stream.failed()) return nullptr;
+  return std::make_shared<Load>(*body, std::move(pushes), left);
 }
 
 }  // namespace tetskin::touch_detail

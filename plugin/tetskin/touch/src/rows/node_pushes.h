@@ -5,6 +5,7 @@
 #pragma once
 
 #include <tetskin/touch/src/points/point_jacobian.h>
+#include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <memory>
 
@@ -25,5 +26,8 @@ void applyImpulses(const NodePushes& impulses, btSoftBody& body);
 /// owner   keeps the object that applies them; null: the body does, which then must come from `createSoftBody`
 /// Errors  OutOfWorld, InvalidOption
 StatusCode applyForces(NodePushes forces, int steps, btSoftBody& body, std::shared_ptr<void>* owner);
+
+/// What such forces have described, for recorded runs; null: it is damaged.
+std::shared_ptr<ActiveJoint> buildLoad(BuildStream& stream);
 
 }  // namespace tetskin::touch_detail

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
-#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <algorithm>
@@ -88,6 +88,16 @@ void SurfaceJointRows::checkState(WorldStream& stream) {
   stream.same(count, "other springs, welds or loads");
   for (const auto& joint : active_) {
     if (!joint->spent() && !stream.failed()) joint->checkState(stream);
+  }
+}
+
+void SurfaceJointRows::describe(BuildStream& stream) {
+  eraseSpent();
+  (void)stream.length(active_.size());
+  for (const auto& joint : active_) {
+    ActiveJoint::Kind kind = joint->kind();
+    stream(kind);
+    joint->describe(stream);
   }
 }
 

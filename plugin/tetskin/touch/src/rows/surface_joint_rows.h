@@ -7,6 +7,7 @@
 
 #include <tetskin/bullet/src/base/row_source.h>
 
+#include <cstdint>
 #include <memory>
 
 namespace tetskin {
@@ -38,6 +39,10 @@ class ActiveJoint {
   virtual void visitState(WorldStream& stream) = 0;
   /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
   virtual void checkState(WorldStream& stream) = 0;
+  enum class Kind : std::int32_t { Joint, Load };
+  virtual Kind kind() const = 0;
+  /// Writes what it is made of, for recorded runs.
+  virtual void describe(BuildStream& stream) = 0;
 };
 
 class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<SurfaceJointRows> {
@@ -61,6 +66,9 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
   void removeSoftBody(btSoftBody* body) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
+  const char* builderName() const override { return kBuilderName; }
+  void describe(BuildStream& stream) override;
+  static constexpr const char* kBuilderName = "springs, welds and loads";
 
  private:
   void eraseSpent();

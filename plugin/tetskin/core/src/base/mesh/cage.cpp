@@ -138,11 +138,14 @@ struct CageLocator::Impl {
     double barycentric = std::numeric_limits<double>::infinity();
     bool holds() const { return barycentric <= kHolds; }
   };
-  /// A tet on the path to a point; the queue is sorted so that the nearest one is first.
+  /// A tet on the path to a point; the queue is sorted so that the nearest one is first, and of two at the same
+  /// distance, the one with the lower number: the heaps of standard libraries differ.
   struct Reached {
     double distance;
     int tet;
-    bool operator<(const Reached& other) const { return distance > other.distance; }
+    bool operator<(const Reached& other) const {
+      return distance > other.distance || (distance == other.distance && tet > other.tet);
+    }
   };
 
   template <class F>
