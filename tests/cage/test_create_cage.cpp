@@ -13,6 +13,7 @@
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/core/embedding.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -259,6 +260,39 @@ TEST(CageInput, ARefusedMeshHasAReportOfWhatWasKnown) {
   EXPECT_TRUE(built.cage.mesh.tets.empty());
   EXPECT_EQ(built.report.targetTets, 77u);
   EXPECT_EQ(built.report.tets, 0u);
+}
+
+TEST(CageProgress, AscendsToTheEndAndChangesNothing) {
+  const TriangleMesh mesh = unitSphere(16);
+  std::vector<double> told;
+  CageOptions options;
+  options.targetTets = 300;
+  const Cage silent = createCage(mesh, options).value();
+  options.progress = [&](double fraction) { return told.push_back(fraction), true; };
+  const Cage cage = createCage(mesh, options).value();
+  EXPECT_EQ(cage.mesh.nodes, silent.mesh.nodes);
+  EXPECT_EQ(cage.mesh.tets, silent.mesh.tets);
+  EXPECT_GT(told.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.front(), 0.0);
+  EXPECT_EQ(told.back(), 1.0);
+}
+
+TEST(CageProgress, CancelsAtEachCallAndIsNotCalledAgain) {
+  const TriangleMesh mesh = unitSphere(16);
+  CageOptions options;
+  options.targetTets = 300;
+  int calls = 0, last = 100;
+  options.progress = [&](double) { return ++calls <= last; };
+  ASSERT_TRUE(createCage(mesh, options).ok());
+  const int all = calls;
+  for (last = 0; last < all; ++last) {
+    calls = 0;
+    const Result<Cage> cage = createCage(mesh, options);
+    EXPECT_EQ(cage.status().code, StatusCode::Cancelled);
+    EXPECT_NE(cage.status().message.find("createCage was cancelled"), std::string::npos);
+    EXPECT_EQ(calls, last + 1);
+  }
 }
 
 }  // namespace

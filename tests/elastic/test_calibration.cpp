@@ -9,6 +9,7 @@
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
 #include <tetskin/elastic/src/calibration/strain_energies.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -370,6 +371,30 @@ TEST(Calibration, RefusesBadInput) {
   options = {};
   options.modeCount = 0;
   EXPECT_EQ(refusal(singleTet(), options), StatusCode::InvalidOption);
+}
+
+TEST(CalibrationProgress, AscendsToTheEndAndCancelsAtEachCall) {
+  const Cage cage(beam(1));
+  Cage silent = cage, told = cage;
+  ASSERT_TRUE(calibrate(silent).ok());
+  std::vector<double> fractions;
+  std::size_t last = 100;
+  CalibrationOptions options;
+  options.progress = [&](double fraction) { return fractions.push_back(fraction), fractions.size() <= last; };
+  ASSERT_TRUE(calibrate(told, options).ok());
+  EXPECT_EQ(told.stiffnessFactor, silent.stiffnessFactor);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
+  const std::size_t all = fractions.size();
+  EXPECT_GT(all, 3u);
+  for (last = 0; last < all; ++last) {
+    fractions.clear();
+    Cage unchanged = cage;
+    EXPECT_EQ(calibrate(unchanged, options).status().code, StatusCode::Cancelled);
+    EXPECT_TRUE(unchanged.stiffnessFactor.empty());
+    EXPECT_EQ(fractions.size(), last + 1);
+  }
 }
 
 }  // namespace

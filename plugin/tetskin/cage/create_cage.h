@@ -6,6 +6,7 @@
 #include <tetskin/core/mesh.h>
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace tetskin {
@@ -20,6 +21,9 @@ struct CageOptions {
   bool duplicateElements = true;
   /// Move boundary nodes towards the surface: a smaller cage, whose tets are no longer all congruent.
   bool fit = true;
+  /// Called now and then with the fraction done, an estimate from 0 to 1, ascending; returns false to cancel. May be
+  /// empty.
+  std::function<bool(double fraction)> progress;
 };
 
 /// What was built, and how well it fits. Lengths and volumes are in rest space, in the unit of the mesh.
@@ -79,7 +83,7 @@ struct TETSKIN_CAGE_API CageReport {
 ///          are requested that many lattices are tried, and ten seconds and 300 MB per million tets
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
 ///          Limits::kMaxTargetTets), Degenerate (all triangles are points, or so near each other, or so far apart,
-///          that a lattice cannot be represented in double)
+///          that a lattice cannot be represented in double), Cancelled (by `options.progress`)
 TETSKIN_CAGE_API Result<Cage> createCage(const TriangleMesh& mesh, const CageOptions& options = {},
                                          CageReport* report = nullptr);
 

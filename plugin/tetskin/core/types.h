@@ -55,6 +55,9 @@ enum class [[nodiscard]] StatusCode{
     // Of snapshots.
     NotSaved,          ///< the world has something that cannot be saved
     SnapshotMismatch,  ///< the snapshot is of a world with other bodies, objects or joints
+
+    // Of what takes long.
+    Cancelled,  ///< the application's `progress` has said so
 };
 
 /// Name of a status code, for messages and logs: a few words in lower case. Never null; a static string.

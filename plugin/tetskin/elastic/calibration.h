@@ -9,6 +9,7 @@
 #include <tetskin/core/cage.h>
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace tetskin {
 struct CalibrationOptions {
   double poissonRatio = 0.3;  ///< 0 to below 0.5: of the material that will be simulated
   int modeCount = 6;          ///< number of softest vibration modes to compare, at least 1
+  /// Called now and then with the fraction done, an estimate from 0 to 1, ascending; returns false to cancel. May be
+  /// empty.
+  std::function<bool(double fraction)> progress;
 };
 
 /// Result of a calibration.
@@ -63,7 +67,8 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
 ///          replaced
 /// Cost     some two seconds for 3,000 tets, ten for 30,000; about 2 KB per refined tet, at most 1 GB
 /// Errors   InvalidOption: options out of range; those of `validate(const Cage&)`; Degenerate if a tet is flat, or the
-///          cage's stiffness matrix cannot be factorised. On an error the cage is unchanged
+///          cage's stiffness matrix cannot be factorised; Cancelled: by `options.progress`. On an error the cage is
+///          unchanged
 TETSKIN_ELASTIC_API Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& options = {});
 
 }  // namespace tetskin

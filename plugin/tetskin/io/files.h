@@ -44,7 +44,8 @@ struct TETSKIN_IO_API MeshFileReport {
 /// - if only some of the meshes have texture coordinates, the others get 0; if only some have normals, the others get
 ///   smooth ones, weighted by area. Normals have unit length, or are 0 where the file's are invalid.
 ///
-/// In a build with TETSKIN_ASSIMP=OFF, what assimp would read is an UnsupportedFormat, and so is a file of glTF 1.0.
+/// In a build with TETSKIN_ASSIMP=OFF, STL is read by the library itself, in the same way; what else assimp would read
+/// is an UnsupportedFormat, and so is a file of glTF 1.0.
 ///
 /// Of a glTF file, buffers are read from its own folder and those below it, images and whatever else tells of no shape
 /// from nowhere. An extension that it requires and that is not supported is named (KHR_mesh_quantization is supported,

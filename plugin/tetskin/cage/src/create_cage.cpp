@@ -26,6 +26,7 @@
 #include <tetskin/cage/src/lattice/lattice_search.h>
 #include <tetskin/cage/src/surface/surface.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -102,6 +103,11 @@ struct BoundCage {
   std::size_t outside = 0;  ///< number of the surface's own points outside
 };
 
+/// Fractions of the time at which stages end, about: those of 3,000 tets for 60,000 triangles.
+constexpr double kSurfaceDone = 0.1, kLatticesDone = 0.8, kFitDone = 0.95;
+/// Share of the rest that each lattice is told to take: how many there will be is not known.
+constexpr double kLatticeShare = 0.5;
+
 /// Splits the lattice if that creates duplicates; otherwise it stays as it is.
 cage_detail::CageTets splitTets(const Surface& surface, const WindingTree& winding, const BoundCage& bound,
                                 const std::vector<int>& tetOf, bool split) {
@@ -133,7 +139,7 @@ BoundCage bindCage(const Surface& surface, const WindingTree& winding, std::size
 
 /// Splitting adds and removes tets: the resulting number is known only afterwards.
 BoundCage bindCageOfSize(const Surface& surface, const WindingTree& winding, const CageOptions& options,
-                         std::size_t firstOrigin) {
+                         std::size_t firstOrigin, Progress& progress, double& told) {
   const auto target = static_cast<double>(options.targetTets);
   const auto miss = [&](const BoundCage& bound) {
     return std::abs(static_cast<double>(bound.tets.mesh.tetCount()) / target - 1.0);
@@ -147,7 +153,8 @@ BoundCage bindCageOfSize(const Surface& surface, const WindingTree& winding, con
     const double grown = static_cast<double>(bound.tets.mesh.tetCount()) / target;
     const bool whole = !bound.tets.split;
     if (round == 0 || miss(bound) < miss(best)) best = std::move(bound);
-    if (whole || miss(best) <= kSizeTolerance) break;
+    told += kLatticeShare * (kLatticesDone - told);
+    if (!progress.reach(told) || whole || miss(best) <= kSizeTolerance) break;
     wanted /= grown;
   }
   best.cage.lattices = lattices;
@@ -155,12 +162,14 @@ BoundCage bindCageOfSize(const Surface& surface, const WindingTree& winding, con
 }
 
 /// The first cage that contains all vertices; otherwise the one with the fewest outside.
-BoundCage firstEnclosingCage(const Surface& surface, const WindingTree& winding, const CageOptions& options) {
+BoundCage firstEnclosingCage(const Surface& surface, const WindingTree& winding, const CageOptions& options,
+                             Progress& progress) {
   BoundCage best;
+  double told = kSurfaceDone;
   for (std::size_t i = 0; i < kAttempts; ++i) {
-    BoundCage bound = bindCageOfSize(surface, winding, options, i * kOriginsPerAttempt);
+    BoundCage bound = bindCageOfSize(surface, winding, options, i * kOriginsPerAttempt, progress, told);
     if (i == 0 || bound.outside < best.outside) best = std::move(bound);
-    if (best.outside == 0) break;
+    if (best.outside == 0 || progress.cancelled()) break;
   }
   return best;
 }
@@ -250,19 +259,27 @@ Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
 Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) {
   report.targetTets = options.targetTets;
   if (Status status = checkInput(mesh, options); !status.ok()) return status;
+  Progress progress(options.progress);
+  const auto cancelled = [] { return cancelledStatus("createCage"); };
+  if (!progress.reach(0.0)) return cancelled();
   const Surface surface = cage_detail::prepareSurface(mesh);
   if (Status status = checkExtent(surface); !status.ok()) return status;
   reportSurface(surface, report);
 
   const WindingTree winding = windingTreeOf(surface);
-  BoundCage bound = firstEnclosingCage(surface, winding, options);
+  if (!progress.reach(kSurfaceDone)) return cancelled();
+  BoundCage bound = firstEnclosingCage(surface, winding, options, progress);
+  if (progress.cancelled()) return cancelled();
   assert(!bound.tets.mesh.tets.empty());
   reportLattice(bound, report);
   if (options.fit) cage_detail::fitCage(bound.tets, bound.cage.frame.half, bound.samples.points);
+  if (!progress.reach(kFitDone)) return cancelled();
   reportCage(bound.tets.mesh, report);
   report.verticesOutside =
       cage_detail::countOutside(surface.points, surface.points.size(), bound.tets.mesh, bound.tets.tetOf);
-  return cageOf(mesh, surface, std::move(bound));
+  Cage cage = cageOf(mesh, surface, std::move(bound));
+  if (!progress.reach(1.0)) return cancelled();
+  return cage;
 }
 
 }  // namespace

@@ -64,6 +64,8 @@ const char* toString(StatusCode code) {
       return "cannot be saved";
     case StatusCode::SnapshotMismatch:
       return "snapshot of another world";
+    case StatusCode::Cancelled:
+      return "cancelled";
   }
   return "unknown status";
 }

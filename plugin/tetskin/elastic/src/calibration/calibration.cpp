@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/core/src/base/progress.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/elastic/src/calibration/stiffness_fit.h>
 
@@ -17,6 +18,9 @@ namespace {
 
 using elastic_detail::RefinedBodies;
 using elastic_detail::StiffnessFit;
+
+/// Fraction of the time after which the refinements are made, about.
+constexpr double kBodiesDone = 0.2;
 
 Status check(const Cage& cage, const CalibrationOptions& options) {
   if (!(options.poissonRatio >= 0.0 && options.poissonRatio < 0.5) || options.modeCount < 1) {
@@ -110,6 +114,8 @@ std::string CalibrationReport::describe() const {
 Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   if (Status status = check(cage, options); !status.ok()) return status;
+  Progress progress(options.progress);
+  if (!progress.reach(0.0)) return cancelledStatus("calibrate");
   CalibrationReport result;
   std::vector<double> factors(cage.mesh.tetCount(), 1.0);
   result.needless = isQuadraticAndFull(cage);
@@ -121,10 +127,13 @@ Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& option
       return Status{StatusCode::Degenerate,
                     "the stiffness matrix of the cage cannot be factorised; are there nearly flat tets?"};
     }
-    const StiffnessFit fit(bodies, options.modeCount);
+    if (!progress.reach(kBodiesDone)) return cancelledStatus("calibrate");
+    const StiffnessFit fit(bodies, options.modeCount, progress);
+    if (progress.cancelled()) return cancelledStatus("calibrate");
     report(fit, result);
     factors = fit.factors();
   }
+  if (!progress.reach(1.0)) return cancelledStatus("calibrate");
   cage.stiffnessFactor = std::move(factors);
   result.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -24,6 +24,8 @@ constexpr int kSpreadings = 2;
 constexpr double kMaxDifference = 1.4;
 /// Factors by region must predict loads that they have not seen better than one factor by this.
 constexpr double kBetter = 0.9;
+/// Fractions of a calibration's time at which its solves for both kinds of loads end, about.
+constexpr double kModesDone = 0.6, kSagsDone = 0.9;
 
 /// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
 Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
@@ -160,15 +162,17 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
 
 }  // namespace
 
-StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount) : bodies_(bodies) {
+StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress& progress) : bodies_(bodies) {
   const Eigen::VectorXd& masses = bodies.masses(0);
   modes_ = applied(bodies, softestModes(bodies.coarsest(), bodies.direct(), modeCount));
   for (Eigen::Index k = 0; k < modes_.weights.size(); ++k) {
     const bool lacks = !(modes_.ratios(0)[k] > kMinResponse);
     modes_.weights[k] *= lacks ? 0.0 : participation(modes_.accelerations.col(k), masses);
   }
+  if (!progress.reach(kModesDone)) return;
   sags_ = applied(bodies, sagAccelerations(bodies.cage().mesh.nodes, masses));
 
+  if (!progress.reach(kSagsDone)) return;
   const std::vector<double> ones(bodies.cage().mesh.tetCount(), 1.0);
   Ratios ratios = ratiosWith(ones);
   factor_ = std::min(meanOf(ratios), 1.0);

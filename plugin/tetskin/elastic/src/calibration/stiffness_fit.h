@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/core/src/base/progress.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
 
 #include <vector>
@@ -34,8 +35,9 @@ struct LoadSet {
 /// factor of its stiffness.
 class StiffnessFit {
  public:
-  /// bodies  must outlive this; at least one refinement
-  StiffnessFit(const RefinedBodies& bodies, int modeCount);
+  /// bodies    must outlive this; at least one refinement
+  /// progress  told how far it is; where the application cancels, the factors are not found
+  StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress& progress);
 
   const std::vector<double>& factors() const { return factors_; }  ///< by tet of the cage, at most 1
   bool byRegion() const { return byRegion_; }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/io/src/mesh/assimp_reader.h>
+#include <tetskin/io/src/mesh/stl_reader.h>
 #include <tetskin/io/src/text/file_text.h>
 
 namespace tetskin::io {
 
 Result<TriangleMesh> readWithAssimp(const std::string& path) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".stl") return readStl(path);
   const Result<std::string> bytes = readFile(path);
   if (!bytes.ok()) return bytes.status();
-  const std::string extension = lowerExtension(path);
   if (extension.empty()) {
     return fileError(StatusCode::UnsupportedFormat, path, 0,
                      "has no file name extension; convert it to OBJ, PLY or glTF");

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Arrays in and out.
+#pragma once
+
+#include "errors.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tetskin::python {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using Vec3 = std::array<double, 3>;
+using Quaternion = std::array<double, 4>;  ///< x, y, z, w
+
+/// Anything that numpy.asarray takes.
+struct ArrayLike {
+  nb::object object;
+};
+
+/// Numbers of an argument, side by side in memory: those of the array itself where that is possible, otherwise a copy.
+/// Holds the array.
+template <class Number>
+class Numbers {
+ public:
+  /// columns  0: one dimension
+  /// Throws   TypeError for another type of numbers, ValueError for another shape
+  Numbers(const ArrayLike& array, const char* name, int columns);
+  ~Numbers();
+  Numbers(const Numbers&) = delete;
+  Numbers& operator=(const Numbers&) = delete;
+
+  const Number* data() const { return data_; }
+  std::size_t rows() const { return rows_; }
+
+ private:
+  const Number* data_ = nullptr;
+  std::size_t rows_ = 0;
+  std::vector<Number> copy_;
+  Py_buffer buffer_{};
+};
+extern template class Numbers<double>;
+extern template class Numbers<std::int64_t>;
+
+std::vector<Eigen::Vector3d> pointsOf(const ArrayLike& array, const char* name);
+/// Indices below `count` from an array of integers, or from a mask of `count` booleans.
+/// Throws  TypeError, ValueError, IndexError
+std::vector<int> indicesOf(const ArrayLike& array, const char* name, std::size_t count);
+/// Rows of `K` indices.
+template <std::size_t K>
+std::vector<std::array<int, K>> indexRowsOf(const ArrayLike& array, const char* name) {
+  const Numbers<std::int64_t> numbers(array, name, static_cast<int>(K));
+  std::vector<std::array<int, K>> rows(numbers.rows());
+  for (std::size_t i = 0; i < K * rows.size(); ++i) {
+    const std::int64_t number = numbers.data()[i];
+    if (number < INT32_MIN || number > INT32_MAX)
+      fail(StatusCode::IndexOutOfRange, std::string(name) + ": an index is too large");
+    rows[i / K][i % K] = static_cast<int>(number);
+  }
+  return rows;
+}
+
+/// Throws unless all numbers are finite, and no larger than what the library supports.
+const Vec3& finite(const Vec3& vector, const char* name);
+
+/// Owns a share of something while an array lives.
+template <class Owner>
+nb::capsule kept(const std::shared_ptr<Owner>& owner) {
+  return nb::capsule(new std::shared_ptr<Owner>(owner),
+                     [](void* p) noexcept { delete static_cast<std::shared_ptr<Owner>*>(p); });
+}
+
+template <class Number>
+using Row3 = nb::ndarray<nb::numpy, const Number, nb::shape<-1, 3>>;
+template <class Number>
+using Row4 = nb::ndarray<nb::numpy, const Number, nb::shape<-1, 4>>;
+template <class Number>
+using Column = nb::ndarray<nb::numpy, const Number, nb::ndim<1>>;
+using Vector3 = nb::ndarray<nb::numpy, double, nb::shape<3>>;
+using Vector4 = nb::ndarray<nb::numpy, double, nb::shape<4>>;
+
+/// A read-only view of rows in memory that `owner` keeps.
+template <class Number, class Owner>
+Row3<Number> view3(const Number* data, std::size_t rows, const std::shared_ptr<Owner>& owner,
+                   std::size_t strideBytes = 3 * sizeof(Number)) {
+  static const Number none[3] = {};
+  const std::size_t shape[2] = {rows, 3};
+  const std::int64_t strides[2] = {static_cast<std::int64_t>(strideBytes / sizeof(Number)), 1};
+  return Row3<Number>(data ? data : none, 2, shape, kept(owner), strides);
+}
+template <class Number, class Owner>
+Row3<Number> view3(PointView<const Number> points, const std::shared_ptr<Owner>& owner) {
+  return view3<Number>(points.data(), points.size(), owner, points.strideBytes());
+}
+template <class Number, class Owner>
+Column<Number> view1(const Number* data, std::size_t count, const std::shared_ptr<Owner>& owner) {
+  static const Number none = {};
+  const std::size_t shape[1] = {count};
+  return Column<Number>(data ? data : &none, 1, shape, kept(owner));
+}
+/// New arrays, which Python owns.
+template <class Number>
+Row3<Number> newRows3(std::vector<Number>&& numbers) {
+  const auto owner = std::make_shared<std::vector<Number>>(std::move(numbers));
+  return view3<Number>(owner->data(), owner->size() / 3, owner);
+}
+template <class Number>
+Column<Number> newColumn(std::vector<Number>&& numbers) {
+  const auto owner = std::make_shared<std::vector<Number>>(std::move(numbers));
+  return view1<Number>(owner->data(), owner->size(), owner);
+}
+Column<bool> newMask(const std::vector<char>& mask);
+Vector3 newVector(const Vec3& vector);
+Vector4 newQuaternion(const Quaternion& quaternion);
+template <class V>
+Vector3 vectorOf(const V& v) {
+  return newVector({static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])});
+}
+
+/// A class of nanobind's whose properties may return arrays that own a share of something: by default, nanobind makes
+/// all that a property returns keep its object alive, and refuses those.
+template <class T>
+class Class : public nb::class_<T> {
+ public:
+  using nb::class_<T>::class_;
+  template <class... Args>
+  Class& def(Args&&... args) {
+    nb::class_<T>::def(std::forward<Args>(args)...);
+    return *this;
+  }
+  template <class... Args>
+  Class& def_static(Args&&... args) {
+    nb::class_<T>::def_static(std::forward<Args>(args)...);
+    return *this;
+  }
+  template <class... Args>
+  Class& def_ro(Args&&... args) {
+    nb::class_<T>::def_ro(std::forward<Args>(args)...);
+    return *this;
+  }
+  template <class... Args>
+  Class& def_prop_ro(Args&&... args) {
+    nb::class_<T>::def_prop_ro(std::forward<Args>(args)..., nb::rv_policy::automatic);
+    return *this;
+  }
+  template <class... Args>
+  Class& def_prop_rw(Args&&... args) {
+    nb::class_<T>::def_prop_rw(std::forward<Args>(args)..., nb::rv_policy::automatic);
+    return *this;
+  }
+};
+
+/// The bytes of a vector, for pickle, and back.
+template <class T>
+nb::bytes bytesOf(const std::vector<T>& values) {
+  return nb::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+template <class T>
+void readBytes(nb::handle object, std::vector<T>& values) {
+  const auto bytes = nb::cast<nb::bytes>(object);
+  if (bytes.size() % sizeof(T) != 0) fail(StatusCode::Malformed, "not a pickled object of tetskin");
+  values.resize(bytes.size() / sizeof(T));
+  std::copy(bytes.c_str(), bytes.c_str() + bytes.size(), reinterpret_cast<char*>(values.data()));
+}
+
+/// Runs without the GIL.
+template <class Work>
+auto released(Work&& work) {
+  const nb::gil_scoped_release release;
+  return work();
+}
+
+/// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. Ctrl-C cancels,
+/// too.
+class ProgressCall {
+ public:
+  explicit ProgressCall(const nb::object& call) : call_(call) {}
+  /// What the library calls, without the GIL.
+  std::function<bool(double)> function();
+  /// Throws what was raised.
+  void rethrow();
+
+ private:
+  nb::object call_;
+  std::exception_ptr raised_;
+};
+
+}  // namespace tetskin::python
+
+namespace nanobind::detail {
+template <>
+struct type_caster<tetskin::python::ArrayLike> {
+  NB_TYPE_CASTER(tetskin::python::ArrayLike, const_name("numpy.typing.ArrayLike"))
+  bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+    value.object = borrow(source);
+    return true;
+  }
+};
+}  // namespace nanobind::detail

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "world_model.h"
+
+namespace tetskin::python {
+namespace {
+
+/// The memory of a body's nodes, which the body's state keeps.
+Row3<float> nodesOf(const BodyHandle& body) {
+  const btSoftBody& soft = alive(body).body();
+  return view3<float>(nodePositions(soft), body.state);
+}
+Row3<float> velocitiesOf(const BodyHandle& body) {
+  const btSoftBody& soft = alive(body).body();
+  return view3<float>(&soft.m_nodes[0].m_v[0], static_cast<std::size_t>(soft.m_nodes.size()), body.state,
+                      sizeof(btSoftBody::Node));
+}
+Row3<float> surfaceOf(const BodyHandle& body, const std::vector<float>& numbers) {
+  return view3<float>(numbers.data(), numbers.size() / 3, body.state);
+}
+
+void setVelocities(BodyHandle& body, const ArrayLike& array) {
+  const Numbers<double> numbers(array, "velocities", 3);
+  const Locked lock(*body.world);
+  btSoftBody& soft = alive(body).body();
+  const auto count = static_cast<std::size_t>(soft.m_nodes.size());
+  if (numbers.rows() != count)
+    fail(StatusCode::SizeMismatch,
+         "velocities: " + std::to_string(numbers.rows()) + " for " + std::to_string(count) + " nodes");
+  const PointView<const double> points(numbers.data(), count);
+  if (firstUnusable(points) != count)
+    fail(StatusCode::NonFinite, "velocities: a number is not finite, or larger than 1e18");
+  for (std::size_t i = 0; i < count; ++i) {
+    btSoftBody::Node& node = soft.m_nodes[static_cast<int>(i)];
+    if (node.m_im > 0) node.m_v = toBullet(Vec3{points[i][0], points[i][1], points[i][2]}, "velocities");
+  }
+  soft.activate(true);
+}
+
+std::size_t nodeCount(const BodyHandle& body) {
+  return body.state->cage.cage->mesh.nodeCount();
+}
+
+void setPinned(BodyHandle& body, const ArrayLike& nodes, bool pinned) {
+  const std::vector<int> indices = indicesOf(nodes, "nodes", nodeCount(body));
+  const Locked lock(*body.world);
+  DeformableBody& soft = alive(body);
+  for (const int node : indices) check(soft.setPinned(node, pinned));
+}
+
+void setPinnedPositions(BodyHandle& body, const ArrayLike& nodes, const ArrayLike& positions) {
+  const std::vector<int> indices = indicesOf(nodes, "nodes", nodeCount(body));
+  const Numbers<double> numbers(positions, "positions", 3);
+  const Locked lock(*body.world);
+  DeformableBody& soft = alive(body);
+  if (numbers.rows() != indices.size())
+    fail(StatusCode::SizeMismatch,
+         "positions: " + std::to_string(numbers.rows()) + " for " + std::to_string(indices.size()) + " nodes");
+  for (const int node : indices) {
+    if (!soft.isPinned(node)) fail(StatusCode::InvalidOption, "nodes: node " + std::to_string(node) + " is not pinned");
+  }
+  const PointView<const double> points(numbers.data(), numbers.rows());
+  if (firstUnusable(points) != points.size())
+    fail(StatusCode::NonFinite, "positions: a number is not finite, or larger than 1e18");
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    check(soft.setPinnedPosition(indices[i], toBullet(Vec3{points[i][0], points[i][1], points[i][2]}, "positions")));
+  }
+}
+
+Column<bool> pinnedOf(const BodyHandle& body) {
+  const Locked lock(*body.world);
+  const DeformableBody& soft = alive(body);
+  std::vector<char> mask(nodeCount(body));
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = soft.isPinned(static_cast<int>(i));
+  return newMask(mask);
+}
+
+void transform(BodyHandle& body, const Vec3& position, const Quaternion& rotation) {
+  const btTransform motion = toBullet(position, rotation);
+  const Locked lock(*body.world);
+  alive(body).body().transform(motion);
+  if (!body.state->binding) return;
+  body.state->skin.markTeleported();
+  (void)body.state->skin.update();
+}
+
+ImpulseResult radialImpulse(BodyHandle& body, const Vec3& centre, double radius, double strength) {
+  const Locked lock(*body.world);
+  btSoftBody& soft = alive(body).body();
+  checkSurface(body);
+  finite({radius, strength, 0}, "radius, strength");
+  const ImpulseResult result = body.world->treeOf(*body.state)
+                                   .applyImpulse(soft, {toBullet(centre, "centre"), static_cast<btScalar>(radius),
+                                                        static_cast<btScalar>(strength)});
+  if (result.status != StatusCode::NoHit) check(result.status, "apply_radial_impulse");
+  return result;
+}
+
+/// A number of the body's, with its lock.
+template <class Get>
+auto number(Get get) {
+  return [get](const BodyHandle& body) {
+    const Locked lock(*body.world);
+    return get(alive(body));
+  };
+}
+template <class Set>
+auto setter(Set set) {
+  return [set](BodyHandle& body, double value) {
+    const Locked lock(*body.world);
+    check(set(alive(body), value));
+  };
+}
+
+Eigen::Affine3d placementOf(const Vec3& position, const Quaternion& rotation) {
+  finite(position, "position");
+  const Eigen::Quaterniond q(rotation[3], rotation[0], rotation[1], rotation[2]);
+  if (!(q.squaredNorm() > 1e-12 && q.squaredNorm() < 1e12))
+    fail(StatusCode::InvalidOption, "rotation: must be a quaternion x, y, z, w other than 0");
+  Eigen::Affine3d placement = Eigen::Affine3d::Identity();
+  placement.translate(Eigen::Vector3d(position[0], position[1], position[2]));
+  if (q.vec() != Eigen::Vector3d::Zero()) placement.rotate(q.normalized());
+  return placement;
+}
+
+std::vector<double> numbersOf(const std::optional<ArrayLike>& array, const char* name) {
+  if (!array) return {};
+  const Numbers<double> numbers(*array, name, 0);
+  return {numbers.data(), numbers.data() + numbers.rows()};
+}
+
+BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, const std::optional<MeshLike>& mesh,
+                   const Vec3& position, const Quaternion& rotation, const std::optional<ArrayLike>& pinned,
+                   std::optional<double> mass, double density, const std::optional<ArrayLike>& nodeMasses,
+                   std::optional<double> youngsModulus, double relativeStiffness,
+                   const std::optional<ArrayLike>& stiffnessScale, double poissonRatio, double stiffnessDamping,
+                   double friction, std::optional<double> margin, double solverTolerance, int maxIterations,
+                   const std::string& interpolation, const std::string& normals, const std::string& outside,
+                   std::optional<double> maxDistance, bool surfaceContact, bool softContact, bool selfContact,
+                   std::optional<double> contactMargin, std::optional<double> sampleSpacing) {
+  BodyOptions options;
+  SoftBodyOptions& material = options.material;
+  material.mass = mass;
+  material.density = density;
+  material.nodeMasses = numbersOf(nodeMasses, "node_masses");
+  material.youngsModulus = youngsModulus;
+  material.relativeStiffness = relativeStiffness;
+  material.stiffnessScale = numbersOf(stiffnessScale, "stiffness_scale");
+  material.poissonRatio = poissonRatio;
+  material.stiffnessDamping = stiffnessDamping;
+  material.friction = friction;
+  material.margin = margin;
+  material.solverTolerance = solverTolerance;
+  material.maxIterations = maxIterations;
+  material.faceTree = false;
+  options.binding = bindingOptions(interpolation, normals, outside, maxDistance);
+  options.surfaceContact = surfaceContact;
+  options.softContact = softContact;
+  options.selfContact = selfContact;
+  options.contactMargin = contactMargin;
+  options.sampleSpacing = sampleSpacing;
+  const Eigen::Affine3d placement = placementOf(position, rotation);
+  const std::vector<int> pins = pinned ? indicesOf(*pinned, "pinned", cage.cage->mesh.nodeCount()) : std::vector<int>();
+  const bool bare = !mesh || mesh->object.is_none();
+  const MeshModel model = bare ? MeshModel() : meshOf(*mesh);
+  if (bare && (softContact || selfContact))
+    fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
+  return unlocked(*world, [&] {
+    BodyHandle body{world, world->addBody(cage, model, placement, options)};
+    for (const int node : pins) check(body.state->body->setPinned(node));
+    return body;
+  });
+}
+
+}  // namespace
+
+void bindBodies(nb::module_& module, Class<World>& world) {
+  Class<ImpulseResult>(module, "ImpulseResult", "Sums over all vertices that a radial impulse has pushed.")
+      .def_prop_ro(
+          "linear", [](const ImpulseResult& r) { return vectorOf(r.linear); },
+          "(3,) float64: the impulse, world space.")
+      .def_prop_ro(
+          "angular", [](const ImpulseResult& r) { return vectorOf(r.angular); },
+          "(3,) float64: its moment about the world's origin.")
+      .def_ro("vertices", &ImpulseResult::vertices, "Number of vertices pushed.");
+
+  Class<BodyHandle> body(module, "Body", "A soft body of a world, which keeps it. Made by World.add_body.");
+  bindIdentity(body);
+  body.def_prop_ro(
+          "positions",
+          [](const BodyHandle& b) {
+            (void)alive(b);
+            checkSurface(b);
+            return surfaceOf(b, b.state->positions);
+          },
+          "(vertices, 3) float32, world space: the surface. A read-only view, which each step overwrites.")
+      .def_prop_ro(
+          "normals",
+          [](const BodyHandle& b) {
+            (void)alive(b);
+            checkSurface(b);
+            return surfaceOf(b, b.state->normals);
+          },
+          "(vertices, 3) float32, unit length; (0, 3) for a body added with normals='none'. A read-only view, which "
+          "each step overwrites.")
+      .def_prop_ro("nodes", nodesOf,
+                   "(nodes, 3) float32, world space. A read-only view, which each step overwrites; its rows are not "
+                   "side by side.")
+      .def_prop_rw("velocities", velocitiesOf, setVelocities,
+                   "(nodes, 3) float32, world length per second: at the middle of the last substep. A read-only view, "
+                   "which each step overwrites; assign an array. Those of pinned nodes stay.")
+      .def_prop_ro("cage", [](const BodyHandle& b) { return b.state->cage; })
+      .def_prop_ro("mesh",
+                   [](const BodyHandle& b) { return b.state->mesh.mesh ? std::optional(b.state->mesh) : std::nullopt; })
+      .def_prop_ro("node_count", nodeCount, "Number of nodes.")
+      .def_prop_ro(
+          "bounds",
+          [](const BodyHandle& b) {
+            const Locked lock(*b.world);
+            (void)alive(b);
+            checkSurface(b);
+            return nb::make_tuple(vectorOf(b.state->skin.bounds().min()), vectorOf(b.state->skin.bounds().max()));
+          },
+          "The box of the surface: two corners, world space.")
+      .def_prop_rw(
+          "visible", [](const BodyHandle& b) { return b.state->skin.visible(); },
+          [](BodyHandle& b, bool visible) {
+            const Locked lock(*b.world);
+            (void)alive(b);
+            checkSurface(b);
+            b.state->skin.setVisible(visible);
+          },
+          "Whether steps update the surface. When shown again, it is updated at once.")
+      .def_prop_ro("asleep", number([](DeformableBody& b) { return !b.body().isActive(); }),
+                   "Whether it is at rest, and costs next to nothing.")
+      .def_prop_ro(
+          "removed", [](const BodyHandle& b) { return b.state->removed; },
+          "Whether it has been removed from its world.")
+      .def_prop_rw("youngs_modulus", number([](DeformableBody& b) { return b.youngsModulus(); }),
+                   setter([](DeformableBody& b, double v) { return b.setYoungsModulus(v); }),
+                   "Pressure units, above 0.")
+      .def_prop_ro("relative_stiffness", number([](DeformableBody& b) { return b.relativeStiffness(); }),
+                   "Young's modulus over density x gravity x size: from 30 (wobbles, sags) to 300 (firm).")
+      .def_prop_rw("poisson_ratio", number([](DeformableBody& b) { return b.poissonRatio(); }),
+                   setter([](DeformableBody& b, double v) { return b.setPoissonRatio(v); }), "0 to below 0.5.")
+      .def_prop_rw("stiffness_damping", number([](DeformableBody& b) { return b.stiffnessDamping(); }),
+                   setter([](DeformableBody& b, double v) { return b.setStiffnessDamping(v); }),
+                   "Seconds: Rayleigh damping, 0 or more.")
+      .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
+                   setter([](DeformableBody& b, double v) {
+                     if (!(v >= 0.0 && v <= 1.0))
+                       return Status{StatusCode::InvalidOption, "friction: must be from 0 to 1"};
+                     b.body().m_cfg.kDF = static_cast<btScalar>(v);
+                     return Status{};
+                   }),
+                   "0 to 1; multiplied by that of rigid bodies.")
+      .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
+                   "Total, without pinned nodes.")
+      .def(
+          "set_gravity",
+          [](BodyHandle& b, const std::optional<Vec3>& gravity) {
+            const Locked lock(*b.world);
+            if (gravity) {
+              check(alive(b).setGravity(toBullet(*gravity, "gravity")));
+            } else {
+              alive(b).followWorldGravity();
+            }
+          },
+          "gravity"_a.none(), "Its own gravity, world length / s^2; None: that of the world.")
+      .def_prop_ro("pinned", pinnedOf, "(nodes,) bool: which nodes are pinned. A new array.")
+      .def("set_pinned", setPinned, "nodes"_a, "pinned"_a = true,
+           "Pins nodes where they are, or releases them: a mask of booleans, or indices.")
+      .def("set_pinned_positions", setPinnedPositions, "nodes"_a, "positions"_a,
+           "Moves pinned nodes, a mask or indices, to positions (n, 3), world space, in the following steps: call it "
+           "once per frame. On an Error nothing is moved.")
+      .def("transform", transform, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
+           "Moves the whole body from where it is, at once: rotated about the world's origin (x, y, z, w), then by "
+           "position.")
+      .def("apply_radial_impulse", radialImpulse, "centre"_a, "radius"_a, "strength"_a,
+           "Pushes all of the surface in a ball away from its centre: an explosion. strength: sum of the magnitudes at "
+           "all vertices.")
+      .def(
+          "remove",
+          [](BodyHandle& b) {
+            const Locked lock(*b.world);
+            b.world->remove(*b.state);
+          },
+          "Removes it from its world, with its contacts, springs and welds. Views of it stay valid. Removing it again "
+          "changes nothing.");
+
+  world
+      .def("add_body", addBody, "cage"_a, "mesh"_a.none() = nb::none(), nb::kw_only(), "position"_a = Vec3{},
+           "rotation"_a = Quaternion{0, 0, 0, 1}, "pinned"_a = nb::none(), "mass"_a = nb::none(), "density"_a = 100.0,
+           "node_masses"_a = nb::none(), "youngs_modulus"_a = nb::none(), "relative_stiffness"_a = 50.0,
+           "stiffness_scale"_a = nb::none(), "poisson_ratio"_a = 0.3, "stiffness_damping"_a = 0.02, "friction"_a = 0.5,
+           "margin"_a = nb::none(), "solver_tolerance"_a = 5e-3, "max_iterations"_a = 100, "interpolation"_a = "linear",
+           "normals"_a = "none", "outside"_a = "nearest", "max_distance"_a = nb::none(), "surface_contact"_a = true,
+           "soft_contact"_a = false, "self_contact"_a = false, "contact_margin"_a = nb::none(),
+           "sample_spacing"_a = nb::none(),
+           "Adds a soft body, which collides with rigid bodies at its visible surface. Without a mesh it has no "
+           "surface, and collides at its nodes.\n\n"
+           "position, rotation (x, y, z, w): of the rest space in the world. pinned: nodes, a mask of booleans or "
+           "indices. mass: total; None: from "
+           "density, mass per volume. youngs_modulus: pressure units; None: relative_stiffness x density x gravity x "
+           "size, from 30 (wobbles, sags) to "
+           "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
+           "the body's size.\n\n"
+           "interpolation, normals, outside, max_distance: as of Skin. surface_contact: with rigid bodies; "
+           "contact_margin: the distance kept, None: 0.2 % "
+           "of the body's size; sample_spacing: rest units, of points on large triangles. soft_contact: with other "
+           "bodies that have it; self_contact: with "
+           "others and itself. Both make a distance grid of the surface once, which takes a second for 20,000 "
+           "triangles.")
+      .def_prop_ro(
+          "bodies",
+          [](const std::shared_ptr<World>& w) {
+            const Locked lock(*w);
+            std::vector<BodyHandle> all;
+            for (const auto& state : w->bodies()) all.push_back({w, state});
+            return all;
+          },
+          "The soft bodies, in the order in which they were added.");
+}
+
+}  // namespace tetskin::python

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "models.h"
+
+#include <nanobind/stl/filesystem.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/elastic/calibration.h>
+#include <tetskin/io/files.h>
+
+namespace tetskin::python {
+namespace {
+
+template <class T>
+std::shared_ptr<const T> sharedOf(T&& value) {
+  return std::make_shared<const T>(std::move(value));
+}
+
+CageModel made(const ArrayLike& nodes, const ArrayLike& tets) {
+  TetMesh mesh;
+  mesh.nodes = pointsOf(nodes, "nodes");
+  mesh.tets = indexRowsOf<4>(tets, "tets");
+  check(validate(mesh));
+  (void)repairTetMesh(mesh);
+  return {sharedOf(Cage(std::move(mesh))), {}};
+}
+
+CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateElements, bool fit,
+                  const nb::object& progress) {
+  const MeshModel model = meshOf(mesh);
+  ProgressCall call(progress);
+  CageOptions options;
+  options.targetTets = targetTets;
+  options.duplicateElements = duplicateElements;
+  options.fit = fit;
+  options.progress = call.function();
+  CageReport report;
+  Result<Cage> cage = released([&] { return createCage(*model.mesh, options, &report); });
+  call.rethrow();
+  return {sharedOf(take(std::move(cage))), report.describe()};
+}
+
+CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount, const nb::object& progress) {
+  ProgressCall call(progress);
+  CalibrationOptions options;
+  options.poissonRatio = poissonRatio;
+  options.modeCount = modeCount;
+  options.progress = call.function();
+  Cage cage = *model.cage;
+  const Result<CalibrationReport> report = released([&] { return calibrate(cage, options); });
+  call.rethrow();
+  check(report.status());
+  return {sharedOf(std::move(cage)), model.report + report.value().describe()};
+}
+
+CageModel quadratic(const CageModel& model) {
+  return {sharedOf(take(refineQuadratic(model.cage->mesh))), {}};
+}
+
+nb::tuple stateOf(const CageModel& model) {
+  const Cage& cage = *model.cage;
+  const nb::object hash = cage.meshHash ? nb::object(nb::int_(*cage.meshHash)) : nb::object(nb::none());
+  return nb::make_tuple(bytesOf(cage.mesh.nodes), bytesOf(cage.mesh.tets), bytesOf(cage.vertexTets),
+                        bytesOf(cage.volumeFraction), bytesOf(cage.stiffnessFactor), bytesOf(cage.masses),
+                        bytesOf(cage.component), bytesOf(cage.sourceTet), bytesOf(cage.quadraticTet),
+                        bytesOf(cage.fineVolumeFraction), hash, model.report);
+}
+
+CageModel cageOfState(const nb::tuple& state) {
+  if (state.size() != 12) fail(StatusCode::Malformed, "not a pickled cage of this version of tetskin");
+  Cage cage;
+  readBytes(state[0], cage.mesh.nodes);
+  readBytes(state[1], cage.mesh.tets);
+  readBytes(state[2], cage.vertexTets);
+  readBytes(state[3], cage.volumeFraction);
+  readBytes(state[4], cage.stiffnessFactor);
+  readBytes(state[5], cage.masses);
+  readBytes(state[6], cage.component);
+  readBytes(state[7], cage.sourceTet);
+  readBytes(state[8], cage.quadraticTet);
+  readBytes(state[9], cage.fineVolumeFraction);
+  if (!nb::object(state[10]).is_none()) cage.meshHash = nb::cast<std::uint64_t>(state[10]);
+  check(validate(cage));
+  return {sharedOf(std::move(cage)), nb::cast<std::string>(state[11])};
+}
+
+/// A property that views one of a cage's arrays.
+template <auto Member>
+auto arrayOf() {
+  return [](const CageModel& model) {
+    const auto& values = (*model.cage).*Member;
+    return view1(values.data(), values.size(), model.cage);
+  };
+}
+
+}  // namespace
+
+void bindCages(nb::module_& module) {
+  Class<CageModel>(module, "Cage",
+                   "Tets at rest, and what is known about the mesh in them. Immutable; can be pickled. An array that "
+                   "is empty tells of nothing.")
+      .def(
+          "__init__",
+          [](CageModel* self, const ArrayLike& nodes, const ArrayLike& tets) {
+            new (self) CageModel(made(nodes, tets));
+          },
+          "nodes"_a, "tets"_a,
+          "A cage of tets alone. nodes: (n, 3) float32 or float64, any unit; tets: (t, 4) integers, of which those "
+          "that are "
+          "oriented negatively are reversed.")
+      .def_prop_ro(
+          "nodes", [](const CageModel& m) { return view3(viewOf(m.cage->mesh.nodes), m.cage); },
+          "(n, 3) float64, rest space. A read-only view.")
+      .def_prop_ro(
+          "tets",
+          [](const CageModel& m) {
+            const std::size_t shape[2] = {m.cage->mesh.tetCount(), 4};
+            return Row4<int>(m.cage->mesh.tets[0].data(), 2, shape, kept(m.cage));
+          },
+          "(t, 4) int32 node indices. A read-only view.")
+      .def_prop_ro("vertex_tets", arrayOf<&Cage::vertexTets>(),
+                   "(vertices,) int32: index of the tet that carries each vertex. A read-only view.")
+      .def_prop_ro("volume_fraction", arrayOf<&Cage::volumeFraction>(),
+                   "(t,) float64, 0 to 1: fraction of the tet's volume inside the mesh. A read-only view.")
+      .def_prop_ro("stiffness_factor", arrayOf<&Cage::stiffnessFactor>(),
+                   "(t,) float64: multiplies the stiffness; see calibrate. A read-only view.")
+      .def_prop_ro("masses", arrayOf<&Cage::masses>(),
+                   "(n,) float64, for a density of 1: their sum is the mesh's volume. A read-only view.")
+      .def_prop_ro("component", arrayOf<&Cage::component>(), "(t,) int32: component of the cage. A read-only view.")
+      .def_prop_ro("source_tet", arrayOf<&Cage::sourceTet>(),
+                   "(t,) int32: equal for all duplicates of one tet. A read-only view.")
+      .def_prop_ro(
+          "quadratic_tet", arrayOf<&Cage::quadraticTet>(),
+          "(t,) int32: number of the quadratic tet of which the tet is one of eight; -1: linear. A read-only view.")
+      .def_prop_ro(
+          "node_count", [](const CageModel& m) { return m.cage->mesh.nodeCount(); }, "Number of nodes.")
+      .def_prop_ro(
+          "tet_count", [](const CageModel& m) { return m.cage->mesh.tetCount(); }, "Number of tets.")
+      .def_prop_ro(
+          "report", [](const CageModel& m) { return m.report; },
+          "How it was made, and how well it fits, in words. Empty for a cage from a file or arrays.")
+      .def(
+          "save",
+          [](const CageModel& m, const std::filesystem::path& path) {
+            released([&] { check(saveCage(*m.cage, path.u8string())); });
+          },
+          "path"_a, "Writes a .vtk file, with all data of the cage, or the tets alone as .node and .ele, or .msh.")
+      .def(
+          "scaled",
+          [](const CageModel& m, double scale) {
+            if (!(scale > 0.0 && scale < Limits::kMaxCoordinate))
+              throw nb::value_error("scale: must be above 0, and finite");
+            Cage cage = *m.cage;
+            cage.scaleBy(scale);
+            check(validate(cage));
+            return CageModel{sharedOf(std::move(cage)), m.report};
+          },
+          "scale"_a, "A copy of another size, with its masses.")
+      .def("__getstate__", stateOf)
+      .def("__setstate__", [](CageModel& self, const nb::tuple& state) {
+        try {
+          new (&self) CageModel(cageOfState(state));
+        } catch (const nb::cast_error&) {
+          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+        }
+      });
+
+  module.def("create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
+             "fit"_a = true, "progress"_a = nb::none(),
+             "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same "
+             "input gives "
+             "the same cage. Some half a second for 60,000 triangles; the GIL is released.\n\n"
+             "duplicate_elements: where regions of the mesh are nearer to each other than the size of a tet, each gets "
+             "its own "
+             "copy of the tet. fit: move boundary nodes towards the surface. progress: called with the fraction done, "
+             "from 0 to "
+             "1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised.");
+  module.def(
+      "calibrate", calibrated, "cage"_a, nb::kw_only(), "poisson_ratio"_a = 0.3, "mode_count"_a = 6,
+      "progress"_a = nb::none(),
+      "A copy of the cage with the stiffness factors that make it as compliant as the body with its shape: coarse tets "
+      "are too stiff. Some two seconds for 3,000 tets; the GIL is released.\n\n"
+      "poisson_ratio: 0 to below 0.5, of the material that will be simulated. mode_count: number of vibrations that "
+      "are "
+      "compared. progress: as of create_cage.");
+  module.def("refine_quadratic", quadratic, "cage"_a,
+             "A cage of quadratic tets: each tet of the cage becomes one, held as eight. For meshes that are filled by "
+             "their body.");
+  module.def(
+      "load_cage",
+      [](const std::filesystem::path& path) {
+        return CageModel{sharedOf(released([&] { return take(loadCage(path.u8string())); })), {}};
+      },
+      "path"_a, "Reads what Cage.save writes; tets of .vtk, .node and .ele, .msh (Gmsh) and .mesh (Medit) files.");
+}
+
+}  // namespace tetskin::python

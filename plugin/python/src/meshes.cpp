@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "models.h"
+
+#include <nanobind/stl/filesystem.h>
+#include <tetskin/io/files.h>
+
+namespace tetskin::python {
+namespace {
+
+template <class Vector>
+std::vector<Vector> floatRows(const nb::object& array, const char* name, int columns) {
+  std::vector<Vector> rows;
+  if (array.is_none()) return rows;
+  const Numbers<double> numbers(ArrayLike{array}, name, columns);
+  rows.resize(numbers.rows());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (int k = 0; k < columns; ++k)
+      rows[i][k] =
+          static_cast<float>(numbers.data()[i * static_cast<std::size_t>(columns) + static_cast<std::size_t>(k)]);
+  }
+  return rows;
+}
+
+void checkLength(std::size_t length, std::size_t vertices, const char* name) {
+  if (length == 0 || length == vertices) return;
+  fail(StatusCode::SizeMismatch,
+       std::string(name) + ": " + std::to_string(length) + " for " + std::to_string(vertices) + " vertices");
+}
+
+MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const nb::object& normals,
+               const nb::object& texcoords) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->positions = pointsOf(positions, "positions");
+  mesh->triangles = indexRowsOf<3>(triangles, "triangles");
+  mesh->normals = floatRows<Eigen::Vector3f>(normals, "normals", 3);
+  mesh->texcoords = floatRows<Eigen::Vector2f>(texcoords, "texcoords", 2);
+  check(validate(*mesh));
+  checkLength(mesh->normals.size(), mesh->vertexCount(), "normals");
+  checkLength(mesh->texcoords.size(), mesh->vertexCount(), "texcoords");
+  return {std::move(mesh)};
+}
+
+MeshModel loaded(const std::filesystem::path& path) {
+  MeshFileReport report;
+  Result<TriangleMesh> mesh = released([&] { return loadMesh(path.u8string(), &report); });
+  if (mesh.status().code == StatusCode::UnsupportedFormat) {
+    fail(StatusCode::UnsupportedFormat, mesh.status().message +
+                                            "\nThis package reads OBJ, PLY, STL, OFF and glTF 2.0. trimesh reads more: "
+                                            "tetskin.create_cage(trimesh.load(path)), for one, takes its meshes");
+  }
+  return {std::make_shared<const TriangleMesh>(take(std::move(mesh)))};
+}
+
+nb::tuple stateOf(const MeshModel& model) {
+  const TriangleMesh& mesh = *model.mesh;
+  nb::list groups;
+  for (const TriangleGroup& group : mesh.groups) {
+    groups.append(nb::make_tuple(group.name, group.material, group.firstTriangle, group.triangleCount));
+  }
+  return nb::make_tuple(bytesOf(mesh.positions), bytesOf(mesh.triangles), bytesOf(mesh.normals), bytesOf(mesh.tangents),
+                        bytesOf(mesh.texcoords), groups);
+}
+
+MeshModel meshOfState(const nb::tuple& state) {
+  if (state.size() != 6) fail(StatusCode::Malformed, "not a pickled mesh of this version of tetskin");
+  auto mesh = std::make_shared<TriangleMesh>();
+  readBytes(state[0], mesh->positions);
+  readBytes(state[1], mesh->triangles);
+  readBytes(state[2], mesh->normals);
+  readBytes(state[3], mesh->tangents);
+  readBytes(state[4], mesh->texcoords);
+  std::size_t next = 0;
+  for (nb::handle item : nb::cast<nb::list>(state[5])) {
+    const auto group = nb::cast<nb::tuple>(item);
+    mesh->groups.push_back({nb::cast<std::string>(group[0]), nb::cast<std::string>(group[1]),
+                            nb::cast<std::size_t>(group[2]), nb::cast<std::size_t>(group[3])});
+    const TriangleGroup& read = mesh->groups.back();
+    if (read.firstTriangle != next || read.triangleCount > mesh->triangleCount() - next)
+      fail(StatusCode::Malformed, "a group of triangles is out of range");
+    next += read.triangleCount;
+  }
+  if (!mesh->groups.empty() && next != mesh->triangleCount())
+    fail(StatusCode::Malformed, "groups do not cover all triangles");
+  check(validate(*mesh));
+  checkLength(mesh->normals.size(), mesh->vertexCount(), "normals");
+  checkLength(mesh->tangents.size(), mesh->vertexCount(), "tangents");
+  checkLength(mesh->texcoords.size(), mesh->vertexCount(), "texcoords");
+  return {std::move(mesh)};
+}
+
+}  // namespace
+
+MeshModel meshOf(const MeshLike& mesh) {
+  if (nb::isinstance<MeshModel>(mesh.object)) return nb::cast<MeshModel>(mesh.object);
+  if (!nb::hasattr(mesh.object, "vertices") || !nb::hasattr(mesh.object, "faces")) {
+    throw nb::type_error(
+        "mesh: neither a tetskin.TriangleMesh nor a mesh with `vertices` and `faces`, as trimesh has them");
+  }
+  const nb::object numpy = nb::module_::import_("numpy");
+  const auto plain = [&](const char* attribute) {
+    return ArrayLike{numpy.attr("asarray")(mesh.object.attr(attribute))};
+  };
+  return made(plain("vertices"), plain("faces"), nb::none(), nb::none());
+}
+
+void bindMeshes(nb::module_& module) {
+  Class<MeshModel>(module, "TriangleMesh",
+                   "A render mesh at rest. Immutable; can be pickled. Vertices may coincide, surfaces may be open, "
+                   "and there may be several components.")
+      .def(
+          "__init__",
+          [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles, const nb::object& normals,
+             const nb::object& texcoords) { new (self) MeshModel(made(positions, triangles, normals, texcoords)); },
+          "positions"_a, "triangles"_a, nb::kw_only(), "normals"_a = nb::none(), "texcoords"_a = nb::none(),
+          "positions: (n, 3) float32 or float64, any unit; triangles: (m, 3) integers, counter-clockwise from outside; "
+          "normals: (n, 3), unit length, or None; texcoords: (n, 2), or None.")
+      .def_prop_ro(
+          "positions", [](const MeshModel& m) { return view3(viewOf(m.mesh->positions), m.mesh); },
+          "(n, 3) float64, rest space, the file's own unit. A read-only view.")
+      .def_prop_ro(
+          "triangles",
+          [](const MeshModel& m) {
+            return view3<int>(m.mesh->triangles.empty() ? nullptr : m.mesh->triangles[0].data(),
+                              m.mesh->triangleCount(), m.mesh);
+          },
+          "(m, 3) int32 vertex indices, counter-clockwise from outside. A read-only view.")
+      .def_prop_ro(
+          "normals", [](const MeshModel& m) { return view3(viewOf(m.mesh->normals), m.mesh); },
+          "(n, 3) float32 authored unit normals, or (0, 3). A read-only view.")
+      .def_prop_ro(
+          "vertex_count", [](const MeshModel& m) { return m.mesh->vertexCount(); }, "Number of vertices.")
+      .def_prop_ro(
+          "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.")
+      .def("__getstate__", stateOf)
+      .def("__setstate__", [](MeshModel& self, const nb::tuple& state) {
+        try {
+          new (&self) MeshModel(meshOfState(state));
+        } catch (const nb::cast_error&) {
+          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+        }
+      });
+
+  module.def(
+      "load_mesh", loaded, "path"_a,
+      "Reads a render mesh: .obj, .ply, .stl, .off, and .gltf, .glb and .vrm of glTF 2.0. Other formats: trimesh, "
+      "whose meshes are taken wherever a TriangleMesh is.");
+}
+
+}  // namespace tetskin::python

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Meshes and cages as Python holds them: immutable, so that bodies, skins and threads share them.
+#pragma once
+
+#include "arrays.h"
+
+#include <tetskin/core/cage.h>
+#include <tetskin/core/mesh.h>
+#include <tetskin/core/mesh_skin.h>
+
+namespace tetskin::python {
+
+struct MeshModel {
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+struct CageModel {
+  std::shared_ptr<const Cage> cage;
+  std::string report;  ///< of what made it, in words; may be empty
+};
+
+/// A TriangleMesh, or what has `vertices` and `faces`: a mesh of trimesh.
+struct MeshLike {
+  nb::object object;
+};
+MeshModel meshOf(const MeshLike& mesh);
+
+BindingOptions bindingOptions(const std::string& interpolation, const std::string& normals, const std::string& outside,
+                              std::optional<double> maxDistance);
+Interpolation interpolationOf(const std::string& name);
+
+class World;
+
+/// Each binds one subject; those that take the class of worlds add methods to it.
+void bindMeshes(nb::module_& module);
+void bindCages(nb::module_& module);
+void bindSkins(nb::module_& module);
+void bindElasticBodies(nb::module_& module);
+void bindAnimations(nb::module_& module);
+void bindRigidBodies(nb::module_& module, Class<World>& world);
+void bindBodies(nb::module_& module, Class<World>& world);
+void bindContacts(nb::module_& module, Class<World>& world);
+void bindTouch(nb::module_& module, Class<World>& world);
+Class<World> bindWorlds(nb::module_& module);
+void bindRuns(nb::module_& module, Class<World>& world);
+
+}  // namespace tetskin::python
+
+namespace nanobind::detail {
+template <>
+struct type_caster<tetskin::python::MeshLike> {
+  NB_TYPE_CASTER(tetskin::python::MeshLike, const_name("TriangleMesh | typing.Any"))
+  bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+    value.object = borrow(source);
+    return true;
+  }
+};
+}  // namespace nanobind::detail

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The extension module tetskin._core. Each other source binds one subject.
+#include "world_model.h"
+
+#include <tetskin/tetskin.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace tetskin::python {
+namespace {
+
+constexpr StatusCode kLastCode = StatusCode::Cancelled;
+
+/// The names of the codes, in their order, as Python writes constants.
+constexpr const char* kCodes[] = {"OK",
+                                  "FILE_NOT_FOUND",
+                                  "FILE_NOT_WRITABLE",
+                                  "UNSUPPORTED_FORMAT",
+                                  "MALFORMED",
+                                  "EMPTY",
+                                  "INDEX_OUT_OF_RANGE",
+                                  "NON_FINITE",
+                                  "DEGENERATE",
+                                  "SIZE_MISMATCH",
+                                  "INVALID_OPTION",
+                                  "OUTSIDE_CAGE",
+                                  "CAGE_MISMATCH",
+                                  "TOO_LARGE",
+                                  "ASLEEP",
+                                  "HIDDEN",
+                                  "UNBOUND",
+                                  "TOPOLOGY_CHANGED",
+                                  "NO_HIT",
+                                  "BODY_DELETED",
+                                  "RELEASED",
+                                  "OTHER_BODY",
+                                  "NOT_IN_WORLD",
+                                  "NOT_ADDED",
+                                  "ENCLOSED",
+                                  "NOT_SAVED",
+                                  "SNAPSHOT_MISMATCH",
+                                  "CANCELLED"};
+static_assert(sizeof kCodes / sizeof *kCodes == static_cast<std::size_t>(kLastCode) + 1);
+
+PyObject* errorType = nullptr;  // owned by the module, which is never unloaded
+
+void translate(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Failure& failure) {
+    nb::object error = nb::handle(errorType)(failure.what());
+    error.attr("code") = nb::cast(failure.code);
+    PyErr_SetObject(errorType, error.ptr());
+  }
+}
+
+void bindErrors(nb::module_& module) {
+  nb::enum_<StatusCode> codes(module, "StatusCode", "What has failed, for programs: the code of an Error.");
+  for (std::size_t i = 0; i < std::size(kCodes); ++i) {
+    const auto code = static_cast<StatusCode>(i);
+    codes.value(kCodes[i], code, toString(code));
+  }
+  errorType = PyErr_NewExceptionWithDoc("tetskin.Error", "What the library refuses, and why. code: a StatusCode.",
+                                        PyExc_RuntimeError, nullptr);
+  nb::setattr(nb::handle(errorType), "code", nb::none());
+  module.attr("Error") = nb::handle(errorType);
+  nb::register_exception_translator(translate);
+}
+
+}  // namespace
+}  // namespace tetskin::python
+
+NB_MODULE(_core, module) {
+  using namespace tetskin::python;
+  module.doc() = "Soft bodies in cages of tets, with their fine surface.";
+  module.attr("__version__") = TETSKIN_VERSION;
+  bindErrors(module);
+  bindMeshes(module);
+  bindCages(module);
+  bindSkins(module);
+  bindElasticBodies(module);
+  Class<World> world = bindWorlds(module);
+  bindRigidBodies(module, world);
+  bindBodies(module, world);
+  bindContacts(module, world);
+  bindTouch(module, world);
+  bindRuns(module, world);
+  bindAnimations(module);
+}

@@ -1,0 +1,481 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "world_model.h"
+
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+#include <nanobind/stl/tuple.h>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace tetskin::python {
+namespace {
+
+/// Bullet's hulls are rounded by their margin; this share of their size cannot be seen.
+constexpr btScalar kHullMargin = btScalar(0.01);
+
+double positive(double value, const char* name) {
+  if (!(value > 0.0 && value < 1e9))
+    throw nb::value_error((std::string(name) + ": must be above 0, and finite").c_str());
+  return value;
+}
+
+ShapeModel plane(const Vec3& normal, double offset) {
+  const btVector3 n = toBullet(normal, "normal");
+  if (!(n.length2() > 0)) throw nb::value_error("normal: must not be 0");
+  finite({offset, 0, 0}, "offset");
+  return {std::make_shared<btStaticPlaneShape>(n.normalized(), static_cast<btScalar>(offset)), true};
+}
+ShapeModel box(const Vec3& halfExtents) {
+  for (const double half : halfExtents) positive(half, "half_extents");
+  return {std::make_shared<btBoxShape>(toBullet(halfExtents, "half_extents"))};
+}
+ShapeModel sphere(double radius) {
+  return {std::make_shared<btSphereShape>(static_cast<btScalar>(positive(radius, "radius")))};
+}
+ShapeModel capsule(double radius, double height) {
+  return {std::make_shared<btCapsuleShape>(static_cast<btScalar>(positive(radius, "radius")),
+                                           static_cast<btScalar>(positive(height, "height")))};
+}
+ShapeModel cylinder(double radius, double height) {
+  const auto r = static_cast<btScalar>(positive(radius, "radius"));
+  return {std::make_shared<btCylinderShape>(btVector3(r, static_cast<btScalar>(0.5 * positive(height, "height")), r))};
+}
+
+ShapeModel convexHull(const ArrayLike& array) {
+  const std::vector<Eigen::Vector3d> points = pointsOf(array, "points");
+  if (points.size() < 4) fail(StatusCode::Empty, "points: a hull needs four or more");
+  auto hull = std::make_shared<btConvexHullShape>();
+  for (const Eigen::Vector3d& p : points) hull->addPoint(toBullet(Vec3{p.x(), p.y(), p.z()}, "points"), false);
+  hull->recalcLocalAabb();
+  const Eigen::Vector3d sizes = boundingBox(points).sizes();
+  if (!(sizes.minCoeff() > 1e-9 * sizes.maxCoeff())) fail(StatusCode::Degenerate, "points: they are in one plane");
+  hull->setMargin(std::min(CONVEX_DISTANCE_MARGIN, kHullMargin * static_cast<btScalar>(sizes.maxCoeff())));
+  return {std::move(hull)};
+}
+
+/// A mesh's arrays, as Bullet refers to them.
+struct MeshArrays {
+  std::vector<float> vertices;
+  std::vector<int> indices;
+  std::unique_ptr<btTriangleIndexVertexArray> interface;
+  std::unique_ptr<btBvhTriangleMeshShape> shape;
+};
+
+ShapeModel meshShape(const MeshLike& like) {
+  const MeshModel model = meshOf(like);
+  const TriangleMesh& mesh = *model.mesh;
+  if (mesh.triangles.empty()) fail(StatusCode::Empty, "the mesh has no triangles");
+  auto arrays = std::make_shared<MeshArrays>();
+  for (const Eigen::Vector3d& p : mesh.positions)
+    arrays->vertices.insert(arrays->vertices.end(),
+                            {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  for (const auto& triangle : mesh.triangles)
+    arrays->indices.insert(arrays->indices.end(), triangle.begin(), triangle.end());
+  btIndexedMesh part;
+  part.m_numTriangles = static_cast<int>(mesh.triangleCount());
+  part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(arrays->indices.data());
+  part.m_triangleIndexStride = 3 * sizeof(int);
+  part.m_numVertices = static_cast<int>(mesh.vertexCount());
+  part.m_vertexBase = reinterpret_cast<const unsigned char*>(arrays->vertices.data());
+  part.m_vertexStride = 3 * sizeof(float);
+  part.m_vertexType = PHY_FLOAT;
+  arrays->interface = std::make_unique<btTriangleIndexVertexArray>();
+  arrays->interface->addIndexedMesh(part, PHY_INTEGER);
+  arrays->shape = std::make_unique<btBvhTriangleMeshShape>(arrays->interface.get(), true);
+  return {std::shared_ptr<btCollisionShape>(arrays, arrays->shape.get()), true};
+}
+
+/// A compound, with its children.
+struct CompoundParts {
+  std::vector<ShapeModel> children;
+  btCompoundShape shape;
+};
+
+ShapeModel compound(const std::vector<std::tuple<ShapeModel, Vec3, Quaternion>>& children) {
+  if (children.empty()) fail(StatusCode::Empty, "children: a compound needs one or more");
+  auto parts = std::make_shared<CompoundParts>();
+  for (const auto& [child, position, rotation] : children) {
+    if (child.concave) fail(StatusCode::InvalidOption, "children: planes and meshes cannot be parts of a compound");
+    parts->children.push_back(child);
+    parts->shape.addChildShape(toBullet(position, rotation), child.shape.get());
+  }
+  return {std::shared_ptr<btCollisionShape>(parts, &parts->shape)};
+}
+
+Quaternion rotationOf(const btTransform& pose) {
+  const btQuaternion q = pose.getRotation();
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+/// Puts a body somewhere: a kinematic one by its motion state, which gives it the velocity of the motion.
+void place(RigidHandle& rigid, const btTransform& pose) {
+  btRigidBody& body = alive(rigid);
+  rigid.state->motion->setWorldTransform(pose);
+  if (body.isKinematicObject()) return;
+  body.setWorldTransform(pose);
+  body.setInterpolationWorldTransform(pose);
+  rigid.world->bullet().updateSingleAabb(&body);
+  body.activate(true);
+}
+
+void setMass(RigidHandle& rigid, double mass) {
+  btRigidBody& body = alive(rigid);
+  positive(mass, "mass");
+  if (body.isStaticOrKinematicObject())
+    fail(StatusCode::InvalidOption, "a static or kinematic body has no mass; add it with one");
+  btVector3 inertia;
+  rigid.state->shape.shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+  body.setMassProps(static_cast<btScalar>(mass), inertia);
+  body.updateInertiaTensor();
+  body.setGravity(rigid.world->bullet().getGravity());
+  body.activate(true);
+}
+
+/// The joint, and the one of a type that it must have for a call.
+btTypedConstraint& alive(const JointHandle& joint) {
+  if (!joint.state->joint) fail(StatusCode::Released, "the joint has been removed");
+  return *joint.state->joint;
+}
+btHingeConstraint* hinge(const JointHandle& joint) {
+  return alive(joint).getConstraintType() == HINGE_CONSTRAINT_TYPE
+             ? static_cast<btHingeConstraint*>(joint.state->joint.get())
+             : nullptr;
+}
+btSliderConstraint* slider(const JointHandle& joint) {
+  return alive(joint).getConstraintType() == SLIDER_CONSTRAINT_TYPE
+             ? static_cast<btSliderConstraint*>(joint.state->joint.get())
+             : nullptr;
+}
+[[noreturn]] void noMotor() {
+  fail(StatusCode::InvalidOption, "only hinges and sliders have a coordinate, limits and a motor");
+}
+
+double coordinateOf(const JointHandle& joint) {
+  if (auto* h = hinge(joint)) return h->getHingeAngle();
+  if (auto* s = slider(joint)) {
+    s->calculateTransforms(s->getRigidBodyA().getCenterOfMassTransform(),
+                           s->getRigidBodyB().getCenterOfMassTransform());
+    return s->getLinDepth();
+  }
+  noMotor();
+}
+
+void wake(const JointHandle& joint) {
+  joint.state->first->body->activate(true);
+  if (joint.state->second) joint.state->second->body->activate(true);
+}
+
+void setMotor(JointHandle& joint, std::optional<double> velocity, double maxForce) {
+  finite({velocity.value_or(0.0), 0, 0}, "velocity");
+  if (!(maxForce >= 0.0 && maxForce < 1e12)) throw nb::value_error("max_force: must be 0 or more, and finite");
+  const auto v = static_cast<btScalar>(velocity.value_or(0.0)), f = static_cast<btScalar>(maxForce);
+  if (auto* h = hinge(joint)) {
+    joint.state->maxTorque = maxForce;
+    h->enableAngularMotor(velocity.has_value(), v, h->getMaxMotorImpulse());
+  } else if (auto* s = slider(joint)) {
+    s->setPoweredLinMotor(velocity.has_value());
+    s->setTargetLinMotorVelocity(v);
+    s->setMaxLinMotorForce(f);
+  } else {
+    noMotor();
+  }
+  wake(joint);
+}
+
+void setLimits(JointHandle& joint, const std::array<double, 2>& limits) {
+  if (!(limits[0] <= limits[1])) throw nb::value_error("limits: the lower one must not be above the upper one");
+  const auto lower = static_cast<btScalar>(limits[0]), upper = static_cast<btScalar>(limits[1]);
+  if (auto* h = hinge(joint)) {
+    h->setLimit(lower, upper);
+  } else if (auto* s = slider(joint)) {
+    s->setLowerLinLimit(lower);
+    s->setUpperLinLimit(upper);
+  } else {
+    noMotor();
+  }
+  wake(joint);
+}
+
+/// A frame at the pivot, with its axis k along the direction.
+btTransform frameAt(const Vec3& pivot, const Vec3& axis, int k) {
+  const btVector3 along = toBullet(axis, "axis");
+  if (!(along.length2() > 0)) throw nb::value_error("axis: must not be 0");
+  const btVector3 a = along.normalized();
+  btVector3 b, c;
+  btPlaneSpace1(a, b, c);
+  btVector3 columns[3];
+  columns[k] = a;
+  columns[(k + 1) % 3] = b;
+  columns[(k + 2) % 3] = c;
+  const btMatrix3x3 basis(columns[0].x(), columns[1].x(), columns[2].x(), columns[0].y(), columns[1].y(),
+                          columns[2].y(), columns[0].z(), columns[1].z(), columns[2].z());
+  return btTransform(basis, toBullet(pivot, "pivot"));
+}
+
+/// What a joint connects: a rigid body, and another one or the world.
+struct Ends {
+  Ends(const std::shared_ptr<World>& world, const RigidHandle& a, const std::optional<RigidHandle>& b) {
+    first = rigidOf(world, a);
+    second = rigidOf(world, b);
+    if (first == second) fail(StatusCode::InvalidOption, "a joint connects two different bodies");
+    if (first->body->isStaticOrKinematicObject() && (!second || second->body->isStaticOrKinematicObject())) {
+      fail(StatusCode::InvalidOption, "a joint needs a body that moves by itself, with a mass");
+    }
+  }
+  btRigidBody& bodyA() const { return *first->body; }
+  btRigidBody& bodyB() const { return second ? *second->body : btTypedConstraint::getFixedBody(); }
+  btTransform inA(const btTransform& frame) const { return bodyA().getCenterOfMassTransform().inverse() * frame; }
+  btTransform inB(const btTransform& frame) const {
+    return second ? bodyB().getCenterOfMassTransform().inverse() * frame : frame;
+  }
+
+  std::shared_ptr<RigidState> first, second;
+};
+
+JointHandle added(const std::shared_ptr<World>& world, const Ends& ends, std::unique_ptr<btTypedConstraint> joint,
+                  bool collide) {
+  return {world, world->addJoint(ends.first, ends.second, std::move(joint), collide)};
+}
+
+using OtherBody = std::optional<RigidHandle>;
+using JointLimits = std::optional<std::array<double, 2>>;
+
+JointHandle addPoint(const std::shared_ptr<World>& world, const RigidHandle& a, const OtherBody& b, const Vec3& pivot,
+                     bool collide) {
+  const Locked lock(*world);
+  const Ends ends(world, a, b);
+  const btTransform at(btQuaternion::getIdentity(), toBullet(pivot, "pivot"));
+  return added(world, ends,
+               std::make_unique<btPoint2PointConstraint>(ends.bodyA(), ends.bodyB(), ends.inA(at).getOrigin(),
+                                                         ends.inB(at).getOrigin()),
+               collide);
+}
+JointHandle addHinge(const std::shared_ptr<World>& world, const RigidHandle& a, const OtherBody& b, const Vec3& pivot,
+                     const Vec3& axis, const JointLimits& limits, bool collide) {
+  const Locked lock(*world);
+  const Ends ends(world, a, b);
+  const btTransform at = frameAt(pivot, axis, 2);
+  // The angle is that of the first body against the second one, about the axis: Bullet measures its second one.
+  auto joint = std::make_unique<btHingeConstraint>(ends.bodyB(), ends.bodyA(), ends.inB(at), ends.inA(at), true);
+  JointHandle handle = added(world, ends, std::move(joint), collide);
+  if (limits) setLimits(handle, *limits);
+  return handle;
+}
+JointHandle addSlider(const std::shared_ptr<World>& world, const RigidHandle& a, const OtherBody& b, const Vec3& pivot,
+                      const Vec3& axis, const JointLimits& limits, bool collide) {
+  const Locked lock(*world);
+  const Ends ends(world, a, b);
+  const btTransform at = frameAt(pivot, axis, 0);
+  // The coordinate is the way of the first body from the second one: Bullet measures that of its second one.
+  auto joint = std::make_unique<btSliderConstraint>(ends.bodyB(), ends.bodyA(), ends.inB(at), ends.inA(at), true);
+  joint->setLowerAngLimit(0);
+  joint->setUpperAngLimit(0);
+  joint->setLowerLinLimit(1);  // lower above upper: unlimited
+  joint->setUpperLinLimit(-1);
+  JointHandle handle = added(world, ends, std::move(joint), collide);
+  if (limits) setLimits(handle, *limits);
+  return handle;
+}
+JointHandle addFixed(const std::shared_ptr<World>& world, const RigidHandle& a, const OtherBody& b, bool collide) {
+  const Locked lock(*world);
+  const Ends ends(world, a, b);
+  const btTransform at = ends.bodyA().getCenterOfMassTransform();
+  return added(world, ends, std::make_unique<btFixedConstraint>(ends.bodyA(), ends.bodyB(), ends.inA(at), ends.inB(at)),
+               collide);
+}
+
+}  // namespace
+
+void bindRigidBodies(nb::module_& module, Class<World>& world) {
+  Class<ShapeModel>(module, "Shape",
+                    "A collision shape, which any number of rigid bodies share. Lengths are world lengths.")
+      .def_static("plane", plane, "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0,
+                  "All below a plane: what has normal . x < offset.")
+      .def_static("box", box, "half_extents"_a)
+      .def_static("sphere", sphere, "radius"_a)
+      .def_static("capsule", capsule, "radius"_a, "height"_a, "Along y; height is that of the part between the caps.")
+      .def_static("cylinder", cylinder, "radius"_a, "height"_a, "Along y.")
+      .def_static("convex_hull", convexHull, "points"_a, "The hull of points, (n, 3).")
+      .def_static(
+          "mesh", meshShape, "mesh"_a,
+          "A surface, for bodies without a mass: met from the side from which triangles look counter-clockwise.")
+      .def_static("compound", compound, "children"_a, "Of (shape, position, rotation) each: rotation x, y, z, w.");
+
+  Class<RigidHandle> rigid(module, "RigidBody",
+                           "A rigid body of a world, which keeps it. Made by World.add_rigid_body and its like.");
+  bindIdentity(rigid);
+  const auto locked = [](auto get) {
+    return [get](const RigidHandle& r) {
+      const Locked lock(*r.world);
+      return get(alive(r));
+    };
+  };
+  rigid
+      .def_prop_rw(
+          "position", locked([](btRigidBody& b) { return vectorOf(b.getWorldTransform().getOrigin()); }),
+          [](RigidHandle& r, const Vec3& at) {
+            const Locked lock(*r.world);
+            btTransform pose = alive(r).getWorldTransform();
+            r.state->motion->getWorldTransform(pose);
+            pose.setOrigin(toBullet(at, "position"));
+            place(r, pose);
+          },
+          "(3,) float64, world space. Assigned to a kinematic body, it moves there in the next step.")
+      .def_prop_rw(
+          "rotation", locked([](btRigidBody& b) { return newQuaternion(rotationOf(b.getWorldTransform())); }),
+          [](RigidHandle& r, const Quaternion& q) {
+            const Locked lock(*r.world);
+            btTransform pose = alive(r).getWorldTransform();
+            r.state->motion->getWorldTransform(pose);
+            pose.setRotation(toBullet(Vec3{}, q).getRotation());
+            place(r, pose);
+          },
+          "(4,) float64: a quaternion x, y, z, w.")
+      .def_prop_rw(
+          "velocity", locked([](btRigidBody& b) { return vectorOf(b.getLinearVelocity()); }),
+          [](RigidHandle& r, const Vec3& v) {
+            const Locked lock(*r.world);
+            alive(r).setLinearVelocity(toBullet(v, "velocity"));
+            r.state->body->activate(true);
+          },
+          "(3,) float64, world length per second.")
+      .def_prop_rw(
+          "angular_velocity", locked([](btRigidBody& b) { return vectorOf(b.getAngularVelocity()); }),
+          [](RigidHandle& r, const Vec3& v) {
+            const Locked lock(*r.world);
+            alive(r).setAngularVelocity(toBullet(v, "angular_velocity"));
+            r.state->body->activate(true);
+          },
+          "(3,) float64, radians per second.")
+      .def_prop_rw(
+          "mass", locked([](btRigidBody& b) { return static_cast<double>(b.getMass()); }),
+          [](RigidHandle& r, double mass) {
+            const Locked lock(*r.world);
+            setMass(r, mass);
+          },
+          "0: static or kinematic.")
+      .def_prop_rw(
+          "friction", locked([](btRigidBody& b) { return static_cast<double>(b.getFriction()); }),
+          [](RigidHandle& r, double friction) {
+            const Locked lock(*r.world);
+            if (!(friction >= 0.0 && friction < 1e6)) throw nb::value_error("friction: must be 0 or more, and finite");
+            alive(r).setFriction(static_cast<btScalar>(friction));
+          },
+          "Coulomb's coefficient, which is multiplied by that of what is touched.")
+      .def_prop_ro("kinematic", locked([](btRigidBody& b) { return b.isKinematicObject(); }))
+      .def_prop_ro(
+          "removed", [](const RigidHandle& r) { return r.state->removed; },
+          "Whether it has been removed from its world.")
+      .def(
+          "apply_impulse",
+          [](RigidHandle& r, const Vec3& impulse, const std::optional<Vec3>& at) {
+            const Locked lock(*r.world);
+            btRigidBody& body = alive(r);
+            const btVector3 arm =
+                at ? btVector3(toBullet(*at, "at") - body.getCenterOfMassPosition()) : btVector3(0, 0, 0);
+            body.activate(true);
+            body.applyImpulse(toBullet(impulse, "impulse"), arm);
+          },
+          "impulse"_a, "at"_a = nb::none(),
+          "Mass times velocity, at a point in world space; None: at the centre of mass.")
+      .def(
+          "remove",
+          [](RigidHandle& r) {
+            const Locked lock(*r.world);
+            r.world->remove(*r.state);
+          },
+          "Removes it from its world, with its joints, springs and welds. Removing it again changes nothing.");
+
+  Class<JointHandle> joint(
+      module, "Joint",
+      "A joint between a rigid body and another one, or the world. Made by World.add_hinge and its like.");
+  bindIdentity(joint);
+  joint
+      .def_prop_ro(
+          "coordinate",
+          [](const JointHandle& j) {
+            const Locked lock(*j.world);
+            return coordinateOf(j);
+          },
+          "The angle of a hinge, in radians, or the way of a slider, in world length, since it was made.")
+      .def(
+          "set_motor",
+          [](JointHandle& j, std::optional<double> velocity, double maxForce) {
+            const Locked lock(*j.world);
+            setMotor(j, velocity, maxForce);
+          },
+          "velocity"_a.none(), "max_force"_a,
+          "Drives a hinge or slider: radians or world length per second, with at most this torque or force. None: off.")
+      .def(
+          "set_limits",
+          [](JointHandle& j, const std::array<double, 2>& limits) {
+            const Locked lock(*j.world);
+            setLimits(j, limits);
+          },
+          "limits"_a, "Of the coordinate: the lower and the upper one.")
+      .def("remove", [](JointHandle& j) {
+        const Locked lock(*j.world);
+        j.world->remove(*j.state);
+      });
+
+  world
+      .def(
+          "add_rigid_body",
+          [](const std::shared_ptr<World>& w, const ShapeModel& shape, double mass, const Vec3& position,
+             const Quaternion& rotation, double friction, bool kinematic) {
+            const Locked lock(*w);
+            return RigidHandle{w, w->addRigid(shape, mass, toBullet(position, rotation), friction, kinematic)};
+          },
+          "shape"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
+          "friction"_a = 0.5, "kinematic"_a = false,
+          "Adds a rigid body. mass: 0 for one that does not move by itself; rotation: x, y, z, w; kinematic: moved by "
+          "its position and rotation.")
+      .def(
+          "add_plane",
+          [](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
+            const Locked lock(*w);
+            return RigidHandle{w, w->addRigid(plane(normal, offset), 0.0, btTransform::getIdentity(), friction, false)};
+          },
+          nb::kw_only(), "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0, "friction"_a = 0.5,
+          "Adds a ground: y = 0 by default.")
+      .def(
+          "add_box",
+          [](const std::shared_ptr<World>& w, const Vec3& halfExtents, double mass, const Vec3& position,
+             const Quaternion& rotation, double friction, bool kinematic) {
+            const Locked lock(*w);
+            return RigidHandle{w,
+                               w->addRigid(box(halfExtents), mass, toBullet(position, rotation), friction, kinematic)};
+          },
+          "half_extents"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
+          "friction"_a = 0.5, "kinematic"_a = false, "As add_rigid_body of Shape.box.")
+      .def(
+          "add_sphere",
+          [](const std::shared_ptr<World>& w, double radius, double mass, const Vec3& position,
+             const Quaternion& rotation, double friction, bool kinematic) {
+            const Locked lock(*w);
+            return RigidHandle{w, w->addRigid(sphere(radius), mass, toBullet(position, rotation), friction, kinematic)};
+          },
+          "radius"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
+          "friction"_a = 0.5, "kinematic"_a = false, "As add_rigid_body of Shape.sphere.")
+      .def("add_point_joint", addPoint, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a, "collide"_a = false,
+           "Holds a point, in world space now, of body a to body b, or to the world.")
+      .def("add_hinge", addHinge, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a, "axis"_a,
+           "limits"_a = nb::none(), "collide"_a = false,
+           "Body a turns about an axis of body b, or of the world. pivot, axis: world space, now; limits: radians.")
+      .def("add_slider", addSlider, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a = Vec3{}, "axis"_a,
+           "limits"_a = nb::none(), "collide"_a = false,
+           "Body a slides along an axis of body b, or of the world. pivot, axis: world space, now; limits: world "
+           "length.")
+      .def("add_fixed_joint", addFixed, "a"_a, "b"_a = nb::none(), nb::kw_only(), "collide"_a = false,
+           "Holds body a to body b, or to the world, as they are now.")
+      .def_prop_ro("rigid_bodies", [](const std::shared_ptr<World>& w) {
+        const Locked lock(*w);
+        std::vector<RigidHandle> all;
+        for (const auto& state : w->rigids()) all.push_back({w, state});
+        return all;
+      });
+}
+
+}  // namespace tetskin::python

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "models.h"
+
+#include <tetskin/core/bone_palette.h>
+#include <mutex>
+
+namespace tetskin::python {
+namespace {
+
+/// A surface that follows nodes given as an array. Used by one thread at a time: the GIL is kept.
+class Skin {
+ public:
+  Skin(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options) : cage_(cage), mesh_(mesh) {
+    const std::size_t count = mesh.mesh->vertexCount();
+    released([&] {
+      EmbedReport report;
+      auto binding = take(SkinBinding<double>::create(*cage.cage, *mesh.mesh, options, &report));
+      report_ = report.describe();
+      positions = std::make_shared<std::vector<float>>(3 * count);
+      normals = std::make_shared<std::vector<float>>(options.normals == Normals::None ? 0 : 3 * count);
+      InstanceOptions instance;
+      instance.target = PointView<float>(positions->data(), count);
+      if (!normals->empty()) instance.normalTarget = PointView<float>(normals->data(), count);
+      check(skin_.bind(binding, viewOf(cage_.cage->mesh.nodes), instance));
+    });
+  }
+
+  void update(const ArrayLike& nodes) {
+    const Numbers<double> numbers(nodes, "nodes", 3);
+    if (numbers.rows() != skin_.nodeCount()) {
+      fail(StatusCode::SizeMismatch,
+           "nodes: " + std::to_string(numbers.rows()) + " for a cage of " + std::to_string(skin_.nodeCount()));
+    }
+    const StatusCode code = skin_.update({numbers.data(), numbers.rows()});
+    if (code == StatusCode::NonFinite) {
+      fail(code, "nodes: node " + std::to_string(skin_.firstNonFiniteNode()) + " is not finite, or too far away");
+    }
+    check(code, "Skin.update");
+  }
+
+  Box3 bounds() const { return skin_.bounds(); }
+  const std::string& report() const { return report_; }
+  std::size_t nodeCount() const { return skin_.nodeCount(); }
+
+  std::shared_ptr<std::vector<float>> positions, normals;
+
+ private:
+  CageModel cage_;
+  MeshModel mesh_;
+  MeshSkin<double> skin_;
+  std::string report_;
+};
+
+Row3<float> rowsOf(const std::shared_ptr<std::vector<float>>& numbers) {
+  return view3<float>(numbers->data(), numbers->size() / 3, numbers);
+}
+
+BoneLayout layoutOf(const std::string& name) {
+  if (name == "rows") return BoneLayout::Rows;
+  if (name == "columns") return BoneLayout::Columns;
+  throw nb::value_error("layout: 'rows' or 'columns'");
+}
+
+/// Bones with the memory that they are written to.
+class Palette {
+ public:
+  Palette(const CageModel& cage, const MeshModel& mesh, const std::string& interpolation, bool gradients,
+          const std::string& layout) {
+    PaletteOptions options;
+    options.layout = layoutOf(layout);
+    // Gradients are for the linear surface of a binding that has them.
+    options.gradients = gradients;
+    options.disableQuadratic = gradients && interpolationOf(interpolation) == Interpolation::Linear;
+    BindingOptions binding;
+    binding.interpolation = gradients ? Interpolation::Quadratic : interpolationOf(interpolation);
+    binding_ = take(SkinBinding<double>::create(*cage.cage, *mesh.mesh, binding));
+    palette_ = take(BonePalette<double>::create(binding_, options));
+    bones = std::make_shared<std::vector<float>>(palette_.boneCount() * boneFloats(options.layout));
+    update({viewOf(cage.cage->mesh.nodes)});
+  }
+
+  void update(PointView<const double> nodes) {
+    if (nodes.size() != palette_.boneCount()) {
+      fail(StatusCode::SizeMismatch,
+           "nodes: " + std::to_string(nodes.size()) + " for a cage of " + std::to_string(palette_.boneCount()));
+    }
+    check(palette_.update(nodes, {bones->data(), palette_.boneCount(), 0}), "BonePalette.update");
+  }
+  nb::ndarray<nb::numpy, const float, nb::ndim<3>> array() const {
+    const std::size_t rows = palette_.layout() == BoneLayout::Rows ? 3 : 4;
+    const std::size_t shape[3] = {palette_.boneCount(), rows, 4};
+    return nb::ndarray<nb::numpy, const float, nb::ndim<3>>(bones->data(), 3, shape, kept(bones));
+  }
+  std::size_t count() const { return palette_.boneCount(); }
+  SkinnedMesh skinned() const { return take(skinnedMeshOf(*binding_)); }
+
+  std::shared_ptr<std::vector<float>> bones;
+
+ private:
+  SkinBinding<double>::Pointer binding_;
+  BonePalette<double> palette_;
+};
+
+template <class Number>
+Row4<Number> rows4(const std::vector<std::array<Number, 4>>& rows) {
+  const auto owner = std::make_shared<std::vector<std::array<Number, 4>>>(rows);
+  const std::size_t shape[2] = {rows.size(), 4};
+  return Row4<Number>(owner->empty() ? nullptr : (*owner)[0].data(), 2, shape, kept(owner));
+}
+
+}  // namespace
+
+Interpolation interpolationOf(const std::string& name) {
+  if (name == "linear") return Interpolation::Linear;
+  if (name == "quadratic") return Interpolation::Quadratic;
+  throw nb::value_error("interpolation: 'linear' or 'quadratic'");
+}
+
+BindingOptions bindingOptions(const std::string& interpolation, const std::string& normals, const std::string& outside,
+                              std::optional<double> maxDistance) {
+  BindingOptions options;
+  options.interpolation = interpolationOf(interpolation);
+  if (normals == "none") {
+    options.normals = Normals::None;
+  } else if (normals == "transformed") {
+    options.normals = Normals::Transformed;
+  } else if (normals == "recomputed") {
+    options.normals = Normals::Recomputed;
+  } else {
+    throw nb::value_error("normals: 'none', 'transformed' or 'recomputed'");
+  }
+  if (outside != "nearest" && outside != "barycentric") throw nb::value_error("outside: 'nearest' or 'barycentric'");
+  options.outside = outside == "nearest" ? OutsideRule::Nearest : OutsideRule::Barycentric;
+  if (maxDistance) options.maxDistance = *maxDistance;
+  return options;
+}
+
+void bindSkins(nb::module_& module) {
+  Class<Skin>(module, "Skin", "A render mesh carried by the nodes of a cage, however they are moved. Needs no world.")
+      .def(
+          "__init__",
+          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const std::string& interpolation,
+             const std::string& normals, const std::string& outside, std::optional<double> maxDistance) {
+            new (self) Skin(cage, meshOf(mesh), bindingOptions(interpolation, normals, outside, maxDistance));
+          },
+          "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
+          "outside"_a = "nearest", "max_distance"_a = nb::none(),
+          "Embeds the mesh in the cage at rest. interpolation: 'linear' or 'quadratic'; normals: 'none', 'transformed' "
+          "or "
+          "'recomputed'; outside: 'nearest' or 'barycentric', which tet carries a vertex outside the cage; "
+          "max_distance: rest "
+          "units; a vertex farther than this from every tet is an Error.")
+      .def(
+          "update",
+          [](Skin& skin, const ArrayLike& nodes) {
+            skin.update(nodes);
+            return rowsOf(skin.positions);
+          },
+          "nodes"_a,
+          "Computes the surface for these nodes: (n, 3) float32 or float64, world space, in the cage's order. Returns "
+          "positions. On an Error, the surface stays as it was.")
+      .def_prop_ro(
+          "positions", [](const Skin& skin) { return rowsOf(skin.positions); },
+          "(vertices, 3) float32, world space. A read-only view, which each update overwrites.")
+      .def_prop_ro(
+          "normals", [](const Skin& skin) { return rowsOf(skin.normals); },
+          "(vertices, 3) float32, unit length, or (0, 3). A read-only view, which each update overwrites.")
+      .def_prop_ro(
+          "bounds",
+          [](const Skin& skin) { return nb::make_tuple(vectorOf(skin.bounds().min()), vectorOf(skin.bounds().max())); },
+          "The box of the positions: two corners, world space.")
+      .def_prop_ro("node_count", &Skin::nodeCount, "Number of nodes that an update takes.")
+      .def_prop_ro("report", &Skin::report, "How well the mesh fits the cage, in words.");
+
+  Class<Palette>(
+      module, "BonePalette",
+      "Affine bones, one per node, with which an engine's own linear blend skinning draws the surface. Needs no world.")
+      .def(
+          "__init__",
+          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const std::string& interpolation,
+             bool gradients,
+             const std::string& layout) { new (self) Palette(cage, meshOf(mesh), interpolation, gradients, layout); },
+          "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "gradients"_a = false, "layout"_a = "rows",
+          "layout: 'rows', 3 rows of 4, or 'columns', the 4 columns of a 4x4 matrix. gradients: bones of the linear "
+          "surface carry "
+          "the gradients of the nodes, for normals in a shader.")
+      .def(
+          "update",
+          [](Palette& palette, const ArrayLike& nodes) {
+            const Numbers<double> numbers(nodes, "nodes", 3);
+            palette.update({numbers.data(), numbers.rows()});
+            return palette.array();
+          },
+          "nodes"_a, "Computes the bones for these nodes, (n, 3) float32 or float64, world space. Returns bones.")
+      .def_prop_ro("bones", &Palette::array,
+                   "(n, 3, 4) or (n, 4, 4) float32. A read-only view, which each update overwrites.")
+      .def_prop_ro("bone_count", &Palette::count, "Number of nodes, of which each has a bone.")
+      .def_prop_ro(
+          "vertex_bones", [](const Palette& palette) { return rows4(palette.skinned().bones); },
+          "(vertices, 4) uint16: the bones of each vertex. A new array.")
+      .def_prop_ro(
+          "vertex_weights", [](const Palette& palette) { return rows4(palette.skinned().weights); },
+          "(vertices, 4) float32, which sum to 1. A new array.");
+}
+
+}  // namespace tetskin::python

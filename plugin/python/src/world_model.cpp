@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "world_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetskin::python {
+namespace {
+
+template <class State>
+void forget(std::vector<std::shared_ptr<State>>& all, const State& state) {
+  all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return one.get() == &state; }), all.end());
+}
+
+bool same(const BindingOptions& a, const BindingOptions& b) {
+  return a.interpolation == b.interpolation && a.normals == b.normals && a.outside == b.outside &&
+         a.maxDistance == b.maxDistance;
+}
+
+}  // namespace
+
+btVector3 toBullet(const Vec3& vector, const char* name) {
+  finite(vector, name);
+  return {static_cast<btScalar>(vector[0]), static_cast<btScalar>(vector[1]), static_cast<btScalar>(vector[2])};
+}
+
+btTransform toBullet(const Vec3& position, const Quaternion& rotation) {
+  const btQuaternion q(static_cast<btScalar>(rotation[0]), static_cast<btScalar>(rotation[1]),
+                       static_cast<btScalar>(rotation[2]), static_cast<btScalar>(rotation[3]));
+  if (!(q.length2() > 1e-12f && q.length2() < 1e12f))
+    fail(StatusCode::InvalidOption, "rotation: must be a quaternion x, y, z, w other than 0");
+  return btTransform(q.normalized(), toBullet(position, "position"));
+}
+
+World::World(const Vec3& gravity, int threads, bool deterministic, bool recordForces) {
+  if (threads < 1 || threads > 256) throw nb::value_error("threads: must be from 1 to 256");
+  if (threads > 1) threads_ = std::make_unique<ThreadPool>(static_cast<std::size_t>(threads));
+  DeformableWorldOptions options;
+  options.gravity = toBullet(gravity, "gravity");
+  options.threads = threads_.get();
+  options.deterministic = deterministic;
+  world_ = std::make_unique<DeformableWorld>(options);
+  if (recordForces) record_ = take(ForceRecord::add(*world_));
+}
+
+World::~World() {
+  while (!touches_.empty()) remove(*touches_.back());
+  while (!joints_.empty()) remove(*joints_.back());
+  while (!bodies_.empty()) remove(*bodies_.back());
+  soft_.reset();
+  record_.reset();
+  while (!rigids_.empty()) remove(*rigids_.back());
+}
+
+void World::checkStep(double dt, int substeps) {
+  if (!(dt >= 1e-6 && dt <= 10.0)) throw nb::value_error("dt: must be from 1e-6 to 10 seconds");
+  if (substeps < 1 || substeps > 10000) throw nb::value_error("substeps: must be from 1 to 10000");
+}
+
+/// The longest step that is within `dt` as often as it should be: Bullet divides, and rounds down.
+btScalar World::substepOf(double dt, int substeps) {
+  const auto whole = static_cast<btScalar>(dt);
+  btScalar step = whole / static_cast<btScalar>(substeps);
+  while (static_cast<int>(whole / step) < substeps) step = std::nextafter(step, btScalar(0));
+  return step;
+}
+
+/// Bullet limits the motor of a hinge by its impulse in a step.
+void World::limitMotors(btScalar substep) {
+  for (const auto& state : joints_) {
+    if (state->joint->getConstraintType() != HINGE_CONSTRAINT_TYPE) continue;
+    static_cast<btHingeConstraint*>(state->joint.get())
+        ->setMaxMotorImpulse(static_cast<btScalar>(state->maxTorque) * substep);
+  }
+}
+
+void World::updateSkins() {
+  skins_.clear();
+  for (const auto& body : bodies_) {
+    if (body->binding) skins_.push_back(&body->skin);
+  }
+  statuses_.resize(skins_.size());
+  SoftBodySkin::updateAll(skins_.data(), skins_.size(), statuses_.data(), 1, threads_.get());
+  for (const StatusCode code : statuses_) {
+    if (code == StatusCode::NonFinite) fail(code, "a body has nodes that are not finite: the simulation is unstable");
+    if (code == StatusCode::TopologyChanged) check(code, "World.step");
+  }
+}
+
+std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass, const btTransform& pose,
+                                            double friction, bool kinematic) {
+  if (!(mass >= 0.0 && mass < Limits::kMaxCoordinate)) throw nb::value_error("mass: must be 0 or more, and finite");
+  if (!(friction >= 0.0 && friction < 1e6)) throw nb::value_error("friction: must be 0 or more, and finite");
+  if (shape.concave && mass > 0.0)
+    throw nb::value_error("mass: a plane or a mesh does not move by itself; its mass is 0");
+  if (kinematic && mass > 0.0) throw nb::value_error("mass: that of a kinematic body is 0");
+  auto rigid = std::make_shared<RigidState>();
+  rigid->shape = shape;
+  btVector3 inertia(0, 0, 0);
+  if (mass > 0.0) shape.shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+  rigid->motion = std::make_unique<btDefaultMotionState>(pose);
+  btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), rigid->motion.get(), shape.shape.get(),
+                                                inertia);
+  info.m_friction = static_cast<btScalar>(friction);
+  rigid->body = std::make_unique<btRigidBody>(info);
+  if (kinematic) {
+    rigid->body->setCollisionFlags(rigid->body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    rigid->body->setActivationState(DISABLE_DEACTIVATION);
+  }
+  rigids_.push_back(rigid);
+  world_->addRigidBody(rigid->body.get());
+  return rigid;
+}
+
+void World::remove(RigidState& rigid) {
+  if (rigid.removed) return;
+  rigid.removed = true;
+  const std::vector<std::shared_ptr<TouchState>> touches = touches_;
+  for (const auto& touch : touches) {
+    if (touch->rigid.get() == &rigid) remove(*touch);
+  }
+  const std::vector<std::shared_ptr<JointState>> joints = joints_;
+  for (const auto& joint : joints) {
+    if (joint->first.get() == &rigid || joint->second.get() == &rigid) remove(*joint);
+  }
+  world_->removeRigidBody(rigid.body.get());
+  forget(rigids_, rigid);
+}
+
+std::shared_ptr<JointState> World::addJoint(std::shared_ptr<RigidState> first, std::shared_ptr<RigidState> second,
+                                            std::unique_ptr<btTypedConstraint> joint, bool collide) {
+  auto state = std::make_shared<JointState>();
+  state->first = std::move(first);
+  state->second = std::move(second);
+  state->joint = std::move(joint);
+  joints_.push_back(state);
+  world_->addConstraint(state->joint.get(), !collide);
+  state->first->body->activate(true);
+  return state;
+}
+
+void World::remove(JointState& joint) {
+  if (!joint.joint) return;
+  world_->removeConstraint(joint.joint.get());
+  joint.first->body->activate(true);
+  if (joint.second) joint.second->body->activate(true);
+  joint.joint.reset();
+  forget(joints_, joint);
+}
+
+World::Shared& World::sharedOf(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options) {
+  shared_.erase(std::remove_if(shared_.begin(), shared_.end(), [](const auto& one) { return one->binding.expired(); }),
+                shared_.end());
+  for (const auto& one : shared_) {
+    if (one->cage.lock() == cage.cage && one->mesh.lock() == mesh.mesh && same(one->options, options)) return *one;
+  }
+  shared_.push_back(std::make_unique<Shared>(Shared{cage.cage, mesh.mesh, options, {}, {}}));
+  return *shared_.back();
+}
+
+void World::bindSurface(BodyState& body, const BodyOptions& options) {
+  Shared& shared = sharedOf(body.cage, body.mesh, options.binding);
+  body.binding = shared.binding.lock();
+  if (!body.binding) {
+    body.binding = take(SoftBodyBinding::create(*body.cage.cage, *body.mesh.mesh, options.binding));
+    shared.binding = body.binding;
+  }
+  const std::size_t count = body.mesh.mesh->vertexCount();
+  InstanceOptions instance;
+  body.positions.resize(3 * count);
+  instance.target = PointView<float>(body.positions.data(), count);
+  if (options.binding.normals != Normals::None) {
+    body.normals.resize(3 * count);
+    instance.normalTarget = PointView<float>(body.normals.data(), count);
+  }
+  check(body.skin.bind(body.body->body(), body.binding, instance));
+  if (options.surfaceContact) {
+    SurfaceContactOptions contact;
+    contact.margin = options.contactMargin;
+    contact.sampleSpacing = options.sampleSpacing;
+    body.contact = take(SurfaceContact::add(*world_, body.body->body(), *body.binding, *body.mesh.mesh, contact));
+  }
+  if (!options.softContact && !options.selfContact) return;
+  std::shared_ptr<const ContactShape> shape = shared.shape.lock();
+  if (!shape) {
+    shape = take(ContactShape::create(*body.cage.cage, *body.mesh.mesh));
+    shared.shape = shape;
+  }
+  if (!soft_) soft_ = take(SoftContacts::add(*world_));
+  check(soft_->add(body.body->body(), shape, options.selfContact));
+  body.softContact = true;
+}
+
+std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel& mesh,
+                                          const Eigen::Affine3d& placement, const BodyOptions& options) {
+  auto body = std::make_shared<BodyState>();
+  body->cage = cage;
+  body->mesh = mesh;
+  Cage placed = *cage.cage;
+  for (Eigen::Vector3d& node : placed.mesh.nodes) node = placement * node;
+  body->body = take(DeformableBody::add(*world_, placed, options.material));
+  try {
+    if (mesh.mesh) bindSurface(*body, options);
+  } catch (...) {  // as if nothing had been added
+    if (soft_ && body->softContact) soft_->remove(body->body->body());
+    throw;
+  }
+  bodies_.push_back(body);
+  return body;
+}
+
+void World::remove(BodyState& body) {
+  if (body.removed) return;
+  body.removed = true;
+  const std::vector<std::shared_ptr<TouchState>> touches = touches_;
+  for (const auto& touch : touches) {
+    if (touch->body.get() == &body) remove(*touch);
+  }
+  if (soft_ && body.softContact) soft_->remove(body.body->body());
+  body.contact.reset();
+  // The body itself is kept as long as a view of its nodes may be.
+  world_->removeSoftBody(&body.body->body());
+  forget(bodies_, body);
+}
+
+std::shared_ptr<TouchState> World::addTouch(TouchState&& touch) {
+  touches_.push_back(std::make_shared<TouchState>(std::move(touch)));
+  return touches_.back();
+}
+
+void World::remove(TouchState& touch) {
+  touch.spring.reset();
+  touch.weld.reset();
+  forget(touches_, touch);
+}
+
+const SurfaceTree& World::treeOf(BodyState& body) {
+  if (!body.tree) body.tree = std::make_unique<SurfaceTree>(take(SurfaceTree::create(body.binding, *body.mesh.mesh)));
+  return *body.tree;
+}
+
+ForceRecord& World::forces() {
+  if (!record_) fail(StatusCode::NotAdded, "forces are not recorded: the world was made with record_forces=False");
+  return *record_;
+}
+
+btRigidBody& alive(const RigidHandle& rigid) {
+  if (rigid.state->removed) fail(StatusCode::BodyDeleted, "the rigid body has been removed from its world");
+  return *rigid.state->body;
+}
+
+DeformableBody& alive(const BodyHandle& body) {
+  if (body.state->removed) fail(StatusCode::BodyDeleted, "the body has been removed from its world");
+  return *body.state->body;
+}
+
+void checkSurface(const BodyHandle& body) {
+  if (!body.state->binding) fail(StatusCode::Unbound, "the body has no surface: it was added without a mesh");
+}
+
+std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid) {
+  if (!rigid) return nullptr;
+  (void)alive(*rigid);
+  if (rigid->world != world) fail(StatusCode::NotInWorld, "the rigid body is in another world");
+  return rigid->state;
+}
+
+}  // namespace tetskin::python

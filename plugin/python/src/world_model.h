@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A world and all that is in it, with one owner. Python holds handles: a share of the world and of a thing in it, so
+// that the order in which it lets go does not matter. What has been removed keeps its memory while a handle or a view
+// of it lives, and refuses to be used.
+#pragma once
+
+#include "models.h"
+
+#include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
+#include <btBulletDynamicsCommon.h>
+#include <tetskin/bullet/deformable_body.h>
+#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/recorder.h>
+#include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/contact/soft_contacts.h>
+#include <tetskin/contact/surface_contact.h>
+#include <tetskin/threads/thread_pool.h>
+#include <tetskin/touch/surface_joint.h>
+#include <tetskin/touch/surface_point.h>
+#include <memory>
+#include <mutex>
+
+namespace tetskin::python {
+
+btVector3 toBullet(const Vec3& vector, const char* name);
+btTransform toBullet(const Vec3& position, const Quaternion& rotation);
+
+/// A collision shape, with what it refers to. Shared by bodies.
+struct ShapeModel {
+  std::shared_ptr<btCollisionShape> shape;
+  bool concave = false;
+};
+
+struct RigidState {
+  ShapeModel shape;
+  std::unique_ptr<btDefaultMotionState> motion;
+  std::unique_ptr<btRigidBody> body;
+  bool removed = false;
+};
+
+/// A joint between rigid bodies; null: removed.
+struct JointState {
+  std::shared_ptr<RigidState> first, second;
+  std::unique_ptr<btTypedConstraint> joint;
+  double maxTorque = 0;  ///< of a hinge's motor
+};
+
+struct BodyState {
+  CageModel cage;
+  MeshModel mesh;                                  ///< null: the body has no surface
+  std::shared_ptr<const SoftBodyBinding> binding;  ///< null likewise
+  std::unique_ptr<DeformableBody> body;
+  SoftBodySkin skin;
+  std::unique_ptr<SurfaceContact> contact;
+  std::unique_ptr<SurfaceTree> tree;  ///< made when it is first asked for
+  std::vector<float> positions, normals;
+  bool softContact = false;
+  bool removed = false;
+};
+
+/// A spring or weld between a surface and something else; both null: released.
+struct TouchState {
+  std::shared_ptr<BodyState> body;
+  std::shared_ptr<RigidState> rigid;
+  std::unique_ptr<SurfaceSpring> spring;
+  std::unique_ptr<SurfaceWeld> weld;
+};
+
+struct BodyOptions {
+  SoftBodyOptions material;
+  BindingOptions binding;
+  bool surfaceContact = true, softContact = false, selfContact = false;
+  std::optional<double> contactMargin, sampleSpacing;
+};
+
+class World : public std::enable_shared_from_this<World> {
+ public:
+  World(const Vec3& gravity, int threads, bool deterministic, bool recordForces);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  DeformableWorld& bullet() { return *world_; }
+  std::recursive_mutex& mutex() { return mutex_; }
+
+  /// Steps, and updates all surfaces. Returns the number of substeps that were made.
+  /// stepped  how the world is stepped: by itself, or by a recorder
+  template <class Stepped>
+  int step(double dt, int substeps, Stepped&& stepped) {
+    checkStep(dt, substeps);
+    const btScalar substep = substepOf(dt, substeps);
+    limitMotors(substep);
+    const int made = stepped(btScalar(dt), substeps, substep);
+    updateSkins();
+    return made;
+  }
+  void updateSkins();
+
+  std::shared_ptr<RigidState> addRigid(const ShapeModel& shape, double mass, const btTransform& pose, double friction,
+                                       bool kinematic);
+  void remove(RigidState& rigid);
+  std::shared_ptr<JointState> addJoint(std::shared_ptr<RigidState> first, std::shared_ptr<RigidState> second,
+                                       std::unique_ptr<btTypedConstraint> joint, bool collide);
+  void remove(JointState& joint);
+  std::shared_ptr<BodyState> addBody(const CageModel& cage, const MeshModel& mesh, const Eigen::Affine3d& placement,
+                                     const BodyOptions& options);
+  void remove(BodyState& body);
+  std::shared_ptr<TouchState> addTouch(TouchState&& touch);
+  void remove(TouchState& touch);
+
+  const SurfaceTree& treeOf(BodyState& body);
+  ForceRecord& forces();
+  SoftContacts* softContacts() { return soft_.get(); }
+  const std::vector<std::shared_ptr<BodyState>>& bodies() const { return bodies_; }
+  const std::vector<std::shared_ptr<RigidState>>& rigids() const { return rigids_; }
+
+ private:
+  /// What bodies of one cage and mesh share.
+  struct Shared {
+    std::weak_ptr<const Cage> cage;
+    std::weak_ptr<const TriangleMesh> mesh;
+    BindingOptions options;
+    std::weak_ptr<const SoftBodyBinding> binding;
+    std::weak_ptr<const ContactShape> shape;
+  };
+
+  void limitMotors(btScalar substep);
+  static void checkStep(double dt, int substeps);
+  static btScalar substepOf(double dt, int substeps);
+  Shared& sharedOf(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options);
+  void bindSurface(BodyState& body, const BodyOptions& options);
+
+  std::recursive_mutex mutex_;
+  std::unique_ptr<ThreadPool> threads_;
+  std::unique_ptr<DeformableWorld> world_;
+  std::unique_ptr<ForceRecord> record_;
+  std::unique_ptr<SoftContacts> soft_;
+  std::vector<std::unique_ptr<Shared>> shared_;
+  std::vector<std::shared_ptr<RigidState>> rigids_;
+  std::vector<std::shared_ptr<JointState>> joints_;
+  std::vector<std::shared_ptr<BodyState>> bodies_;
+  std::vector<std::shared_ptr<TouchState>> touches_;
+  std::vector<SoftBodySkin*> skins_;
+  std::vector<StatusCode> statuses_;
+};
+
+/// A world's lock, for a call with the GIL: waits without it. Calls from within the world's own calls pass.
+class Locked {
+ public:
+  explicit Locked(World& world) : lock_(world.mutex(), std::try_to_lock) {
+    if (lock_.owns_lock()) return;
+    const nb::gil_scoped_release release;
+    lock_.lock();
+  }
+
+ private:
+  std::unique_lock<std::recursive_mutex> lock_;
+};
+/// Runs without the GIL, and with the world's lock.
+template <class Work>
+auto unlocked(World& world, Work&& work) {
+  const nb::gil_scoped_release release;
+  const std::lock_guard<std::recursive_mutex> lock(world.mutex());
+  return work();
+}
+
+/// What Python holds: the same thing as another handle of the same state.
+template <class State>
+struct Handle {
+  std::shared_ptr<World> world;
+  std::shared_ptr<State> state;
+};
+using RigidHandle = Handle<RigidState>;
+using JointHandle = Handle<JointState>;
+using BodyHandle = Handle<BodyState>;
+struct SpringHandle : Handle<TouchState> {};
+struct WeldHandle : Handle<TouchState> {};
+
+/// Throw if the thing has been removed from its world.
+btRigidBody& alive(const RigidHandle& rigid);
+DeformableBody& alive(const BodyHandle& body);
+void checkSurface(const BodyHandle& body);
+
+/// A rigid body of the same world, or null for None.
+std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid);
+
+/// The equality and hash of handles.
+template <class Of>
+void bindIdentity(Class<Of>& type) {
+  type.def("__eq__",
+           [](const Of& a, nb::handle b) { return nb::isinstance<Of>(b) && nb::cast<const Of&>(b).state == a.state; });
+  type.def("__hash__", [](const Of& a) { return std::hash<const void*>()(a.state.get()); });
+}
+
+}  // namespace tetskin::python

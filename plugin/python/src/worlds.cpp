@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "world_model.h"
+
+#include <vector>
+
+namespace tetskin::python {
+namespace {
+
+/// Steps may not be called from a replay's own call of on_change: the world's lock lets its thread in.
+int step(const std::shared_ptr<World>& world, double dt, int substeps) {
+  return unlocked(*world, [&] {
+    return world->step(dt, substeps, [&](btScalar whole, int count, btScalar substep) {
+      return world->bullet().stepSimulation(whole, count, substep);
+    });
+  });
+}
+
+nb::bytes save(const std::shared_ptr<World>& world) {
+  std::vector<char> bytes;
+  unlocked(*world, [&] {
+    bytes.resize(take(world->bullet().save(nullptr, 0)));
+    (void)take(world->bullet().save(bytes.data(), bytes.size()));
+  });
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+void restore(const std::shared_ptr<World>& world, const nb::bytes& snapshot) {
+  const char* data = snapshot.c_str();
+  const std::size_t size = snapshot.size();
+  unlocked(*world, [&] {
+    check(world->bullet().restore(data, size));
+    for (const auto& body : world->bodies()) {
+      if (body->binding) body->skin.markTeleported();
+    }
+    world->updateSkins();
+  });
+}
+
+}  // namespace
+
+Class<World> bindWorlds(nb::module_& module) {
+  Class<World> world(
+      module, "World",
+      "A world of soft and rigid bodies, which it keeps. It belongs to one thread at a time: calls of others wait.");
+  world
+      .def(
+          "__init__",
+          [](World* self, const Vec3& gravity, int threads, bool deterministic, bool recordForces) {
+            new (self) World(gravity, threads, deterministic, recordForces);
+          },
+          nb::kw_only(), "gravity"_a = Vec3{0, -9.81, 0}, "threads"_a = 1, "deterministic"_a = false,
+          "record_forces"_a = true,
+          "gravity: world length / s^2. threads: number that work on a step; results are the same to the bit with any. "
+          "deterministic: the same bits on other "
+          "processors, for some percent of the time. record_forces: for forces_on.")
+      .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
+           "Goes on by dt seconds, in so many steps of Bullet's, and updates all surfaces; returns the number of steps "
+           "made. The GIL is released.")
+      .def("save", save,
+           "The state of the world, as bytes, from which restore goes on to the last bit: in this process or another, "
+           "on any number of threads.")
+      .def("restore", restore, "snapshot"_a,
+           "Restores a state in place. The world has the same bodies and joints as when it was saved, made in the same "
+           "order. On an Error nothing is changed.")
+      .def_prop_rw(
+          "gravity",
+          [](const std::shared_ptr<World>& w) {
+            const Locked lock(*w);
+            return vectorOf(w->bullet().getGravity());
+          },
+          [](const std::shared_ptr<World>& w, const Vec3& gravity) {
+            const Locked lock(*w);
+            w->bullet().setGravity(toBullet(gravity, "gravity"));
+          },
+          "(3,) float64, world length / s^2; that of all bodies without their own.");
+  return world;
+}
+
+}  // namespace tetskin::python

@@ -1,0 +1,1 @@
+../tetskin/tetskin.h

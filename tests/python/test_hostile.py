@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""Bad input: an exception each, and nothing changes."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import tetskin as ts
+
+NAN = float("nan")
+TETS = [[0, 1, 2, 3]]
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+
+
+def error(code):
+    return ts.Error, getattr(ts.StatusCode, code)
+
+
+# What is called, with a world w, its body b, a rigid body r, a spring s, a skin k, an elastic body e, the cage c and
+# the mesh m; and what it raises: a type, or an Error of a code.
+CALLS = {
+    # shapes
+    "positions of two columns": (lambda t: ts.TriangleMesh(np.zeros((4, 2)), [[0, 1, 2]]), ValueError),
+    "positions of one dimension": (lambda t: ts.TriangleMesh(np.zeros(9), [[0, 1, 2]]), ValueError),
+    "triangles of four columns": (lambda t: ts.TriangleMesh(CORNERS, TETS), ValueError),
+    "tets of three columns": (lambda t: ts.Cage(CORNERS, [[0, 1, 2]]), ValueError),
+    "nodes of three dimensions": (lambda t: t.k.update(np.zeros((2, 2, 3))), ValueError),
+    "a mask that is too short": (lambda t: t.b.set_pinned(np.ones(3, bool)), ValueError),
+    "too few nodes": (lambda t: t.k.update(t.c.nodes[:-1]), error("SIZE_MISMATCH")),
+    "too few nodes for bones": (lambda t: ts.BonePalette(t.c, t.m).update(t.c.nodes[1:]), error("SIZE_MISMATCH")),
+    "too few velocities": (lambda t: setattr(t.b, "velocities", t.c.nodes[1:]), error("SIZE_MISMATCH")),
+    "normals of other vertices": (
+        lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2]], normals=CORNERS[:2]),
+        error("SIZE_MISMATCH"),
+    ),
+    "masses of other nodes": (lambda t: t.w.add_body(t.c, t.m, node_masses=[1.0]), error("SIZE_MISMATCH")),
+    "a position of two numbers": (lambda t: t.w.add_body(t.c, t.m, position=(0, 0)), TypeError),
+    # types
+    "positions of integers": (lambda t: ts.TriangleMesh(CORNERS.astype(int), [[0, 1, 2]]), TypeError),
+    "positions of complex numbers": (lambda t: t.k.update(t.c.nodes.astype(complex)), TypeError),
+    "positions of text": (lambda t: t.k.update(np.array([["a", "b", "c"]])), TypeError),
+    "positions of another byte order": (lambda t: t.k.update(t.c.nodes.astype(">f8")), TypeError),
+    "positions of halves": (lambda t: t.k.update(t.c.nodes.astype(np.float16)), TypeError),
+    "triangles of floats": (lambda t: ts.TriangleMesh(CORNERS, [[0.0, 1.0, 2.0]]), TypeError),
+    "objects": (lambda t: t.k.update(np.array([[None] * 3])), TypeError),
+    "rows of different lengths": (lambda t: t.k.update([[1.0, 2.0, 3.0], [4.0]]), ValueError),
+    "no array": (lambda t: t.k.update(None), (TypeError, ValueError)),
+    "no mesh": (lambda t: ts.create_cage(3), TypeError),
+    "a world for a cage": (lambda t: ts.Skin(t.w, t.m), TypeError),
+    "an option without its name": (lambda t: ts.create_cage(t.m, 100), TypeError),
+    "a number for a flag's name": (lambda t: ts.Skin(t.c, t.m, interpolation="cubic"), ValueError),
+    # numbers
+    "a mesh that is not finite": (lambda t: ts.TriangleMesh(CORNERS * NAN, [[0, 1, 2]]), error("NON_FINITE")),
+    "nodes that are not finite": (lambda t: t.k.update(t.c.nodes * NAN), error("NON_FINITE")),
+    "velocities that are not finite": (lambda t: setattr(t.b, "velocities", t.c.nodes * NAN), error("NON_FINITE")),
+    "a place that is not finite": (lambda t: t.w.add_body(t.c, t.m, position=(0, NAN, 0)), error("NON_FINITE")),
+    "an impulse that is not finite": (
+        lambda t: t.w.point_at_vertex(t.b, 0).apply_impulse((NAN, 0, 0)),
+        error("NON_FINITE"),
+    ),
+    "a target that is not finite": (lambda t: t.s.set_target((0, float("inf"), 0)), error("NON_FINITE")),
+    "a gravity that is not finite": (lambda t: setattr(t.w, "gravity", (0, NAN, 0)), error("NON_FINITE")),
+    "no rotation": (lambda t: t.w.add_box((1, 1, 1), rotation=(0, 0, 0, 0)), error("INVALID_OPTION")),
+    "a step of no time": (lambda t: t.w.step(0.0), ValueError),
+    "a step of NaN": (lambda t: t.w.step(NAN), ValueError),
+    "no substeps": (lambda t: t.w.step(substeps=0), ValueError),
+    "a negative radius": (lambda t: t.w.add_sphere(-1), ValueError),
+    "a negative mass": (lambda t: t.w.add_sphere(1, mass=-1), ValueError),
+    "a mass that is not finite": (lambda t: setattr(t.r, "mass", NAN), ValueError),
+    "a plane that moves": (lambda t: t.w.add_rigid_body(ts.Shape.plane(), mass=1), ValueError),
+    "a Poisson's ratio of a half": (lambda t: t.w.add_body(t.c, t.m, poisson_ratio=0.5), error("INVALID_OPTION")),
+    "a negative stiffness": (lambda t: setattr(t.b, "youngs_modulus", -1.0), error("INVALID_OPTION")),
+    "no tets": (lambda t: ts.create_cage(t.m, target_tets=0), error("INVALID_OPTION")),
+    "a negative number of tets": (lambda t: ts.create_cage(t.m, target_tets=-1), TypeError),
+    "too many threads": (lambda t: ts.World(threads=10**6), ValueError),
+    # indices
+    "a triangle of another vertex": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 4]]), error("INDEX_OUT_OF_RANGE")),
+    "a tet of another node": (lambda t: ts.Cage(CORNERS, [[0, 1, 2, -1]]), error("INDEX_OUT_OF_RANGE")),
+    "an index beyond 32 bits": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2**40]]), error("INDEX_OUT_OF_RANGE")),
+    "a node that does not exist": (lambda t: t.b.set_pinned([10**6]), IndexError),
+    "a vertex that does not exist": (lambda t: t.w.point_at_vertex(t.b, 10**6), error("INDEX_OUT_OF_RANGE")),
+    # meshes and files
+    "an empty mesh": (lambda t: ts.create_cage(ts.TriangleMesh(CORNERS, np.zeros((0, 3), int))), error("EMPTY")),
+    "a flat cage": (lambda t: ts.Cage(CORNERS * [1, 1, 0], TETS), error("DEGENERATE")),
+    "a file that is not there": (lambda t: ts.load_mesh("/no/such.obj"), error("FILE_NOT_FOUND")),
+    "a format that is not read": (lambda t: ts.load_mesh(__file__), error("UNSUPPORTED_FORMAT")),
+    "a mesh of another cage": (
+        lambda t: ts.Skin(t.c, ts.TriangleMesh(t.m.positions + 0.1, t.m.triangles)),
+        error("CAGE_MISMATCH"),
+    ),
+    "a folder that is not there": (lambda t: t.c.save("/no/such/cage.vtk"), error("FILE_NOT_WRITABLE")),
+    # worlds
+    "a body without a surface": (lambda t: t.w.add_body(t.c).positions, error("UNBOUND")),
+    "bytes that are no snapshot": (lambda t: t.w.restore(b"snapshot"), error("MALFORMED")),
+    "a snapshot of another world": (lambda t: ts.World().restore(t.w.save()), error("SNAPSHOT_MISMATCH")),
+    "a joint with itself": (lambda t: t.w.add_fixed_joint(t.r, t.r), error("INVALID_OPTION")),
+    "a joint with another world's": (
+        lambda t: t.w.add_fixed_joint(t.r, ts.World().add_sphere(1)),
+        error("NOT_IN_WORLD"),
+    ),
+    "a motor of no hinge": (lambda t: t.w.add_fixed_joint(t.r).set_motor(1.0, 1.0), error("INVALID_OPTION")),
+    "a free node that is moved": (lambda t: t.b.set_pinned_positions([0], [[0.0, 0, 0]]), error("INVALID_OPTION")),
+    "forces that are not recorded": (lambda t: ts.World(record_forces=False).forces_on(t.r), error("NOT_ADDED")),
+    "a pickle of something else": (
+        lambda t: t.c.__class__.__new__(ts.Cage).__setstate__((b"",) * 12),
+        error("MALFORMED"),
+    ),
+    "an attribute that is not there": (lambda t: setattr(t.b, "positions", t.c.nodes), AttributeError),
+}
+
+
+class Things:
+    """What the calls use."""
+
+    def __init__(self, cage, mesh):
+        self.c, self.m = cage, mesh
+        self.w = ts.World()
+        self.b = self.w.add_body(cage, mesh)
+        self.r = self.w.add_sphere(0.1, mass=1, position=(0, 5, 0))
+        self.s = self.w.add_spring(self.w.point_at_vertex(self.b, 0))
+        self.k = ts.Skin(cage, mesh)
+        self.e = ts.ElasticBody(cage)
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_is_refused(name, cage, mesh):
+    things = Things(cage, mesh)
+    call, expected = CALLS[name]
+    before = things.w.save() if "world" not in name else b""
+    rigids = len(things.w.rigid_bodies)
+    if isinstance(expected, tuple) and expected[0] is ts.Error:
+        with pytest.raises(ts.Error) as raised:
+            call(things)
+        assert raised.value.code == expected[1] and str(raised.value)
+    else:
+        with pytest.raises(expected):
+            call(things)
+    added = things.w.bodies != [things.b] or "joint" in name or "motor" in name or "surface" in name
+    if before and not added and len(things.w.rigid_bodies) == rigids:
+        assert things.w.save() == before
+    things.w.step()
+
+
+def test_damaged_pickles_are_refused(cage):
+    state = list(cage.__getstate__())
+    state[1] = state[1][:-4]
+    with pytest.raises(ts.Error):
+        ts.Cage.__new__(ts.Cage).__setstate__(tuple(state))
+    with pytest.raises(ts.Error):
+        ts.Cage.__new__(ts.Cage).__setstate__(())
+
+
+def test_a_snapshot_with_any_byte_changed_is_refused_or_another_one(dropped):
+    world, _ = dropped
+    world.step()
+    snapshot = world.save()
+    for at in range(0, len(snapshot), max(1, len(snapshot) // 50)):
+        damaged = bytearray(snapshot)
+        damaged[at] ^= 0x55
+        with pytest.raises(ts.Error):
+            world.restore(bytes(damaged))
+    world.restore(snapshot)
+
+
+@pytest.mark.filterwarnings("ignore:nanobind")
+def test_what_has_not_been_made_cannot_be_used():
+    for kind in (ts.Skin, ts.World, ts.Cage, ts.Body):
+        thing = kind.__new__(kind)
+        with pytest.raises(TypeError):
+            thing.positions if kind in (ts.Skin, ts.Body) else thing.save() if kind is ts.World else thing.nodes
+
+
+def test_errors_can_be_pickled_by_their_message():
+    with pytest.raises(ts.Error) as raised:
+        ts.load_mesh("/no/such.obj")
+    assert str(pickle.loads(pickle.dumps(raised.value))) == str(raised.value)

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""What is in the package: one symbol, few libraries, the licences, the types."""
+
+import importlib.metadata
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import tetskin as ts
+
+MODULE = Path(ts._core.__file__)
+LIBRARIES = ("libc.so", "libm.so", "libstdc++.so", "libgcc_s.so", "ld-linux")
+
+
+def output(*command):
+    if not shutil.which(command[0]):
+        pytest.skip(f"no {command[0]} (binutils)")
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def test_the_module_exports_one_symbol():
+    lines = output("nm", "-D", "--defined-only", str(MODULE)).splitlines()
+    assert [line.split()[-1] for line in lines] == ["PyInit__core"]
+
+
+def test_the_module_needs_the_systems_libraries_alone():
+    needed = [
+        line.split("[")[1].rstrip("]") for line in output("readelf", "-d", str(MODULE)).splitlines() if "NEEDED" in line
+    ]
+    assert needed and all(name.startswith(LIBRARIES) for name in needed), needed
+
+
+def test_licences_of_all_that_is_inside_are_in_the_package():
+    files = {file.name: file.read_text() for file in importlib.metadata.files("tetskin") if "licences" in str(file)}
+    for name, words in {
+        "tetskin.txt": "2026 the tetskin authors",
+        "bullet.txt": "bulletphysics.org",
+        "eigen.txt": "Mozilla Public License Version 2.0",
+        "tinygltf.txt": "Syoyo Fujita",
+        "json.txt": "Niels Lohmann",
+        "nanobind.txt": "Wenzel Jakob",
+    }.items():
+        assert words in files[name]
+
+
+def test_types_are_told():
+    folder = MODULE.parent
+    assert (folder / "py.typed").exists()
+    stub = (folder / "_core.pyi").read_text()
+    assert "class World" in stub and "substeps: int = 4" in stub and "A read-only view" in stub
+
+
+def test_the_version_is_that_of_the_library():
+    assert ts.__version__ == importlib.metadata.version("tetskin")
+
+
+def test_all_names_have_words():
+    for name in ts.__all__:
+        thing = getattr(ts, name)
+        assert isinstance(thing, str) or thing.__doc__, name
