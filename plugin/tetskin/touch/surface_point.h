@@ -188,7 +188,7 @@ class TETSKIN_TOUCH_API SurfaceTree {
   /// Applies a radial force through the next steps, as `SurfacePoint::applyForce` does, by the current surface. Cost
   /// O(vertices).
   /// Errors: in the result: NoHit, OtherBody for a body of another cage, and those of `SurfacePoint::applyForce`;
-  /// InvalidOption for a radius not above 0, or a body not created by `createSoftBody`.
+  /// InvalidOption for a radius not above 0.
   ImpulseResult applyForce(btSoftBody& body, const RadialImpulse& force, int steps = 1) const;
 
  private:
