@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A program that reads files with an installation made without assimp: an OBJ, and not an STL or FBX, whose refusal
+// A program that reads files with an installation made without assimp: an OBJ, and not a 3DS or FBX, whose refusal
 // names the format and the option.
 #include <tetskin/io/files.h>
 
@@ -16,7 +16,7 @@ tetskin::Result<tetskin::TriangleMesh> load(const std::string& name) {
 
 int main() {
   if (load("own.obj").value().triangleCount() != 1) return 1;
-  for (const std::string format : {".stl", ".fbx"}) {
+  for (const std::string format : {".3ds", ".fbx"}) {
     const auto mesh = load("foreign" + format);
     std::puts(mesh.status().message.c_str());
     if (mesh.status().code != tetskin::StatusCode::UnsupportedFormat) return 1;

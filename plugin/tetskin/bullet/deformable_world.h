@@ -84,7 +84,7 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// on other processors and with other compilers; what else that takes, and how far it has been measured, is in the
   /// guide (docs/replay.md).
   void setDeterministic(bool on);
-  bool deterministic() const;
+  bool deterministic() const;  ///< see `setDeterministic`
 
   /// Whether to compute Bullet's node normals (`m_n`), which drawing a body's own faces needs and a skin does not. On
   /// by default.
@@ -173,6 +173,7 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
 
+  /// As of Bullet. Within it, the world can be neither saved nor restored.
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
 
@@ -181,10 +182,11 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   /// Restores a state in place, see `restoreSnapshot`.
   Status restore(const void* snapshot, std::size_t size);
 
-  // What Bullet calls. With a deterministic solver, rigid bodies turn by arithmetic and square roots alone.
+  /// Called by Bullet. With a deterministic solver, rigid bodies turn by arithmetic and square roots alone.
   void predictUnconstraintMotion(btScalar dt) override;
 
  protected:
+  /// Called by Bullet, likewise.
   void integrateTransforms(btScalar dt) override;
 };
 
