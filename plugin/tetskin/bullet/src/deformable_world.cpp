@@ -63,7 +63,7 @@ void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
   if (!impl_->deformableSolver.deterministic()) {
     return btDeformableMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
   }
-  btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
+  btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);  // NOLINT(bugprone-parent-virtual-call): in place of its own
   RigidTurns::predict(m_nonStaticRigidBodies, dt);
   impl_->deformableSolver.predictMotion(dt);
 }
@@ -73,7 +73,7 @@ void DeformableWorld::integrateTransforms(btScalar dt) {
   if (!impl_->deformableSolver.deterministic()) return btDeformableMultiBodyDynamicsWorld::integrateTransforms(dt);
   positionCorrection(dt);
   impl_->turns.begin(m_nonStaticRigidBodies);
-  btMultiBodyDynamicsWorld::integrateTransforms(dt);
+  btMultiBodyDynamicsWorld::integrateTransforms(dt);  // NOLINT(bugprone-parent-virtual-call): as above
   impl_->turns.end(m_nonStaticRigidBodies, dt);
   impl_->deformableSolver.applyTransforms(dt);
 }
