@@ -71,12 +71,12 @@ endif()
 # - BulletsBinding, BulletsFaces, BulletsUpdates, BulletsContact, BulletsSoftContact: defects of Bullet itself
 #   (BULLET_DEFECTS.md), in float, and Bullet is not instrumented. BulletsReduction also applies to double precision, and
 #   is run.
-# - replay.heap and others: long runs. replay.drop is restored in a new process, too.
+# - replay.heap and others: long runs. replay.drop is restored in a new process, too; worlds are built from files.
 # SortedOrderIs...ToTheLastBit holds with GCC: clang fuses multiplications and additions in some lanes and not in
 # others.
 function(tetskin_test_sanitized name label folders_from)
   tetskin_test_configuration(${name} FOLDER sanitized_in_double LABELS ${label} TARGET unit_tests
-    TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced|replay[.]drop)"
+    TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced|replay[.](drop|Recorded|Replay))"
     LEAVE_OUT "AtTheDragonsSize|At3000Tets|AtManyTets|IsBoundedPerVertex|NeverTearWhatHangsTogether|BruteForceInALattice|BruteForceInAGradedCage|BruteForceJustOutsideALattice|AreStableAtAny|LongitudinalFrequencies|Timoshenkos|AreLiftedTogether|FallAsleepFarFromTheOrigin|BodiesThatOverlapLeaveEachOther|AStackStands|GivesACoarseBeam|FinerCagesNeedLess|RefinesNoMoreThanItMay|StartsFromScratch|SplitCagesHaveNoHinges|SurvivesWhatHangsLoosely/[23]|OfABodyOnAnotherAreItsWeight|FineCageOfThinPartsLandsAndRests|SquashedSurfaces|UpdatesHaveTheSameBitsOnAnyNumberOfThreads|[.]Bullets(Binding|Faces|FaceTree|Updates|Contact|SoftContact)|SortedOrderIsTheMeshsPermuted"
     OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1"
     -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF
