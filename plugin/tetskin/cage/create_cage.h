@@ -23,7 +23,7 @@ struct CageOptions {
   bool fit = true;
   /// Called now and then with the fraction done, an estimate from 0 to 1, ascending; returns false to cancel. May be
   /// empty.
-  std::function<bool(double fraction)> progress;
+  std::function<bool(double fraction)> progress{};
 };
 
 /// What was built, and how well it fits. Lengths and volumes are in rest space, in the unit of the mesh.

@@ -21,7 +21,7 @@ struct CalibrationOptions {
   int modeCount = 6;          ///< number of softest vibration modes to compare, at least 1
   /// Called now and then with the fraction done, an estimate from 0 to 1, ascending; returns false to cancel. May be
   /// empty.
-  std::function<bool(double fraction)> progress;
+  std::function<bool(double fraction)> progress{};
 };
 
 /// Result of a calibration.
