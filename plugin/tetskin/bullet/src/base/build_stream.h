@@ -6,6 +6,7 @@
 #pragma once
 
 #include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/core/embedding.h>
 #include <tetskin/export.h>
 
 #include <algorithm>
@@ -104,6 +105,21 @@ class BuildStream : public WorldStream {
   std::vector<const void*> described_;
   std::vector<Built> built_;
 };
+
+/// True for indices into a list of this length.
+template <class Indices>
+bool areBelow(const Indices& indices, std::size_t count) {
+  return std::all_of(indices.begin(), indices.end(),
+                     [count](int n) { return n >= 0 && static_cast<std::size_t>(n) < count; });
+}
+
+inline void visitEmbedded(BuildStream& stream, EmbeddedPoint<btScalar>& point) {
+  stream.plain(point.nodes.data(), point.nodes.size());
+  stream.plain(point.weights.data(), point.weights.size());
+  stream.plain(point.clampedWeights.data(), point.clampedWeights.size());
+  stream(point.tet);
+  stream(point.inside);
+}
 
 /// An entry of the solver's list of forces, built by a library that tetskin::bullet does not know.
 struct BuiltSource {

@@ -19,11 +19,6 @@ template <class Values>
 bool areFinite(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](auto x) { return std::isfinite(x); });
 }
-template <class Indices>
-bool areBelow(const Indices& indices, std::size_t count) {
-  return std::all_of(indices.begin(), indices.end(),
-                     [count](auto n) { return n >= 0 && static_cast<std::size_t>(n) < count; });
-}
 
 void visitQuadratic(BuildStream& stream, QuadraticShape& shape) {
   stream.plain(shape.tet.nodes.data(), shape.tet.nodes.size());

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/record/record_file.h>
 #include <tetskin/core/src/base/bytes.h>
+#include <tetskin/core/src/base/state/state_stream.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 namespace tetskin::bullet_detail {
@@ -22,91 +24,52 @@ std::uint64_t hashOfChunk(std::uint32_t kind, const Bytes& bytes) {
   return tetskin::hashOf(bytes.data(), bytes.size()) ^ kind;
 }
 
-template <class T>
-void put(Bytes& bytes, const T* values, std::size_t count) {
-  const auto* from = reinterpret_cast<const unsigned char*>(values);
-  bytes.insert(bytes.end(), from, from + count * sizeof(T));
+/// The bytes of a chunk that has a function `visit`.
+template <class Content>
+Bytes bytesOf(Content& content) {
+  StateStream counted;
+  content.visit(counted);
+  Bytes bytes(counted.count());
+  StateStream written(bytes.data(), bytes.size());
+  content.visit(written);
+  return bytes;
 }
 
-template <class Vector>
-void putList(Bytes& bytes, const Vector& values) {
-  const auto count = static_cast<std::uint32_t>(values.size());
-  put(bytes, &count, 1);
-  put(bytes, values.data(), values.size());
+template <class Content>
+std::optional<Content> contentOf(const Bytes& bytes) {
+  Content content;
+  StateStream read(bytes.data(), bytes.size());
+  content.visit(read);
+  if (read.failed() || read.count() != bytes.size()) return {};
+  return content;
 }
-
-/// Takes values off bytes, as long as there are enough.
-class Taker {
- public:
-  explicit Taker(const Bytes& bytes) : bytes_(bytes) {}
-  template <class T>
-  void take(T* values, std::size_t count) {
-    if (count > (bytes_.size() - at_) / sizeof(T)) {
-      whole_ = false;
-      return;
-    }
-    if (count > 0) std::memcpy(values, &bytes_[at_], count * sizeof(T));
-    at_ += count * sizeof(T);
-  }
-  template <class Vector>
-  void takeList(Vector& values) {
-    std::uint32_t count = 0;
-    take(&count, 1);
-    if (count > (bytes_.size() - at_) / sizeof(values[0])) {
-      whole_ = false;
-      return;
-    }
-    values.resize(count);
-    take(values.data(), count);
-  }
-  bool isWhole() const { return whole_ && at_ == bytes_.size(); }
-
- private:
-  const Bytes& bytes_;
-  std::size_t at_ = 0;
-  bool whole_ = true;
-};
 
 }  // namespace
 
-Bytes StepChunk::toBytes() const {
-  Bytes bytes;
-  put(bytes, &seconds, 1);
-  put(bytes, &maxSubSteps, 1);
-  put(bytes, &fixedTimeStep, 1);
-  putList(bytes, change);
-  putList(bytes, kinematic);
-  putList(bytes, motion);
-  return bytes;
+void StepChunk::visit(StateStream& stream) {
+  stream(seconds);
+  stream(maxSubSteps);
+  stream(fixedTimeStep);
+  stream.array(change);
+  stream.array(kinematic);
+  stream.array(motion);
 }
-
+Bytes StepChunk::toBytes() {
+  return bytesOf(*this);
+}
 std::optional<StepChunk> StepChunk::fromBytes(const Bytes& bytes) {
-  StepChunk step;
-  Taker taker(bytes);
-  taker.take(&step.seconds, 1);
-  taker.take(&step.maxSubSteps, 1);
-  taker.take(&step.fixedTimeStep, 1);
-  taker.takeList(step.change);
-  taker.takeList(step.kinematic);
-  taker.takeList(step.motion);
-  if (!taker.isWhole()) return {};
-  return step;
+  return contentOf<StepChunk>(bytes);
 }
 
-Bytes WorldBuildUp::toBytes() const {
-  Bytes bytes;
-  putList(bytes, described);
-  putList(bytes, reason);
-  return bytes;
+void WorldBuildUp::visit(StateStream& stream) {
+  stream.array(described);
+  stream.array(reason);
 }
-
+Bytes WorldBuildUp::toBytes() {
+  return bytesOf(*this);
+}
 std::optional<WorldBuildUp> WorldBuildUp::fromBytes(const Bytes& bytes) {
-  WorldBuildUp buildUp;
-  Taker taker(bytes);
-  taker.takeList(buildUp.described);
-  taker.takeList(buildUp.reason);
-  if (!taker.isWhole()) return {};
-  return buildUp;
+  return contentOf<WorldBuildUp>(bytes);
 }
 
 Status RecordWriter::open(const std::string& path) {

@@ -13,6 +13,10 @@
 #include <optional>
 #include <string>
 
+namespace tetskin {
+class StateStream;
+}
+
 namespace tetskin::bullet_detail {
 
 /// What a chunk holds. Its values are in files.
@@ -39,7 +43,8 @@ struct StepChunk {
   Bytes kinematic;                    ///< see KinematicTargets
   std::vector<std::uint32_t> motion;  ///< by object: a hash of its motion after the step
 
-  Bytes toBytes() const;
+  void visit(StateStream& stream);
+  Bytes toBytes();
   /// Empty for bytes that are no such chunk.
   static std::optional<StepChunk> fromBytes(const Bytes& bytes);
 };
@@ -49,7 +54,8 @@ struct WorldBuildUp {
   Bytes described;     ///< see `describeWorld`
   std::string reason;  ///< empty: it could be described
 
-  Bytes toBytes() const;
+  void visit(StateStream& stream);
+  Bytes toBytes();
   static std::optional<WorldBuildUp> fromBytes(const Bytes& bytes);
 };
 

@@ -8,6 +8,7 @@
 
 namespace tetskin::contact_detail {
 
+using bullet_detail::areBelow;
 using bullet_detail::BuildStream;
 
 namespace {
@@ -15,14 +16,6 @@ namespace {
 void visitPart(BuildStream& stream, TetSubregion& part) {
   stream.plain(part.minimum, 4);
   stream(part.left);
-}
-
-void visitSample(BuildStream& stream, EmbeddedPoint<btScalar>& sample) {
-  stream.plain(sample.nodes.data(), sample.nodes.size());
-  stream.plain(sample.weights.data(), sample.weights.size());
-  stream.plain(sample.clampedWeights.data(), sample.clampedWeights.size());
-  stream(sample.tet);
-  stream(sample.inside);
 }
 
 void visitTree(BuildStream& stream, SearchTree& tree) {
@@ -37,7 +30,7 @@ void visitShape(BuildStream& stream, ShapeData& data) {
   stream(data.edge);
   data.grid.visitState(stream);
   stream.each(data.runs, [&](SampleRun& run) { stream(run.tet), stream(run.first), stream(run.last); });
-  stream.each(data.samples, [&](EmbeddedPoint<btScalar>& sample) { visitSample(stream, sample); });
+  stream.each(data.samples, [&](EmbeddedPoint<btScalar>& sample) { visitEmbedded(stream, sample); });
   stream.each(data.sampleRest, vector);
   stream.each(data.sampleNormals, vector);
   stream.array(data.sampleNodes);
@@ -46,12 +39,6 @@ void visitShape(BuildStream& stream, ShapeData& data) {
   stream.each(data.filled, [&](TetSubregion& part) { visitPart(stream, part); });
   visitTree(stream, data.runTree);
   visitTree(stream, data.tetTree);
-}
-
-template <class Indices>
-bool areBelow(const Indices& indices, std::size_t count) {
-  return std::all_of(indices.begin(), indices.end(),
-                     [count](int n) { return n >= 0 && static_cast<std::size_t>(n) < count; });
 }
 
 /// One after the other, in the order of the tets.

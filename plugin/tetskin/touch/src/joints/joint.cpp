@@ -225,32 +225,23 @@ void visitCarried(BuildStream& stream, CarriedPoint& point) {
 }
 
 bool isOf(const btSoftBody& body, const CarriedPoint& point) {
-  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
-    if (point.nodes[k] < 0 || point.nodes[k] >= body.m_nodes.size() || !std::isfinite(point.weights[k])) return false;
-  }
-  return point.count > 0 && point.count <= kMaxPointNodes;
+  const auto isFinite = [](btScalar weight) { return std::isfinite(weight); };
+  return point.count > 0 && point.count <= kMaxPointNodes &&
+         areBelow(point.nodes, static_cast<std::size_t>(body.m_nodes.size())) &&
+         std::all_of(point.weights.begin(), point.weights.end(), isFinite);
 }
 
 void visitPoint(BuildStream& stream, PointData& data) {
-  for (EmbeddedPoint<btScalar>& corner : data.corners) {
-    stream.plain(corner.nodes.data(), corner.nodes.size());
-    stream.plain(corner.weights.data(), corner.weights.size());
-    stream.plain(corner.clampedWeights.data(), corner.clampedWeights.size());
-    stream(corner.tet);
-    stream(corner.inside);
-  }
+  for (EmbeddedPoint<btScalar>& corner : data.corners) visitEmbedded(stream, corner);
   stream.plain(data.weights.data(), data.weights.size());
   stream(data.restNormal);
 }
 
 bool isOf(const btSoftBody& body, const PointData& data) {
-  for (const EmbeddedPoint<btScalar>& corner : data.corners) {
-    if (corner.tet < 0 || corner.tet >= body.m_tetras.size()) return false;
-    for (const int node : corner.nodes) {
-      if (node < 0 || node >= body.m_nodes.size()) return false;
-    }
-  }
-  return true;
+  const auto nodes = static_cast<std::size_t>(body.m_nodes.size());
+  return std::all_of(data.corners.begin(), data.corners.end(), [&](const EmbeddedPoint<btScalar>& corner) {
+    return corner.tet >= 0 && corner.tet < body.m_tetras.size() && areBelow(corner.nodes, nodes);
+  });
 }
 
 void visitSettings(BuildStream& stream, JointSettings& settings) {
