@@ -112,9 +112,11 @@ tetskin_test_configuration(without_assimp LABELS full TARGET test_io TESTS ^io O
 # The Python package: built and installed from the checkout, and, with all tests, as a wheel of a staged source package.
 add_test(NAME python.package COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run)
 add_test(NAME python.staged_package COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --staged)
-set_tests_properties(python.package python.staged_package PROPERTIES LABELS "config;python" TIMEOUT 3600
+add_test(NAME python.beside_others COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --beside)
+set_tests_properties(python.package python.staged_package python.beside_others PROPERTIES LABELS "config;python" TIMEOUT 3600
   PROCESSORS ${nested_parallel} SKIP_RETURN_CODE 77 RESOURCE_LOCK bullet_sources)
-set_property(TEST python.staged_package APPEND PROPERTY LABELS full)
+set_property(TEST python.package python.beside_others PROPERTY RESOURCE_LOCK python_build bullet_sources)
+set_property(TEST python.staged_package python.beside_others APPEND PROPERTY LABELS full)
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 set(labels_full "config;full")
