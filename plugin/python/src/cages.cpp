@@ -25,7 +25,7 @@ CageModel made(const ArrayLike& nodes, const ArrayLike& tets) {
 }
 
 CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateElements, bool fit,
-                  const nb::object& progress) {
+                  const Progress& progress) {
   const MeshModel model = meshOf(mesh);
   ProgressCall call(progress);
   CageOptions options;
@@ -39,7 +39,7 @@ CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateEl
   return {sharedOf(take(std::move(cage))), report.describe()};
 }
 
-CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount, const nb::object& progress) {
+CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount, const Progress& progress) {
   ProgressCall call(progress);
   CalibrationOptions options;
   options.poissonRatio = poissonRatio;

@@ -50,7 +50,7 @@ void bindRuns(nb::module_& module, Class<World>& world);
 namespace nanobind::detail {
 template <>
 struct type_caster<tetskin::python::MeshLike> {
-  NB_TYPE_CASTER(tetskin::python::MeshLike, const_name("TriangleMesh | typing.Any"))
+  NB_TYPE_CASTER(tetskin::python::MeshLike, const_name("TriangleMesh | Mesh"))
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.object = borrow(source);
     return true;

@@ -140,9 +140,10 @@ void bindSkins(nb::module_& module) {
   Class<Skin>(module, "Skin", "A render mesh carried by the nodes of a cage, however they are moved. Needs no world.")
       .def(
           "__init__",
-          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const std::string& interpolation,
-             const std::string& normals, const std::string& outside, std::optional<double> maxDistance) {
-            new (self) Skin(cage, meshOf(mesh), bindingOptions(interpolation, normals, outside, maxDistance));
+          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
+             const Choice<NormalsOf>& normals, const Choice<OutsideRules>& outside, std::optional<double> maxDistance) {
+            new (self)
+                Skin(cage, meshOf(mesh), bindingOptions(interpolation.name, normals.name, outside.name, maxDistance));
           },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
           "outside"_a = "nearest", "max_distance"_a = nb::none(),
@@ -169,7 +170,7 @@ void bindSkins(nb::module_& module) {
       .def_prop_ro(
           "bounds",
           [](const Skin& skin) { return nb::make_tuple(vectorOf(skin.bounds().min()), vectorOf(skin.bounds().max())); },
-          "The box of the positions: two corners, world space.")
+          kBoundsType, "The box of the positions: two corners, world space.")
       .def_prop_ro("node_count", &Skin::nodeCount, "Number of nodes that an update takes.")
       .def_prop_ro("report", &Skin::report, "How well the mesh fits the cage, in words.");
 
@@ -178,9 +179,10 @@ void bindSkins(nb::module_& module) {
       "Affine bones, one per node, with which an engine's own linear blend skinning draws the surface. Needs no world.")
       .def(
           "__init__",
-          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const std::string& interpolation,
-             bool gradients,
-             const std::string& layout) { new (self) Palette(cage, meshOf(mesh), interpolation, gradients, layout); },
+          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
+             bool gradients, const Choice<Layouts>& layout) {
+            new (self) Palette(cage, meshOf(mesh), interpolation.name, gradients, layout.name);
+          },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "gradients"_a = false, "layout"_a = "rows",
           "layout: 'rows', 3 rows of 4, or 'columns', the 4 columns of a 4x4 matrix. gradients: bones of the linear "
           "surface carry "

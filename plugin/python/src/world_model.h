@@ -166,11 +166,20 @@ auto unlocked(World& world, Work&& work) {
   return work();
 }
 
+/// Arrays that a handle keeps: only those of soft bodies.
+template <class State>
+struct Arrays {};
+template <>
+struct Arrays<BodyState> {
+  Kept<Row3<float>> positions, normals, nodes, velocities;
+};
+
 /// What Python holds: the same thing as another handle of the same state.
 template <class State>
 struct Handle {
   std::shared_ptr<World> world;
   std::shared_ptr<State> state;
+  mutable Arrays<State> arrays{};
 };
 using RigidHandle = Handle<RigidState>;
 using JointHandle = Handle<JointState>;
