@@ -109,14 +109,18 @@ tetskin_test_configuration(without_assimp LABELS full TARGET test_io TESTS ^io O
   "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_ASSIMP=OFF -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DTETSKIN_BULLET=OFF
   -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_DEMOS=OFF)
 
-# The Python package: built and installed from the checkout, and, with all tests, as a wheel of a staged source package.
+# The Python package: built and installed from the checkout, and, with all tests, as a wheel of a staged source package,
+# beside other packages, by other Pythons, and in a new system without anything else.
+set(python_tests python.package python.staged_package python.beside_others python.versions python.fresh_root)
 add_test(NAME python.package COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run)
 add_test(NAME python.staged_package COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --staged)
 add_test(NAME python.beside_others COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --beside)
-set_tests_properties(python.package python.staged_package python.beside_others PROPERTIES LABELS "config;python" TIMEOUT 3600
-  PROCESSORS ${nested_parallel} SKIP_RETURN_CODE 77 RESOURCE_LOCK bullet_sources)
-set_property(TEST python.package python.beside_others PROPERTY RESOURCE_LOCK python_build bullet_sources)
-set_property(TEST python.staged_package python.beside_others APPEND PROPERTY LABELS full)
+add_test(NAME python.versions COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --versions)
+add_test(NAME python.fresh_root COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/root)
+set_tests_properties(${python_tests} PROPERTIES LABELS "config;python;full" TIMEOUT 3600
+  PROCESSORS ${nested_parallel} SKIP_RETURN_CODE 77 RESOURCE_LOCK "python_build;bullet_sources")
+set_tests_properties(python.staged_package python.versions PROPERTIES RESOURCE_LOCK bullet_sources)
+set_tests_properties(python.package PROPERTIES LABELS "config;python")
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 set(labels_full "config;full")
