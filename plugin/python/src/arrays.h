@@ -204,7 +204,7 @@ class Kept {
   Kept& operator=(const Kept&) { return *this; }
 
   template <class Make>
-  Made<Of> view(Make&& make) {
+  Made<Of> view(Make&& make) const {
     static PyObject* const name = PyUnicode_InternFromString("view");
     if (!array_.is_valid()) array_ = nb::cast(Of(make()));
     PyObject* arguments[] = {array_.ptr()};
@@ -214,7 +214,7 @@ class Kept {
   }
 
  private:
-  nb::object array_;
+  mutable nb::object array_;
 };
 
 /// The bytes of a vector, for pickle, and back.

@@ -19,7 +19,7 @@ View velocitiesOf(const BodyHandle& body) {
                         sizeof(btSoftBody::Node));
   });
 }
-View surfaceOf(const BodyHandle& body, const std::vector<float>& numbers, Kept<Row3<float>>& array) {
+View surfaceOf(const BodyHandle& body, const std::vector<float>& numbers, const Kept<Row3<float>>& array) {
   (void)alive(body);
   checkSurface(body);
   return array.view([&] { return view3<float>(numbers.data(), numbers.size() / 3, body.state); });

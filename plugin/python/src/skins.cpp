@@ -44,6 +44,7 @@ class Skin {
   std::size_t nodeCount() const { return skin_.nodeCount(); }
 
   std::shared_ptr<std::vector<float>> positions, normals;
+  Kept<Row3<float>> positionsArray, normalsArray;
 
  private:
   CageModel cage_;
@@ -52,8 +53,8 @@ class Skin {
   std::string report_;
 };
 
-Row3<float> rowsOf(const std::shared_ptr<std::vector<float>>& numbers) {
-  return view3<float>(numbers->data(), numbers->size() / 3, numbers);
+Made<Row3<float>> rowsOf(const std::shared_ptr<std::vector<float>>& numbers, const Kept<Row3<float>>& array) {
+  return array.view([&] { return view3<float>(numbers->data(), numbers->size() / 3, numbers); });
 }
 
 BoneLayout layoutOf(const std::string& name) {
@@ -156,16 +157,16 @@ void bindSkins(nb::module_& module) {
           "update",
           [](Skin& skin, const ArrayLike& nodes) {
             skin.update(nodes);
-            return rowsOf(skin.positions);
+            return rowsOf(skin.positions, skin.positionsArray);
           },
           "nodes"_a,
           "Computes the surface for these nodes: (n, 3) float32 or float64, world space, in the cage's order. Returns "
           "positions. On an Error, the surface stays as it was.")
       .def_prop_ro(
-          "positions", [](const Skin& skin) { return rowsOf(skin.positions); },
+          "positions", [](const Skin& skin) { return rowsOf(skin.positions, skin.positionsArray); },
           "(vertices, 3) float32, world space. A read-only view, which each update overwrites.")
       .def_prop_ro(
-          "normals", [](const Skin& skin) { return rowsOf(skin.normals); },
+          "normals", [](const Skin& skin) { return rowsOf(skin.normals, skin.normalsArray); },
           "(vertices, 3) float32, unit length, or (0, 3). A read-only view, which each update overwrites.")
       .def_prop_ro(
           "bounds",

@@ -179,7 +179,7 @@ template <class State>
 struct Handle {
   std::shared_ptr<World> world;
   std::shared_ptr<State> state;
-  mutable Arrays<State> arrays{};
+  Arrays<State> arrays{};
 };
 using RigidHandle = Handle<RigidState>;
 using JointHandle = Handle<JointState>;
