@@ -53,7 +53,10 @@ struct Layouts {
   static constexpr auto kNames = nb::detail::const_name("typing.Literal['rows', 'columns']");
 };
 /// Called with the fraction done; or None.
-using Progress = std::optional<nb::typed<nb::callable, nb::object(double)>>;
+struct Progress {
+  nb::object call;
+  operator const nb::object&() const { return call; }
+};
 
 /// Numbers of an argument, side by side in memory: those of the array itself where that is possible, otherwise a copy.
 /// Holds the array.
@@ -245,7 +248,7 @@ auto released(Work&& work) {
 /// too.
 class ProgressCall {
  public:
-  explicit ProgressCall(const Progress& call) : call_(call ? nb::object(*call) : nb::none()) {}
+  explicit ProgressCall(const nb::object& call) : call_(call) {}
   /// What the library calls, without the GIL.
   std::function<bool(double)> function();
   /// Throws what was raised.
@@ -265,6 +268,14 @@ struct type_caster<tetskin::python::ArrayLike> {
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.object = borrow(source);
     return true;
+  }
+};
+template <>
+struct type_caster<tetskin::python::Progress> {
+  NB_TYPE_CASTER(tetskin::python::Progress, const_name("collections.abc.Callable[[float], object] | None"))
+  bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+    value.call = borrow(source);
+    return source.is_none() || PyCallable_Check(source.ptr());
   }
 };
 /// Vectors and quaternions: any sequence of numbers, which an array is too, though for type checkers it is none.

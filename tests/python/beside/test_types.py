@@ -68,7 +68,7 @@ cage = ts.create_cage("a.obj")  # wrong
 cage = ts.create_cage(mesh, 1000)  # wrong
 cage = ts.create_cage(mesh, tets=1000)  # wrong
 cage = ts.create_cage(mesh, target_tets="many")  # wrong
-cage = ts.create_cage(mesh, progress=True)  # wrong
+cage = ts.create_cage(mesh, progress="yes")  # wrong
 cage = ts.create_cage(mesh, progress=lambda: True)  # wrong
 cage.nodes = []  # wrong
 world = ts.World(gravity=-9.81)  # wrong
