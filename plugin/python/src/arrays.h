@@ -188,10 +188,11 @@ auto released(Work&& work) {
 }
 
 /// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. Ctrl-C cancels,
-/// too.
+/// too. True: a bar that is printed; None or False: nothing.
 class ProgressCall {
  public:
-  explicit ProgressCall(const nb::object& call) : call_(call) {}
+  /// what  is done, before a bar
+  ProgressCall(const nb::object& call, const char* what);
   /// What the library calls, without the GIL.
   std::function<bool(double)> function();
   /// Throws what was raised.
