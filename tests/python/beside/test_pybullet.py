@@ -262,6 +262,26 @@ def test_poses_follow_pybullet_in_each_step(client):
         assert np.abs(rigid.velocity - p.getBaseVelocity(body, physicsClientId=client)[0]).max() < 0.01
 
 
+def test_links_follow_pybullet_in_each_step(client):
+    """Without being asked, pybullet tells poses of links from before its last step."""
+    p.setGravity(0, 0, -9.81, physicsClientId=client)
+    arm = p.loadURDF("franka_panda/panda.urdf", useFixedBase=True, physicsClientId=client)
+    p.resetJointState(arm, 1, 1, physicsClientId=client)
+    for joint in range(7):
+        p.setJointMotorControl2(arm, joint, p.VELOCITY_CONTROL, force=0, physicsClientId=client)
+    mirror = tetskin.pybullet.Mirror(client, ts.World(), bodies=[])
+    mirror.add(arm, links=[6])
+    rigid, = mirror.rigid_bodies(arm, 6)
+    before = rigid.position
+    for _ in range(60):
+        mirror.step()
+    # The frame of its file, in which the points of the hull are.
+    state = p.getLinkState(arm, 6, computeForwardKinematics=1, physicsClientId=client)
+    assert np.abs(rigid.position - before).max() > 0.1
+    assert np.abs(rigid.position - state[4]).max() < 1e-4
+    assert abs(abs(rigid.rotation @ state[5]) - 1) < 1e-5
+
+
 # Forces.
 
 
@@ -344,15 +364,20 @@ def test_bodies_come_and_go(client):
 
 
 def test_a_teleported_body_takes_nothing_along(client, ball):
-    body = make_box(client, (0, 0, 0), mass=0)
-    world = ts.World(gravity=(0, 0, 0))
-    soft = world.add_body(*ball, position=(1, 0, 0))
-    mirror = tetskin.pybullet.Mirror(client, world)
-    p.resetBasePositionAndOrientation(body, (2, 0, 0), (0, 0, 0, 1), physicsClientId=client)
-    mirror.teleport(body)
-    mirror.step()
-    assert np.abs(mirror.rigid_bodies(body)[0].position - (2, 0, 0)).max() < 1e-6
-    assert np.abs(soft.velocities).max() < 1e-3
+    speeds = []
+    for teleported in (False, True):
+        body = make_box(client, (0, 0, 0), mass=0)
+        world = ts.World(gravity=(0, 0, 0))
+        soft = world.add_body(*ball, position=(0.22, 0, 0))
+        mirror = tetskin.pybullet.Mirror(client, world, bodies=[body])
+        p.resetBasePositionAndOrientation(body, (0.04, 0, 0), (0, 0, 0, 1), physicsClientId=client)
+        if teleported:
+            mirror.teleport(body)
+        mirror.step()
+        assert np.abs(mirror.rigid_bodies(body)[0].position - (0.04, 0, 0)).max() < 1e-6
+        speeds.append((mirror.rigid_bodies(body)[0].velocity[0], soft.velocities[:, 0].max()))
+    (pushing, pushed), (still, let_be) = speeds
+    assert pushing > 5 and still == 0 and let_be < 0.5 * pushed
     assert "not mirrored" in failed("NOT_ADDED", mirror.teleport, make_box(client))
 
 
