@@ -52,7 +52,7 @@ struct OutsideRules {
 struct Layouts {
   static constexpr auto kNames = nb::detail::const_name("typing.Literal['rows', 'columns']");
 };
-/// Called with the fraction done; or None.
+/// Called with the fraction done; True, which prints a bar; or None.
 struct Progress {
   nb::object call;
   operator const nb::object&() const { return call; }
@@ -276,7 +276,7 @@ struct type_caster<tetskin::python::Progress> {
   NB_TYPE_CASTER(tetskin::python::Progress, const_name("collections.abc.Callable[[float], object] | bool | None"))
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.call = borrow(source);
-    return source.is_none() || PyCallable_Check(source.ptr());
+    return source.is_none() || PyBool_Check(source.ptr()) || PyCallable_Check(source.ptr());
   }
 };
 /// Vectors and quaternions: any sequence of numbers, which an array is too, though for type checkers it is none.
