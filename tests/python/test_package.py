@@ -57,6 +57,7 @@ def test_licences_of_all_that_is_inside_are_in_the_package():
         "tinygltf.txt": "Syoyo Fujita",
         "json.txt": "Niels Lohmann",
         "nanobind.txt": "Wenzel Jakob",
+        "three.txt": "three.js authors",
     }.items():
         assert words in files[name]
 
