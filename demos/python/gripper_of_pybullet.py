@@ -78,9 +78,9 @@ class Control:
 
 def picture(client, ball, path):
     """What pybullet sees, with the ball as it is now."""
-    # A visual shape has 10,242 vertices here: the ball's own.
-    shape = p.createVisualShape(p.GEOM_MESH, vertices=ball.positions.tolist(), indices=ball.mesh.triangles.ravel().tolist(),
-                                rgbaColor=(0.9, 0.3, 0.2, 1), physicsClientId=client)
+    shape = p.createVisualShape(p.GEOM_MESH, vertices=ball.positions.tolist(),
+                                indices=ball.mesh.triangles.ravel().tolist(), rgbaColor=(0.9, 0.3, 0.2, 1),
+                                physicsClientId=client)
     shown = p.createMultiBody(0, -1, shape, physicsClientId=client)
     view = p.computeViewMatrix((0.85, -0.35, 0.25), (0.48, 0, 0.12), (0, 0, 1))
     projection = p.computeProjectionMatrixFOV(40, 4 / 3, 0.05, 5)
@@ -135,8 +135,8 @@ def report(measured):
     for name, m in measured.items():
         if name == "step":
             continue
-        print(f"{name:8} lowest point {1e3 * m['lowest']:7.2f} mm, {1e3 * m['width']:5.1f} mm wide, fingers squeeze with "
-              f"{m['squeeze']:5.2f} N and carry {m['carried']:6.3f} N, the ground {m['on_ground']:6.3f} N")
+        print(f"{name:8} lowest point {1e3 * m['lowest']:7.2f} mm, {1e3 * m['width']:5.1f} mm wide, fingers squeeze "
+              f"with {m['squeeze']:5.2f} N and carry {m['carried']:6.3f} N, the ground {m['on_ground']:6.3f} N")
     print(f"{1e3 * measured['step']:.1f} ms per step of {1e3 * STEP:.1f} ms, the arm's control and pictures included")
 
 

@@ -4,8 +4,8 @@
 # %% [markdown]
 # # pybullet's torus with a fine surface
 #
-# The mesh is of pybullet's own data, with each triangle divided into 16. pybullet loads the cage that tetskin has made of
-# it, as a soft body of its own, and simulates it alone; tetskin's skin follows.
+# The mesh is of pybullet's own data, with each triangle divided into 16. pybullet loads the cage that tetskin has made
+# of it, as a soft body of its own, and simulates it alone; tetskin's skin follows.
 
 # %%
 import argparse
