@@ -14,7 +14,7 @@ import importlib
 import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,6 +22,8 @@ from . import _core
 
 __all__ = ["Mirror", "Skin", "load_soft_body"]
 
+Normals = Literal["none", "transformed", "recomputed"]
+Interpolation = Literal["linear", "quadratic"]
 SOFT_BODY = 3  # of getDynamicsInfo, which gives it no name
 ALONG_Y = (-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))  # turns z, along which pybullet's shapes are, into tetskin's y
 NO_TURN = (0.0, 0.0, 0.0, 1.0)
@@ -67,8 +69,8 @@ class Skin:
     no soft one, or has another number of nodes than the cage; its nodes are those of the cage, in this order.
     """
 
-    def __init__(self, body_id: int, cage: _core.Cage, mesh: Any, client: int = 0, *, normals: str = "none",
-                 interpolation: str = "linear") -> None:
+    def __init__(self, body_id: int, cage: _core.Cage, mesh: Any, client: int = 0, *, normals: Normals = "none",
+                 interpolation: Interpolation = "linear") -> None:
         self.body_id, self.client = int(body_id), int(client)
         self._skin = _core.Skin(cage, mesh, normals=normals, interpolation=interpolation)
         self.update()
@@ -103,8 +105,8 @@ class Skin:
         return self._skin.normals
 
 
-def load_soft_body(cage: _core.Cage, mesh: Any, *, client: int = 0, normals: str = "none",
-                   interpolation: str = "linear", **options: Any) -> tuple[int, Skin]:
+def load_soft_body(cage: _core.Cage, mesh: Any, *, client: int = 0, normals: Normals = "none",
+                   interpolation: Interpolation = "linear", **options: Any) -> tuple[int, Skin]:
     """Makes a soft body of pybullet's own of a cage, and a skin on it. Returns its id and the skin.
 
     options: what loadSoftBody takes besides the file's name, such as basePosition, mass, useNeoHookean, NeoHookeanMu,
