@@ -8,7 +8,7 @@ drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
 demo_packages=(libbenchmark-dev python3-matplotlib)
 test_packages=(libgtest-dev)
 check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen libegl-dev libgl1-mesa-dri
-  qemu-user-static python3-venv python3-dev)
+  qemu-user-static python3-venv python3-dev debootstrap)
 # Another browser of its kind will do: Ubuntu has none as a package.
 if ! command -v chromium-browser google-chrome >/dev/null; then check_packages+=(chromium); fi
 

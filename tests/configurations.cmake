@@ -109,14 +109,26 @@ tetskin_test_configuration(without_assimp LABELS full TARGET test_io TESTS ^io O
   "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_ASSIMP=OFF -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DTETSKIN_BULLET=OFF
   -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_DEMOS=OFF)
 
-# The Python package: built and installed from the checkout, and, with all tests, as a wheel of a staged source package.
-add_test(NAME python.package COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run)
-add_test(NAME python.staged_package COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --staged)
-add_test(NAME python.beside_others COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/run --beside)
-set_tests_properties(python.package python.staged_package python.beside_others PROPERTIES LABELS "config;python" TIMEOUT 3600
-  PROCESSORS ${nested_parallel} SKIP_RETURN_CODE 77 RESOURCE_LOCK bullet_sources)
-set_property(TEST python.package python.beside_others PROPERTY RESOURCE_LOCK python_build bullet_sources)
-set_property(TEST python.staged_package python.beside_others APPEND PROPERTY LABELS full)
+# The Python package: built and installed from the checkout; beside the packages of its demos, which are run; and, with
+# all tests, as a wheel of a staged source package, by other Pythons, and in a system that has nothing but Python.
+foreach(way IN ITEMS package beside_others staged_package versions fresh_root)
+  set(command_package run)
+  set(command_beside_others run --beside)
+  set(command_staged_package run --staged)
+  set(command_versions run --versions)
+  set(command_fresh_root root)
+  list(POP_FRONT command_${way} script)
+  if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/python/${script})
+    continue()
+  endif()
+  add_test(NAME python.${way} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/${script} ${command_${way}})
+  set_tests_properties(python.${way} PROPERTIES LABELS "config;python" TIMEOUT 3600 PROCESSORS ${nested_parallel}
+    SKIP_RETURN_CODE 77)
+  set_property(TEST python.${way} PROPERTY RESOURCE_LOCK python_build bullet_sources)
+  if(way MATCHES "staged|versions|root")
+    set_property(TEST python.${way} APPEND PROPERTY LABELS full)
+  endif()
+endforeach()
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 set(labels_full "config;full")

@@ -22,6 +22,15 @@ def test_views_are_read_only_and_not_copies(dropped):
             view[0] = 0
 
 
+def test_each_view_has_a_shape_of_its_own(dropped, mesh, cage):
+    skin = ts.Skin(cage, mesh)
+    for owner in (dropped[1], skin):
+        view = owner.positions
+        view.shape = (-1,)
+        assert owner.positions.shape == (mesh.vertex_count, 3)
+        assert np.shares_memory(view, owner.positions)
+
+
 def test_views_follow_the_steps(dropped):
     world, body = dropped
     positions, nodes = body.positions, body.nodes

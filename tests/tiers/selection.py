@@ -15,6 +15,7 @@ which target uses which, is then what CMake says. In BUILD/changes:
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
+  python       only if the Python package, its demos or its tests have changed
 """
 import datetime
 import json
@@ -37,6 +38,8 @@ MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|plat
                        r"[.]cmake([.]in)?$|"
                        r"^((plugin/|tests/|demos/)?CMakeLists[.]txt|CMakePresets[.]json|[.]clang-tidy|[.]clang-format)$")
 PAGE = "README.md"
+# The Python package and its demos, which are built and tested as a whole, by tests of their own.
+PYTHON = re.compile(r"^(plugin|demos|tests)/python/")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 
@@ -166,6 +169,8 @@ def selected(graph, files):
     """The targets that changed, by file; or why everything counts as changed."""
     changed = {}
     for file in files:
+        if PYTHON.search(file):
+            continue
         if MACHINERY.search(file) or (file.startswith("tests/") and not ORDINARY_TEST.search(file)):
             return {}, f"{file} has changed, on which all tests depend"
         if READ.search(file) and file not in graph.owners:
@@ -180,10 +185,11 @@ def is_library_source(file):
     return file.startswith("plugin/tetskin/") and file.endswith((".h", ".cpp")) and (REPOSITORY / file).exists()
 
 
-def write(build, everything, folders, sources, page=False):
+def write(build, everything, folders, sources, page=False, python=False):
     out = build / "changes"
     out.mkdir(parents=True, exist_ok=True)
-    for name, text in (("everything", everything), ("page", PAGE if page else "")):
+    for name, text in (("everything", everything), ("page", PAGE if page else ""),
+                       ("python", "python" if python else "")):
         (out / name).unlink(missing_ok=True)
         if text:
             (out / name).write_text(text + "\n", encoding="utf-8")
@@ -207,7 +213,8 @@ def select(build):
     everyone = graph.with_users(own)
     folders = graph.test_folders(everyone)
     sources = [file for file in files if is_library_source(file)]
-    write(build, "", folders, sources, PAGE in files)
+    python = any(PYTHON.search(file) for file in files)
+    write(build, "", folders, sources, PAGE in files, python)
     print(f"Since {commit[:12]}, at which everything passed, {len(files)} files have changed.")
     if not changed:
         print("None of them is compiled.")

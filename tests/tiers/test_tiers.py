@@ -192,6 +192,19 @@ class Selection(InASmallProject):
             self.write(name)
         self.assertEqual(self.result(), ("", [], ""))
 
+    def test_the_python_package_selects_nothing_that_is_compiled(self):
+        for name in ("plugin/python/src/skins.cpp", "plugin/python/cmake/bullet.cmake", "plugin/python/CMakeLists.txt",
+                     "demos/python/drop.py", "demos/python/drop.ipynb", "tests/python/run", "tests/python/test_drop.py"):
+            with self.subTest(name):
+                self.setUp()
+                self.write(name)
+                self.assertEqual(self.result(), ("", [], ""))
+                self.assertTrue((self.root / "build/changes/python").exists())
+        self.setUp()
+        self.write("plugin/tetskin/io/io.cpp")
+        self.result()
+        self.assertFalse((self.root / "build/changes/python").exists())
+
     def test_the_machinery_of_the_tests_selects_everything(self):
         for name in ("CMakeLists.txt", "tests/CMakeLists.txt", "tests/style/layers.cmake", "tests/run", "demos/setup.sh",
                      "tests/tiers/selection.py", ".clang-tidy", "tests/fuzz/corpus/obj/seed",
@@ -319,22 +332,28 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others)$", self.ctest_call(calls))
         self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
         self.assertIn("consumer.readme: the first page has not changed", done.stdout)
 
     def test_change_leaves_out_what_nothing_has_changed_for_and_says_why(self):
         self.write("plugin/tetskin/io/io.cpp")
         done, calls = self.run_script("--change")
-        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized|consumer[.]readme_changes)$",
+        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized|consumer[.]readme_changes|python[.]beside_others)$",
                       self.ctest_call(calls))
         self.assertIn("configuration.thread_sanitized: nothing that is tested on several threads", done.stdout)
         self.setUp()
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
-                      "style[.]alone_changes)$", self.ctest_call(calls))
+                      "style[.]alone_changes|python[.]beside_others)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
+
+    def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):
+        self.write("tests/python/test_drop.py")
+        done, calls = self.run_script("--change")
+        self.assertNotIn("python[.]beside_others", self.ctest_call(calls))
+        self.assertIn("style[.]tidy_changes", self.ctest_call(calls))
 
     def test_change_is_all_where_everything_counts_as_changed(self):
         self.note("0" * 40)

@@ -88,13 +88,16 @@ void bindAnimations(nb::module_& module) {
       .def("add_frame", &GlbAnimation::addFrame, "Adds what is shown as it is now.")
       .def("finish", &GlbAnimation::finish,
            "Writes the file, complete or not at all. Finishing it again changes nothing.")
-      .def("__enter__", [](nb::handle self) { return nb::borrow(self); })
+      .def(
+          "__enter__", [](nb::handle self) { return nb::borrow(self); }, nb::sig("def __enter__(self) -> GlbWriter"))
       .def(
           "__exit__",
           [](GlbAnimation& g, nb::handle type, nb::handle, nb::handle) {
             if (type.is_none()) g.finish();
           },
-          "type"_a.none(), "value"_a.none(), "traceback"_a.none());
+          "type"_a.none(), "value"_a.none(), "traceback"_a.none(),
+          nb::sig("def __exit__(self, type: type[BaseException] | None, value: BaseException | None, traceback: "
+                  "object) -> None"));
 }
 
 }  // namespace tetskin::python

@@ -30,9 +30,32 @@ using namespace nb::literals;
 using Vec3 = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;  ///< x, y, z, w
 
-/// Anything that numpy.asarray takes.
+/// Anything that numpy.asarray takes. This type, and those below, have names in the stub from tetskin/typing.py.
 struct ArrayLike {
   nb::object object;
+};
+
+/// One of several words, which type checkers and editors know: `Names::kNames`.
+template <class Names>
+struct Choice {
+  std::string name;
+};
+struct Interpolations {
+  static constexpr auto kNames = nb::detail::const_name("typing.Literal['linear', 'quadratic']");
+};
+struct NormalsOf {
+  static constexpr auto kNames = nb::detail::const_name("typing.Literal['none', 'transformed', 'recomputed']");
+};
+struct OutsideRules {
+  static constexpr auto kNames = nb::detail::const_name("typing.Literal['nearest', 'barycentric']");
+};
+struct Layouts {
+  static constexpr auto kNames = nb::detail::const_name("typing.Literal['rows', 'columns']");
+};
+/// Called with the fraction done; True, which prints a bar; or None.
+struct Progress {
+  nb::object call;
+  operator const nb::object&() const { return call; }
 };
 
 /// Numbers of an argument, side by side in memory: those of the array itself where that is possible, otherwise a copy.
@@ -87,6 +110,8 @@ nb::capsule kept(const std::shared_ptr<Owner>& owner) {
                      [](void* p) noexcept { delete static_cast<std::shared_ptr<Owner>*>(p); });
 }
 
+template <class Number>
+using Row2 = nb::ndarray<nb::numpy, const Number, nb::shape<-1, 2>>;
 template <class Number>
 using Row3 = nb::ndarray<nb::numpy, const Number, nb::shape<-1, 3>>;
 template <class Number>
@@ -167,6 +192,34 @@ class Class : public nb::class_<T> {
   }
 };
 
+/// An array that has been made, whose type in the stub is `Of`'s.
+template <class Of>
+struct Made {
+  nb::object array;
+};
+/// An array of Python's that is made once, and of which each call gets a view: a fifth of what another one costs. Each
+/// gets its own, as arrays can be given another shape in place. Needs the GIL, also to end, if it has been made.
+template <class Of>
+class Kept {
+ public:
+  Kept() = default;
+  Kept(const Kept&) {}  // a copy makes its own
+  Kept& operator=(const Kept&) { return *this; }
+
+  template <class Make>
+  Made<Of> view(Make&& make) const {
+    static PyObject* const name = PyUnicode_InternFromString("view");
+    if (!array_.is_valid()) array_ = nb::cast(Of(make()));
+    PyObject* arguments[] = {array_.ptr()};
+    PyObject* made = PyObject_VectorcallMethod(name, arguments, 1, nullptr);
+    if (!made) throw nb::python_error();
+    return {nb::steal(made)};
+  }
+
+ private:
+  mutable nb::object array_;
+};
+
 /// The bytes of a vector, for pickle, and back.
 template <class T>
 nb::bytes bytesOf(const std::vector<T>& values) {
@@ -180,6 +233,10 @@ void readBytes(nb::handle object, std::vector<T>& values) {
   std::copy(bytes.c_str(), bytes.c_str() + bytes.size(), reinterpret_cast<char*>(values.data()));
 }
 
+/// The type of `bounds`, for the stub.
+inline const nb::sig kBoundsType{
+    "def bounds(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]"};
+
 /// Runs without the GIL.
 template <class Work>
 auto released(Work&& work) {
@@ -188,10 +245,11 @@ auto released(Work&& work) {
 }
 
 /// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. Ctrl-C cancels,
-/// too.
+/// too. True: a bar that is printed; None or False: nothing.
 class ProgressCall {
  public:
-  explicit ProgressCall(const nb::object& call) : call_(call) {}
+  /// what  is done, before a bar
+  ProgressCall(const nb::object& call, const char* what);
   /// What the library calls, without the GIL.
   std::function<bool(double)> function();
   /// Throws what was raised.
@@ -207,9 +265,41 @@ class ProgressCall {
 namespace nanobind::detail {
 template <>
 struct type_caster<tetskin::python::ArrayLike> {
-  NB_TYPE_CASTER(tetskin::python::ArrayLike, const_name("numpy.typing.ArrayLike"))
+  NB_TYPE_CASTER(tetskin::python::ArrayLike, const_name("Array"))
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.object = borrow(source);
+    return true;
+  }
+};
+template <>
+struct type_caster<tetskin::python::Progress> {
+  NB_TYPE_CASTER(tetskin::python::Progress, const_name("collections.abc.Callable[[float], object] | bool | None"))
+  bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+    value.call = borrow(source);
+    return source.is_none() || PyBool_Check(source.ptr()) || PyCallable_Check(source.ptr());
+  }
+};
+/// Vectors and quaternions: any sequence of numbers, which an array is too, though for type checkers it is none.
+template <std::size_t N>
+struct type_caster<std::array<double, N>> : array_caster<std::array<double, N>, double, N> {
+  static constexpr auto Name = const_name("Vector");
+};
+template <class Of>
+struct type_caster<tetskin::python::Made<Of>> {
+  static constexpr auto Name = make_caster<Of>::Name;
+  template <class T>
+  using Cast = T;
+  static handle from_cpp(const tetskin::python::Made<Of>& made, rv_policy, cleanup_list*) noexcept {
+    return made.array.inc_ref();
+  }
+};
+template <class Names>
+struct type_caster<tetskin::python::Choice<Names>> {
+  NB_TYPE_CASTER(tetskin::python::Choice<Names>, Names::kNames)
+  bool from_python(handle source, std::uint8_t flags, cleanup_list* cleanup) noexcept {
+    make_caster<std::string> text;
+    if (!text.from_python(source, flags, cleanup)) return false;
+    value.name = text.operator std::string&();
     return true;
   }
 };

@@ -5,18 +5,24 @@
 namespace tetskin::python {
 namespace {
 
+using View = Made<Row3<float>>;
+
 /// The memory of a body's nodes, which the body's state keeps.
-Row3<float> nodesOf(const BodyHandle& body) {
+View nodesOf(const BodyHandle& body) {
   const btSoftBody& soft = alive(body).body();
-  return view3<float>(nodePositions(soft), body.state);
+  return body.arrays.nodes.view([&] { return view3<float>(nodePositions(soft), body.state); });
 }
-Row3<float> velocitiesOf(const BodyHandle& body) {
+View velocitiesOf(const BodyHandle& body) {
   const btSoftBody& soft = alive(body).body();
-  return view3<float>(&soft.m_nodes[0].m_v[0], static_cast<std::size_t>(soft.m_nodes.size()), body.state,
-                      sizeof(btSoftBody::Node));
+  return body.arrays.velocities.view([&] {
+    return view3<float>(&soft.m_nodes[0].m_v[0], static_cast<std::size_t>(soft.m_nodes.size()), body.state,
+                        sizeof(btSoftBody::Node));
+  });
 }
-Row3<float> surfaceOf(const BodyHandle& body, const std::vector<float>& numbers) {
-  return view3<float>(numbers.data(), numbers.size() / 3, body.state);
+View surfaceOf(const BodyHandle& body, const std::vector<float>& numbers, const Kept<Row3<float>>& array) {
+  (void)alive(body);
+  checkSurface(body);
+  return array.view([&] { return view3<float>(numbers.data(), numbers.size() / 3, body.state); });
 }
 
 void setVelocities(BodyHandle& body, const ArrayLike& array) {
@@ -135,9 +141,10 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, c
                    std::optional<double> youngsModulus, double relativeStiffness,
                    const std::optional<ArrayLike>& stiffnessScale, double poissonRatio, double stiffnessDamping,
                    double friction, std::optional<double> margin, double solverTolerance, int maxIterations,
-                   const std::string& interpolation, const std::string& normals, const std::string& outside,
-                   std::optional<double> maxDistance, bool surfaceContact, bool softContact, bool selfContact,
-                   std::optional<double> contactMargin, std::optional<double> sampleSpacing) {
+                   const Choice<Interpolations>& interpolation, const Choice<NormalsOf>& normals,
+                   const Choice<OutsideRules>& outside, std::optional<double> maxDistance, bool surfaceContact,
+                   bool softContact, bool selfContact, std::optional<double> contactMargin,
+                   std::optional<double> sampleSpacing) {
   BodyOptions options;
   SoftBodyOptions& material = options.material;
   material.mass = mass;
@@ -153,7 +160,7 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, c
   material.solverTolerance = solverTolerance;
   material.maxIterations = maxIterations;
   material.faceTree = false;
-  options.binding = bindingOptions(interpolation, normals, outside, maxDistance);
+  options.binding = bindingOptions(interpolation.name, normals.name, outside.name, maxDistance);
   options.surfaceContact = surfaceContact;
   options.softContact = softContact;
   options.selfContact = selfContact;
@@ -174,7 +181,7 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, c
 
 }  // namespace
 
-void bindBodies(nb::module_& module, Class<World>& world) {
+Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
   Class<ImpulseResult>(module, "ImpulseResult", "Sums over all vertices that a radial impulse has pushed.")
       .def_prop_ro(
           "linear", [](const ImpulseResult& r) { return vectorOf(r.linear); },
@@ -187,20 +194,10 @@ void bindBodies(nb::module_& module, Class<World>& world) {
   Class<BodyHandle> body(module, "Body", "A soft body of a world, which keeps it. Made by World.add_body.");
   bindIdentity(body);
   body.def_prop_ro(
-          "positions",
-          [](const BodyHandle& b) {
-            (void)alive(b);
-            checkSurface(b);
-            return surfaceOf(b, b.state->positions);
-          },
+          "positions", [](const BodyHandle& b) { return surfaceOf(b, b.state->positions, b.arrays.positions); },
           "(vertices, 3) float32, world space: the surface. A read-only view, which each step overwrites.")
       .def_prop_ro(
-          "normals",
-          [](const BodyHandle& b) {
-            (void)alive(b);
-            checkSurface(b);
-            return surfaceOf(b, b.state->normals);
-          },
+          "normals", [](const BodyHandle& b) { return surfaceOf(b, b.state->normals, b.arrays.normals); },
           "(vertices, 3) float32, unit length; (0, 3) for a body added with normals='none'. A read-only view, which "
           "each step overwrites.")
       .def_prop_ro("nodes", nodesOf,
@@ -221,7 +218,7 @@ void bindBodies(nb::module_& module, Class<World>& world) {
             checkSurface(b);
             return nb::make_tuple(vectorOf(b.state->skin.bounds().min()), vectorOf(b.state->skin.bounds().max()));
           },
-          "The box of the surface: two corners, world space.")
+          kBoundsType, "The box of the surface: two corners, world space.")
       .def_prop_rw(
           "visible", [](const BodyHandle& b) { return b.state->skin.visible(); },
           [](BodyHandle& b, bool visible) {
@@ -320,6 +317,7 @@ void bindBodies(nb::module_& module, Class<World>& world) {
             return all;
           },
           "The soft bodies, in the order in which they were added.");
+  return body;
 }
 
 }  // namespace tetskin::python

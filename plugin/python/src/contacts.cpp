@@ -66,18 +66,11 @@ ContactArrays softContactsOf(const std::shared_ptr<World>& world) {
   return arrays;
 }
 
-AppliedForces forces(const std::shared_ptr<World>& world, const btCollisionObject& object, const nb::object& other) {
-  ForceRecord& record = world->forces();
-  if (other.is_none()) return record.forcesOn(object);
-  if (nb::isinstance<RigidHandle>(other)) {
-    const auto& rigid = nb::cast<const RigidHandle&>(other);
-    return record.forcesBetween(object, alive(rigid));
-  }
-  if (nb::isinstance<BodyHandle>(other)) {
-    const auto& body = nb::cast<const BodyHandle&>(other);
-    return record.forcesBetween(object, alive(body).body());
-  }
-  throw nb::type_error("other: must be a Body, a RigidBody or None");
+using Either = std::variant<BodyHandle, RigidHandle>;
+
+const btCollisionObject& objectOf(const Either& either) {
+  if (const auto* body = std::get_if<BodyHandle>(&either)) return alive(*body).body();
+  return alive(std::get<RigidHandle>(either));
 }
 
 }  // namespace
@@ -96,7 +89,7 @@ void bindContacts(nb::module_& module, Class<World>& world) {
       .def_prop_ro(
           "impulses", [](const ContactArrays& c) { return newRows3(std::vector<float>(c.impulses)); },
           "(n, 3) float32 on the soft body whose point it is: force times seconds.")
-      .def_ro("bodies", &ContactArrays::bodies,
+      .def_ro("bodies", &ContactArrays::bodies, nb::sig("def bodies(self) -> list[typing.Any]"),
               "By point: the RigidBody; of World.soft_contacts, the body whose point it is and the other one.")
       .def("__len__", [](const ContactArrays& c) { return c.distances.size(); });
 
@@ -122,11 +115,11 @@ void bindContacts(nb::module_& module, Class<World>& world) {
           "Contacts of a soft body with rigid bodies at its surface, in the last substep in which it was awake.")
       .def(
           "forces_on",
-          [](const std::shared_ptr<World>& w, const std::variant<BodyHandle, RigidHandle>& object,
-             const nb::object& other) {
+          [](const std::shared_ptr<World>& w, const Either& body, const std::optional<Either>& other) {
             const Locked lock(*w);
-            if (const auto* b = std::get_if<BodyHandle>(&object)) return forces(w, alive(*b).body(), other);
-            return forces(w, alive(std::get<RigidHandle>(object)), other);
+            const btCollisionObject& object = objectOf(body);
+            if (!other) return w->forces().forcesOn(object);
+            return w->forces().forcesBetween(object, objectOf(*other));
           },
           "body"_a, "other"_a = nb::none(),
           "Forces on a soft body from all that it touches or is attached to, or on a rigid body from all soft bodies; "

@@ -9,10 +9,10 @@ namespace tetskin::python {
 namespace {
 
 template <class Vector>
-std::vector<Vector> floatRows(const nb::object& array, const char* name, int columns) {
+std::vector<Vector> floatRows(const std::optional<ArrayLike>& array, const char* name, int columns) {
   std::vector<Vector> rows;
-  if (array.is_none()) return rows;
-  const Numbers<double> numbers(ArrayLike{array}, name, columns);
+  if (!array) return rows;
+  const Numbers<double> numbers(*array, name, columns);
   rows.resize(numbers.rows());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (int k = 0; k < columns; ++k)
@@ -28,8 +28,8 @@ void checkLength(std::size_t length, std::size_t vertices, const char* name) {
        std::string(name) + ": " + std::to_string(length) + " for " + std::to_string(vertices) + " vertices");
 }
 
-MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const nb::object& normals,
-               const nb::object& texcoords) {
+MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const std::optional<ArrayLike>& normals,
+               const std::optional<ArrayLike>& texcoords) {
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->positions = pointsOf(positions, "positions");
   mesh->triangles = indexRowsOf<3>(triangles, "triangles");
@@ -47,7 +47,7 @@ MeshModel loaded(const std::filesystem::path& path) {
   if (mesh.status().code == StatusCode::UnsupportedFormat) {
     fail(StatusCode::UnsupportedFormat, mesh.status().message +
                                             "\nThis package reads OBJ, PLY, STL, OFF and glTF 2.0. trimesh reads more: "
-                                            "tetskin.create_cage(trimesh.load(path)), for one, takes its meshes");
+                                            "tetskin.create_cage(trimesh.load_mesh(path)), for one, takes its meshes");
   }
   return {std::make_shared<const TriangleMesh>(take(std::move(mesh)))};
 }
@@ -89,10 +89,24 @@ MeshModel meshOfState(const nb::tuple& state) {
   return {std::move(mesh)};
 }
 
+/// The texture coordinates of a mesh of trimesh, if it has a pair of them for each vertex.
+std::optional<ArrayLike> texcoordsOf(const nb::object& mesh) {
+  const nb::object visual = nb::getattr(mesh, "visual", nb::none());
+  const nb::object uv = nb::getattr(visual, "uv", nb::none());
+  if (uv.is_none()) return {};
+  const nb::object array = nb::module_::import_("numpy").attr("asarray")(uv);
+  const nb::object shape = nb::make_tuple(nb::len(nb::object(mesh.attr("vertices"))), 2);
+  if (!array.attr("shape").equal(shape)) return {};
+  return ArrayLike{array};
+}
+
 }  // namespace
 
 MeshModel meshOf(const MeshLike& mesh) {
   if (nb::isinstance<MeshModel>(mesh.object)) return nb::cast<MeshModel>(mesh.object);
+  if (nb::hasattr(mesh.object, "geometry") && nb::hasattr(mesh.object, "to_mesh")) {
+    throw nb::type_error("mesh: a scene of trimesh; scene.to_mesh() joins its meshes into one, which is taken here");
+  }
   if (!nb::hasattr(mesh.object, "vertices") || !nb::hasattr(mesh.object, "faces")) {
     throw nb::type_error(
         "mesh: neither a tetskin.TriangleMesh nor a mesh with `vertices` and `faces`, as trimesh has them");
@@ -101,7 +115,7 @@ MeshModel meshOf(const MeshLike& mesh) {
   const auto plain = [&](const char* attribute) {
     return ArrayLike{numpy.attr("asarray")(mesh.object.attr(attribute))};
   };
-  return made(plain("vertices"), plain("faces"), nb::none(), nb::none());
+  return made(plain("vertices"), plain("faces"), {}, texcoordsOf(mesh.object));
 }
 
 void bindMeshes(nb::module_& module) {
@@ -110,8 +124,10 @@ void bindMeshes(nb::module_& module) {
                    "and there may be several components.")
       .def(
           "__init__",
-          [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles, const nb::object& normals,
-             const nb::object& texcoords) { new (self) MeshModel(made(positions, triangles, normals, texcoords)); },
+          [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles,
+             const std::optional<ArrayLike>& normals, const std::optional<ArrayLike>& texcoords) {
+            new (self) MeshModel(made(positions, triangles, normals, texcoords));
+          },
           "positions"_a, "triangles"_a, nb::kw_only(), "normals"_a = nb::none(), "texcoords"_a = nb::none(),
           "positions: (n, 3) float32 or float64, any unit; triangles: (m, 3) integers, counter-clockwise from outside; "
           "normals: (n, 3), unit length, or None; texcoords: (n, 2), or None.")
@@ -128,6 +144,14 @@ void bindMeshes(nb::module_& module) {
       .def_prop_ro(
           "normals", [](const MeshModel& m) { return view3(viewOf(m.mesh->normals), m.mesh); },
           "(n, 3) float32 authored unit normals, or (0, 3). A read-only view.")
+      .def_prop_ro(
+          "texcoords",
+          [](const MeshModel& m) {
+            const std::size_t shape[2] = {m.mesh->texcoords.size(), 2};
+            static const float none[2] = {};
+            return Row2<float>(m.mesh->texcoords.empty() ? none : m.mesh->texcoords[0].data(), 2, shape, kept(m.mesh));
+          },
+          "(n, 2) float32 texture coordinates, or (0, 2). A read-only view.")
       .def_prop_ro(
           "vertex_count", [](const MeshModel& m) { return m.mesh->vertexCount(); }, "Number of vertices.")
       .def_prop_ro(

@@ -39,7 +39,6 @@ void bindSkins(nb::module_& module);
 void bindElasticBodies(nb::module_& module);
 void bindAnimations(nb::module_& module);
 void bindRigidBodies(nb::module_& module, Class<World>& world);
-void bindBodies(nb::module_& module, Class<World>& world);
 void bindContacts(nb::module_& module, Class<World>& world);
 void bindTouch(nb::module_& module, Class<World>& world);
 Class<World> bindWorlds(nb::module_& module);
@@ -50,7 +49,7 @@ void bindRuns(nb::module_& module, Class<World>& world);
 namespace nanobind::detail {
 template <>
 struct type_caster<tetskin::python::MeshLike> {
-  NB_TYPE_CASTER(tetskin::python::MeshLike, const_name("TriangleMesh | typing.Any"))
+  NB_TYPE_CASTER(tetskin::python::MeshLike, const_name("TriangleMesh | Mesh"))
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.object = borrow(source);
     return true;

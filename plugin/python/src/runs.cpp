@@ -58,7 +58,7 @@ bool replayedStep(ReplayHandle& r) {
   return made;
 }
 
-void onChange(ReplayHandle& r, const nb::object& change) {
+void onChange(ReplayHandle& r, const nb::typed<nb::callable, nb::object(std::size_t)>& change) {
   const Locked lock(*r.world);
   r.change = change;
   r.replay->onChange([&r](std::size_t step) {
@@ -95,8 +95,11 @@ void bindRuns(nb::module_& module, Class<World>&) {
       .def_prop_ro(
           "steps", [](const RecorderHandle& r) { return r.open().steps(); }, "Number of steps recorded.")
       .def("close", &RecorderHandle::close)
-      .def("__enter__", [](nb::handle self) { return nb::borrow(self); })
-      .def("__exit__", [](RecorderHandle& r, const nb::args&) { r.close(); });
+      .def(
+          "__enter__", [](nb::handle self) { return nb::borrow(self); }, nb::sig("def __enter__(self) -> Recorder"))
+      .def(
+          "__exit__", [](RecorderHandle& r, const nb::args&) { r.close(); },
+          nb::sig("def __exit__(self, *args: object) -> None"));
 
   Class<ReplayHandle>(
       module, "Replay",

@@ -44,6 +44,7 @@ class Skin {
   std::size_t nodeCount() const { return skin_.nodeCount(); }
 
   std::shared_ptr<std::vector<float>> positions, normals;
+  Kept<Row3<float>> positionsArray, normalsArray;
 
  private:
   CageModel cage_;
@@ -52,8 +53,8 @@ class Skin {
   std::string report_;
 };
 
-Row3<float> rowsOf(const std::shared_ptr<std::vector<float>>& numbers) {
-  return view3<float>(numbers->data(), numbers->size() / 3, numbers);
+Made<Row3<float>> rowsOf(const std::shared_ptr<std::vector<float>>& numbers, const Kept<Row3<float>>& array) {
+  return array.view([&] { return view3<float>(numbers->data(), numbers->size() / 3, numbers); });
 }
 
 BoneLayout layoutOf(const std::string& name) {
@@ -140,9 +141,10 @@ void bindSkins(nb::module_& module) {
   Class<Skin>(module, "Skin", "A render mesh carried by the nodes of a cage, however they are moved. Needs no world.")
       .def(
           "__init__",
-          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const std::string& interpolation,
-             const std::string& normals, const std::string& outside, std::optional<double> maxDistance) {
-            new (self) Skin(cage, meshOf(mesh), bindingOptions(interpolation, normals, outside, maxDistance));
+          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
+             const Choice<NormalsOf>& normals, const Choice<OutsideRules>& outside, std::optional<double> maxDistance) {
+            new (self)
+                Skin(cage, meshOf(mesh), bindingOptions(interpolation.name, normals.name, outside.name, maxDistance));
           },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
           "outside"_a = "nearest", "max_distance"_a = nb::none(),
@@ -155,21 +157,21 @@ void bindSkins(nb::module_& module) {
           "update",
           [](Skin& skin, const ArrayLike& nodes) {
             skin.update(nodes);
-            return rowsOf(skin.positions);
+            return rowsOf(skin.positions, skin.positionsArray);
           },
           "nodes"_a,
           "Computes the surface for these nodes: (n, 3) float32 or float64, world space, in the cage's order. Returns "
           "positions. On an Error, the surface stays as it was.")
       .def_prop_ro(
-          "positions", [](const Skin& skin) { return rowsOf(skin.positions); },
+          "positions", [](const Skin& skin) { return rowsOf(skin.positions, skin.positionsArray); },
           "(vertices, 3) float32, world space. A read-only view, which each update overwrites.")
       .def_prop_ro(
-          "normals", [](const Skin& skin) { return rowsOf(skin.normals); },
+          "normals", [](const Skin& skin) { return rowsOf(skin.normals, skin.normalsArray); },
           "(vertices, 3) float32, unit length, or (0, 3). A read-only view, which each update overwrites.")
       .def_prop_ro(
           "bounds",
           [](const Skin& skin) { return nb::make_tuple(vectorOf(skin.bounds().min()), vectorOf(skin.bounds().max())); },
-          "The box of the positions: two corners, world space.")
+          kBoundsType, "The box of the positions: two corners, world space.")
       .def_prop_ro("node_count", &Skin::nodeCount, "Number of nodes that an update takes.")
       .def_prop_ro("report", &Skin::report, "How well the mesh fits the cage, in words.");
 
@@ -178,9 +180,10 @@ void bindSkins(nb::module_& module) {
       "Affine bones, one per node, with which an engine's own linear blend skinning draws the surface. Needs no world.")
       .def(
           "__init__",
-          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const std::string& interpolation,
-             bool gradients,
-             const std::string& layout) { new (self) Palette(cage, meshOf(mesh), interpolation, gradients, layout); },
+          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
+             bool gradients, const Choice<Layouts>& layout) {
+            new (self) Palette(cage, meshOf(mesh), interpolation.name, gradients, layout.name);
+          },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "gradients"_a = false, "layout"_a = "rows",
           "layout: 'rows', 3 rows of 4, or 'columns', the 4 columns of a 4x4 matrix. gradients: bones of the linear "
           "surface carry "

@@ -166,11 +166,20 @@ auto unlocked(World& world, Work&& work) {
   return work();
 }
 
+/// Arrays that a handle keeps: only those of soft bodies.
+template <class State>
+struct Arrays {};
+template <>
+struct Arrays<BodyState> {
+  Kept<Row3<float>> positions, normals, nodes, velocities;
+};
+
 /// What Python holds: the same thing as another handle of the same state.
 template <class State>
 struct Handle {
   std::shared_ptr<World> world;
   std::shared_ptr<State> state;
+  Arrays<State> arrays{};
 };
 using RigidHandle = Handle<RigidState>;
 using JointHandle = Handle<JointState>;
@@ -193,5 +202,9 @@ void bindIdentity(Class<Of>& type) {
            [](const Of& a, nb::handle b) { return nb::isinstance<Of>(b) && nb::cast<const Of&>(b).state == a.state; });
   type.def("__hash__", [](const Of& a) { return std::hash<const void*>()(a.state.get()); });
 }
+
+/// See models.h; these need the type of a body.
+Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world);
+void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body);
 
 }  // namespace tetskin::python

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""Types of arguments, as numpy.typing has them: for annotations of your own, and for what reads ours."""
+
+from typing import Any, Protocol, Sequence, SupportsFloat, Union
+
+import numpy.typing
+
+
+class SupportsArray(Protocol):
+    """What numpy.asarray makes an array of: arrays, tensors, columns of a table."""
+
+    def __array__(self) -> numpy.typing.NDArray[Any]: ...
+
+
+class Mesh(Protocol):
+    """A mesh of another package, such as trimesh's Trimesh."""
+
+    @property
+    def vertices(self) -> Any:
+        """(n, 3) numbers, any unit."""
+
+    @property
+    def faces(self) -> Any:
+        """(m, 3) integers, counter-clockwise from outside."""
+
+
+#: Numbers, indices or a mask, of one or two dimensions: an array, or sequences. Each argument says which shape it takes.
+Array = Union[SupportsArray, Sequence[Union[SupportsFloat, SupportsArray, Sequence[SupportsFloat]]]]
+#: Three numbers, or the four of a quaternion (x, y, z, w).
+Vector = Union[SupportsArray, Sequence[SupportsFloat]]

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""The package imports no other package but NumPy by itself."""
+
+import subprocess
+import sys
+
+
+def test_import_loads_numpy_alone():
+    others = ["IPython", "distributed", "matplotlib", "pandas", "pybullet", "trimesh"]
+    code = f"import sys, tetskin; print([name for name in {others} if name in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
