@@ -92,8 +92,8 @@ def picture(client, ball, path):
 
 # %%
 def run(output=None, force=6.0, quick=False):
-    """Lowers the hand, grips, lifts, holds. Returns what it has measured. output: a folder for pictures, or None. quick:
-    a coarser ball, held for a shorter time."""
+    """Lowers the hand, grips, lifts, holds. Returns what it has measured. output: a folder for pictures, or None.
+    quick: a coarser ball, held for a shorter time."""
     client = p.connect(p.DIRECT)
     try:
         ground, arm = make_arm(client)

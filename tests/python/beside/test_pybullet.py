@@ -222,8 +222,8 @@ def test_triangles_of_a_file_that_are_not_hulls(client, ball, tmp_path):
     (tmp_path / "bowl.urdf").write_text(
         '<robot name="bowl"><link name="bowl"><inertial><mass value="0"/>'
         '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
-        '<collision concave="yes"><origin xyz="0 0 -0.1"/><geometry><mesh filename="bowl.obj" scale="1 1 2"/></geometry>'
-        '</collision></link></robot>')
+        '<collision concave="yes"><origin xyz="0 0 -0.1"/><geometry><mesh filename="bowl.obj" scale="1 1 2"/>'
+        '</geometry></collision></link></robot>')
     p.setGravity(0, 0, -9.81, physicsClientId=client)
     body = p.loadURDF(str(tmp_path / "bowl.urdf"), (1, 2, 3), physicsClientId=client)
     world = ts.World(gravity=(0, 0, -9.81))
