@@ -5,8 +5,8 @@
     body, skin = tetskin.pybullet.load_soft_body(cage, mesh, mass=3, useNeoHookean=1)
     mirror = tetskin.pybullet.Mirror(client, world)
 
-Needs the package pybullet, which is imported by the first call. All lengths are those of pybullet's world, which is also
-that of the `World` that mirrors it.
+Needs the package pybullet, which is imported by the first call. All lengths are those of pybullet's world, which is
+also that of the `World` that mirrors it.
 """
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import importlib
 import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,6 +22,8 @@ from . import _core
 
 __all__ = ["Mirror", "Skin", "load_soft_body"]
 
+Normals = Literal["none", "transformed", "recomputed"]
+Interpolation = Literal["linear", "quadratic"]
 SOFT_BODY = 3  # of getDynamicsInfo, which gives it no name
 ALONG_Y = (-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))  # turns z, along which pybullet's shapes are, into tetskin's y
 NO_TURN = (0.0, 0.0, 0.0, 1.0)
@@ -44,8 +46,8 @@ def _connected(client: int) -> Any:
     """pybullet, of which this client is connected."""
     p = _pybullet()
     if not p.getConnectionInfo(client)["isConnected"]:
-        raise _error("NOT_ADDED", f"client {client} of pybullet is not connected: call pybullet.connect first, and pass "
-                                  "what it returns")
+        raise _error("NOT_ADDED", f"client {client} of pybullet is not connected: call pybullet.connect first, and "
+                                  "pass what it returns")
     return p
 
 
@@ -63,12 +65,12 @@ def _check_body(p: Any, body: int, client: int) -> None:
 class Skin:
     """A fine surface on a soft body of pybullet's own, which it has loaded from the file of a cage, `Cage.save`.
 
-    body_id, client: as of pybullet. cage, mesh, normals, interpolation: as of `tetskin.Skin`. An Error if the body is no
-    soft one, or has another number of nodes than the cage; its nodes are those of the cage's, in this order.
+    body_id, client: as of pybullet. cage, mesh, normals, interpolation: as of `tetskin.Skin`. An Error if the body is
+    no soft one, or has another number of nodes than the cage; its nodes are those of the cage, in this order.
     """
 
-    def __init__(self, body_id: int, cage: _core.Cage, mesh: Any, client: int = 0, *, normals: str = "none",
-                 interpolation: str = "linear") -> None:
+    def __init__(self, body_id: int, cage: _core.Cage, mesh: Any, client: int = 0, *, normals: Normals = "none",
+                 interpolation: Interpolation = "linear") -> None:
         self.body_id, self.client = int(body_id), int(client)
         self._skin = _core.Skin(cage, mesh, normals=normals, interpolation=interpolation)
         self.update()
@@ -88,8 +90,8 @@ class Skin:
         # Without the flag, pybullet gives the vertices that it draws, which are others.
         count, nodes = p.getMeshData(self.body_id, -1, flags=p.MESH_DATA_SIMULATION_MESH, physicsClientId=self.client)
         if count != self._skin.node_count:
-            raise _error("SIZE_MISMATCH", f"body {self.body_id} has {count} nodes, and the cage {self._skin.node_count}: "
-                                          "load it from the file that this cage has saved")
+            raise _error("SIZE_MISMATCH", f"body {self.body_id} has {count} nodes, and the cage "
+                                          f"{self._skin.node_count}: load it from the file that this cage has saved")
         return np.array(nodes)
 
     @property
@@ -103,8 +105,8 @@ class Skin:
         return self._skin.normals
 
 
-def load_soft_body(cage: _core.Cage, mesh: Any, *, client: int = 0, normals: str = "none",
-                   interpolation: str = "linear", **options: Any) -> tuple[int, Skin]:
+def load_soft_body(cage: _core.Cage, mesh: Any, *, client: int = 0, normals: Normals = "none",
+                   interpolation: Interpolation = "linear", **options: Any) -> tuple[int, Skin]:
     """Makes a soft body of pybullet's own of a cage, and a skin on it. Returns its id and the skin.
 
     options: what loadSoftBody takes besides the file's name, such as basePosition, mass, useNeoHookean, NeoHookeanMu,
@@ -134,7 +136,8 @@ def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 def _rotated(q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Vectors (n, 3), each by its quaternion (n, 4)."""
     cross = 2 * np.cross(q[:, :3], v)
-    return v + q[:, 3:] * cross + np.cross(q[:, :3], cross)
+    turned: np.ndarray = v + q[:, 3:] * cross + np.cross(q[:, :3], cross)
+    return turned
 
 
 def _obj_parts(path: Path) -> list[np.ndarray]:
@@ -203,7 +206,7 @@ def _parts(p: Any, client: int, body: int, link: int) -> list[_Part]:
         if kind == p.GEOM_SPHERE:
             parts.append(_Part(link, _core.Shape.sphere(size[0]), position, rotation))
         elif kind == p.GEOM_BOX:
-            parts.append(_Part(link, _core.Shape.box(0.5 * np.array(size)), position, rotation))
+            parts.append(_Part(link, _core.Shape.box([0.5 * length for length in size]), position, rotation))
         elif kind == p.GEOM_CAPSULE:
             parts.append(_Part(link, _core.Shape.capsule(size[1], size[0]), position, along_y))
         elif kind == p.GEOM_CYLINDER:
@@ -221,13 +224,13 @@ def _parts(p: Any, client: int, body: int, link: int) -> list[_Part]:
 class Mirror:
     """Rigid bodies of pybullet among the soft bodies of a tetskin `World`, in steps that take turns.
 
-    Each collision shape of pybullet's bodies is a kinematic body of `world`, at its place. `step` gives the forces of the
-    world's soft bodies to pybullet's links, and steps both. The two are loosely coupled: a link yields to a force only in
-    the next step, so that it must not be lighter than what it touches; the page of the guide tells how much that costs.
-    What is rigid in `world` alone meets pybullet's bodies, but does not push them.
+    Each collision shape of pybullet's bodies is a kinematic body of `world`, at its place. `step` gives the forces of
+    the world's soft bodies to pybullet's links, and steps both. The two are loosely coupled: a link yields to a force
+    only in the next step, and what is too light for that is thrown off; the page of the guide tells the limits. What is
+    rigid in `world` alone meets pybullet's bodies, but does not push them.
 
-    client: as of pybullet. bodies: their ids; None: all that are rigid now. Others join by `add`. World length, mass and
-    gravity are the same on both sides; gravity is set on both, by hand.
+    client: as of pybullet. bodies: their ids; None: all that are rigid now. Others join by `add`. Units are the same on
+    both sides; gravity is set on both, by hand.
     """
 
     def __init__(self, client: int, world: _core.World, bodies: Iterable[int] | None = None) -> None:
@@ -372,7 +375,7 @@ class Mirror:
         return states
 
     def _add_force(self, body: int, part: _Part, arm: np.ndarray) -> None:
-        """Adds that of the world's last step on a part to its link's. arm: from the link's centre of mass to the part."""
+        """Adds that of the world's last step on a part to its link's. arm: from the link's centre of mass to it."""
         wrench = self.world.forces_on(part.rigid).total
         if not any(wrench.force) and not any(wrench.torque):
             return
