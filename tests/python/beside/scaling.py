@@ -67,7 +67,8 @@ def main():
     for workers, told in figures.items():
         rates, empty, processor = zip(*told)
         print(
-            f"{workers} workers: {statistics.median(rates):.1f} runs per second ({min(rates):.1f} to {max(rates):.1f}), "
+            f"{workers} workers: {statistics.median(rates):.1f} runs per second "
+            f"({min(rates):.1f} to {max(rates):.1f}), "
             f"{statistics.median(empty):.2f} ms per empty task ({min(empty):.2f} to {max(empty):.2f}), "
             f"{statistics.median(processor):.2f} of the processor in client and scheduler"
         )
