@@ -482,7 +482,8 @@ def options_of(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Returns 0; 1 if no run has succeeded, or --check has found other bits; 2 if nothing could be run."""
+    """Returns 0; 1 if no run has succeeded, or --check has found other bits; 2 if nothing could be run; 130 if
+    it was interrupted."""
     options = options_of(arguments)
     work, plot = {"sweep": (sweep, plot_sweep), "rollouts": (rollouts, plot_rollouts)}[options.what]
     try:
@@ -498,6 +499,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     plot(table[succeeded], options.output / f"{options.what}.png")
     print(f"written: {options.output / options.what}.csv and .png")
+    if table["status"].eq(INTERRUPTED).any():
+        return 130
     if options.check:
         different = differing(table, work(None, options))
         print(f"{different} of {len(table)} runs differ from those of one process" if different else

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """demos/python/sweep.py: runs on several workers, whatever becomes of these, end as those in one process."""
 
+import contextlib
 import csv
 import os
 import re
@@ -128,6 +129,21 @@ def test_a_worker_of_another_version_runs_nothing(client, monkeypatch):
     monkeypatch.setattr(ts, "__version__", "0.0")
     table = sweep.sweep(client, options("--stiffness", "1e5"))
     assert table["status"].str.startswith("not run: tetskin").all()
+
+
+def test_an_interrupted_sweep_keeps_the_rows_that_it_has(tmp_path, monkeypatch):
+    run = sweep.bend_and_compare
+
+    def interrupted(plan, model, reference):
+        if plan["substeps"] == 4:
+            raise KeyboardInterrupt
+        return run(plan, model, reference)
+
+    monkeypatch.setattr(sweep, "bend_and_compare", interrupted)
+    monkeypatch.setattr(sweep, "connected", lambda options: contextlib.nullcontext())
+    assert sweep.main(["--quick", "--tets", "60", "--frames", "6", "--check", "--output", str(tmp_path)]) == 130
+    status = [row["status"] for row in rows_of(tmp_path / "sweep.csv")]
+    assert status == ["ok"] * 2 + [sweep.INTERRUPTED] * 7
 
 
 def test_the_script_runs_on_the_workers_of_an_address(cluster, tmp_path):
