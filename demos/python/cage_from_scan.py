@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 # %% [markdown]
 # # A cage from a scan
-# Scans are noisy, have holes, come in pieces that reach into each other, and some edges have three triangles. No repair is
-# needed: the cage asks what is inside, not whether the surface is closed.
+# Scans are noisy, have holes, come in pieces that reach into each other, and some edges have three triangles. No repair
+# is needed: the cage asks what is inside, not whether the surface is closed.
 
 # %%
 import argparse
@@ -26,7 +26,8 @@ random = np.random.default_rng(7)
 
 # %% [markdown]
 # ## The scan
-# A jug: a bulging body and a handle that reaches into it, both with noise; then holes, a fin on an edge, and specks of dust.
+# A jug: a bulging body and a handle that reaches into it, both with noise; then holes, a fin on an edge, and specks of
+# dust.
 
 # %%
 def grid(rows: int, columns: int) -> np.ndarray:
@@ -71,8 +72,8 @@ print(f"{mesh.vertex_count} vertices, {mesh.triangle_count} triangles, {(uses ==
 
 # %% [markdown]
 # ## The cage
-# `progress=True` prints a bar, and the interrupt button cancels. The report tells how well the cage fits; calibration makes
-# it as compliant as the body with its shape.
+# `progress=True` prints a bar, and the interrupt button cancels. The report tells how well the cage fits; calibration
+# makes it as compliant as the body with its shape.
 
 # %%
 begin = time.perf_counter()

@@ -70,7 +70,8 @@ for frame in range(60 if options.quick else 240):
     seconds += time.perf_counter() - begin
     film.add_frame()
     heights.append((body.positions[:, 1].min(), body.positions[:, 1].max()))
-print(f"{len(film) - 1} frames in {seconds:.1f} s: {1000 * seconds / (len(film) - 1):.1f} ms each, contact and skin included")
+each = 1000 * seconds / (len(film) - 1)
+print(f"{len(film) - 1} frames in {seconds:.1f} s: {each:.1f} ms each, contact and skin included")
 
 # %%
 film.save(options.output / "drop.html")

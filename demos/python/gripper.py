@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 # %% [markdown]
 # # Two fingers lift a soft ball
-# The fingers are rigid, on sliders with motors: the left one holds its place, the right one closes with a limited force.
-# A third slider lifts both. The ball, 8 cm and 200 g, is held by friction alone. Metres, kilograms, newtons.
+# The fingers are rigid, on sliders with motors: the left one holds its place, the right one closes with a limited
+# force. A third slider lifts both. The ball, 8 cm and 200 g, is held by friction alone. Metres, kilograms, newtons.
 
 # %%
 import argparse

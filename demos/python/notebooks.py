@@ -5,9 +5,10 @@
 
     python demos/python/notebooks.py [NAME ...]
 
-In a script, `# %%` begins a cell of code, and `# %% [markdown]` one of text, in comments. A line after `#: ` is code of the
-notebook alone, which has no command line: its options are the defaults. The pages that a notebook draws when it is run are
-left out of what is kept, as one of them is larger than all the repository's notebooks. Needs nbclient and ipykernel.
+In a script, `# %%` begins a cell of code, and `# %% [markdown]` one of text, in comments. A line after `#: ` is code of
+the notebook alone, which has no command line: its options are the defaults. The pages that a notebook draws when it is
+run are left out of what is kept, as one of them is larger than all the repository's notebooks. Needs nbclient and
+ipykernel.
 """
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, KilledWorker, LocalCluster, as_completed, wait
 from matplotlib.figure import Figure
 
 import tetskin as ts
@@ -123,8 +123,8 @@ def bend_and_compare(plan: Row, model, reference: np.ndarray | Exception) -> Row
     positions, milliseconds = bend(model, plan["stiffness"], plan["substeps"], plan["frames"])
     if not np.isfinite(positions).all():
         return {"status": "positions are not finite"}
-    error = np.linalg.norm(positions.astype(float) - reference)
-    motion = np.linalg.norm(reference.astype(float) - model[0].positions)
+    # Not by np.linalg.norm, whose sums depend on the number of the processor's cores.
+    error, motion = (np.sqrt(np.square(x).sum()) for x in (positions - reference, reference - model[0].positions))
     return {"error": error / motion, "ms_per_frame": milliseconds, "sha256": hash_of(positions)}
 
 
@@ -154,7 +154,7 @@ def table_top(model) -> tuple[ts.World, ts.Body, ts.RigidBody]:
     world = new_world()
     world.add_plane()
     ball = world.add_body(cage, mesh, position=(0, 0.3, 0), friction=0.8, youngs_modulus=2e4, stiffness_damping=0.01)
-    return world, ball, world.add_box((0.05, 0.2, 0.25), position=(-0.5, 0.25, 0), kinematic=True)
+    return world, ball, world.add_box((0.05, 0.2, 0.25), position=(-0.4, 0.25, 0), kinematic=True)
 
 
 def at_rest(model, frames: int = 90) -> bytes:
@@ -222,13 +222,37 @@ def farm(client: Client | None, function: Callable[..., Row], plans: list[Row], 
     if not client:
         yield from ((k, attempted(*arguments, **run)) for k, arguments in enumerate(zip(plans, *inputs)))
         return
-    futures = client.map(attempted, plans, *inputs, **run, pure=False)  # pure would share results of other sweeps
-    index = {future.key: k for k, future in enumerate(futures)}
+    # With a lost worker, Dask counts a failure of all runs that it had been given, not only of the one that it was at.
+    # So workers are given few at a time; and those that Dask has given up are tried once more, each without others.
+    waiting, given_up = enumerate(zip(plans, *inputs)), []
+    index: dict[Future, int] = {}
+
+    def begin(k: int, arguments: tuple) -> Future:
+        future = client.submit(attempted, *arguments, **run, pure=False)  # pure: results of another sweep would do
+        index[future] = k
+        return future
+
+    def next_ones() -> list[Future]:
+        free = max(1, 2 * sum(client.nthreads().values()) - len(index))
+        return [begin(k, arguments) for k, arguments in itertools.islice(waiting, free)]
+
     try:
-        for future, result in as_completed(futures, with_results=True, raise_errors=False):
-            yield index[future.key], result if future.status == "finished" else {"status": lost(result)}
+        running = as_completed(next_ones(), with_results=True, raise_errors=False)
+        for future, result in running:
+            k = index.pop(future)
+            running.update(next_ones())
+            if future.status == "finished":
+                yield k, result
+            elif isinstance(future.exception(), KilledWorker):
+                given_up.append(k)
+            else:
+                yield k, {"status": lost(result)}
+        for k in given_up:
+            future = begin(k, (plans[k], *(of_all[k] for of_all in inputs)))
+            wait(future)
+            yield k, future.result() if future.status == "finished" else {"status": lost(future.exception())}
     finally:  # also where whoever asked for rows was interrupted
-        client.cancel(futures)
+        client.cancel(list(index))
 
 
 def lost(result) -> str:
@@ -282,7 +306,8 @@ def rollouts(client: Client | None, options: argparse.Namespace) -> pd.DataFrame
         actions = [actions_of(one, options.frames) for one in knots]
         plans = [{"generation": generation, "rollout": k, "actions": one} for k, one in enumerate(actions)]
         table = table_of(plans, farm(client, roll_out, plans, [model] * len(plans), [snapshot] * len(plans)))
-        best = np.argsort(-table["reward"].fillna(-np.inf).to_numpy(), kind="stable")[: max(2, options.rollouts // 8)]
+        rewards = table.reindex(columns=["reward"])["reward"].fillna(-np.inf).to_numpy()
+        best = np.argsort(-rewards, kind="stable")[: max(2, options.rollouts // 8)]
         mean, spread = knots[best].mean(0), knots[best].std(0)
         generations.append(table)
         if table["status"].eq(INTERRUPTED).any():
@@ -326,7 +351,7 @@ def check_versions(client: Client) -> None:
 def connected(options: argparse.Namespace) -> Iterator[Client]:
     if options.scheduler is None:
         # Processes of one thread each: runs are counted by one clock of their own, and a crash is that of one run.
-        local = {"n_workers": options.workers, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+        local = {"n_workers": options.workers, "threads_per_worker": 1, "processes": True, "dashboard_address": ":0"}
         with LocalCluster(**local, silence_logs=logging.ERROR) as cluster, Client(cluster) as client:
             yield client
         return

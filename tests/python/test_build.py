@@ -63,7 +63,7 @@ def test_missing_headers_and_no_others(configure, tmp_path, missing):
     said = configure(*given, *nowhere)
     for name, package in HEADERS.items():
         assert (f"{package}, or set {name} to" in said) == (name == missing), said
-    assert "pip sets a variable by -C cmake.define.NAME=VALUE" in said
+    assert "pip sets a variable by --config-settings=cmake.define.NAME=VALUE" in said
 
 
 def test_sources_of_bullet_that_cannot_be_fetched(configure, tmp_path):

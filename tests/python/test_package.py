@@ -3,8 +3,11 @@
 """What is in the package: one symbol, few libraries, the licences, the types."""
 
 import importlib.metadata
+import os
+import re
 import shutil
 import subprocess
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -33,6 +36,18 @@ def test_the_module_needs_the_systems_libraries_alone():
     assert needed and all(name.startswith(LIBRARIES) for name in needed), needed
 
 
+def test_auditwheel_names_the_wheel_and_adds_nothing():
+    wheel = os.environ.get("TETSKIN_WHEEL")  # of tests/python/run --staged, repaired
+    if not wheel:
+        pytest.skip("TETSKIN_WHEEL names no wheel")
+    said = output("auditwheel", "show", wheel)
+    tag = re.search(r'consistent with[^"]*"(manylinux_[0-9_]+_\w+)"', " ".join(said.split()))
+    assert tag and tag.group(1) in Path(wheel).name, said
+    with zipfile.ZipFile(wheel) as parts:
+        folders = {name.split("/")[0] for name in parts.namelist()}
+    assert folders == {"tetskin", f"tetskin-{ts.__version__}.dist-info"}
+
+
 def test_licences_of_all_that_is_inside_are_in_the_package():
     files = {file.name: file.read_text() for file in importlib.metadata.files("tetskin") if "licences" in str(file)}
     for name, words in {
@@ -42,8 +57,21 @@ def test_licences_of_all_that_is_inside_are_in_the_package():
         "tinygltf.txt": "Syoyo Fujita",
         "json.txt": "Niels Lohmann",
         "nanobind.txt": "Wenzel Jakob",
+        "three.txt": "three.js authors",
     }.items():
         assert words in files[name]
+
+
+def test_every_file_of_the_package_is_its_own():
+    """Files of others, which would need a licence here, would be seen by their kind."""
+    names = [str(file) for file in importlib.metadata.files("tetskin") if file.parts[0] == "tetskin"]
+    assert names
+    own = re.compile(r"tetskin/(_core[.\w-]*[.](so|pyd|pyi)|py[.]typed|\w+[.]py|__pycache__/.*)")
+    assert [name for name in names if not own.fullmatch(name)] == []
+    for name in names:
+        if name.endswith(".py"):
+            text = (MODULE.parents[1] / name).read_text(encoding="utf-8")
+            assert "SPDX-FileCopyrightText: 2026 the tetskin authors" in text, name
 
 
 def test_types_are_told():

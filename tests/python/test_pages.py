@@ -15,7 +15,7 @@ import tetskin as ts
 from tetskin import page, progress
 
 pytestmark = pytest.mark.skipif(
-    not (page._FOLDER / "three.min.js").exists(), reason="the package was built without three.js (libjs-three)"
+    not page.has_three(), reason="the package was built without three.js (libjs-three)"
 )
 TYPES = {"u16": np.uint16, "u32": np.uint32, "f32": np.float32}
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import html as _html
 import os
 from pathlib import Path
+from typing import Callable
 
 from ._core import Body, PageWriter, World
 
@@ -26,8 +27,8 @@ class Film:
         film.show()                 # or film.save("drop.html")
 
     The first frame settles what is shown: all soft bodies, by their surfaces; rigid bodies that move; fixed ones, where
-    they are then. What is added later is not shown. A frame takes 12 bytes for each node of a cage, not for each vertex:
-    the page skins. Of a run of which it would keep more than 12 MB, the page has every second frame, or every fourth,
+    they are then. What is added later is not shown. A frame takes 8 bytes of the page for each node of a cage, and none
+    for vertices: the page skins. Of frames that would take more than 16 MB, it has every second one, or every fourth,
     and so on, and moves from one to the next. What is up is told by the world's gravity.
     """
 
@@ -56,13 +57,17 @@ class Film:
         _display(self.html, height, "save(path)")
 
 
+def has_three() -> bool:
+    """Whether the package was built with three.js: without it, pages cannot be made."""
+    return all((_FOLDER / name).exists() for name in ("three.min.js", "OrbitControls.js"))
+
+
 def _page_of(writer: PageWriter) -> str:
-    for name in ("three.min.js", "OrbitControls.js"):
-        if not (_FOLDER / name).exists():
-            raise RuntimeError(
-                f"{name} is not in this package, which was built without three.js: pages cannot be made. Install "
-                "three.js (Debian, Ubuntu: libjs-three), and build the package again"
-            )
+    if not has_three():
+        raise RuntimeError(
+            "this package was built without three.js: pages cannot be made. Install three.js (Debian, Ubuntu: "
+            "libjs-three), and build the package again"
+        )
     return writer.html(os.fspath(_FOLDER))
 
 
@@ -78,7 +83,7 @@ def _write(path: str | os.PathLike[str], page: str) -> None:
         raise
 
 
-def _display(make_page, height: int, instead: str) -> None:
+def _display(make_page: Callable[[], str], height: int, instead: str) -> None:
     if not 50 <= height <= 10000:
         raise ValueError("height: must be from 50 to 10000 pixels")
     try:
@@ -86,12 +91,13 @@ def _display(make_page, height: int, instead: str) -> None:
         from IPython.display import HTML, display
     except ImportError:
         raise ModuleNotFoundError(
-            f"show() draws in a notebook, and needs IPython: pip install ipykernel. Elsewhere, {instead} writes the page "
-            "as a file, which any browser opens"
+            f"show() draws in a notebook, and needs IPython: pip install ipykernel. Elsewhere, {instead} writes the "
+            "page as a file, which any browser opens"
         ) from None
     if get_ipython() is None:
         raise RuntimeError(
-            f"show() draws in a notebook, and here is none: {instead} writes the page as a file, which any browser opens"
+            f"show() draws in a notebook, and here is none: {instead} writes the page as a file, which any browser "
+            "opens"
         )
     display(HTML(frame(make_page(), height)))
 

@@ -76,9 +76,10 @@ def test_each_demo_is_told_of():
 def drawn(path, frame, folder):
     """The picture of a page at a frame, without the player."""
     out = folder / f"{frame}.png"
-    command = [CHROMIUM, "--headless", "--no-sandbox", f"--user-data-dir={folder / 'profile'}", "--use-angle=swiftshader",
-               "--enable-unsafe-swiftshader", "--window-size=600,500", "--virtual-time-budget=3000",
-               "--enable-logging=stderr", f"--screenshot={out}", f"file://{path}#frame={frame}"]
+    command = [CHROMIUM, "--headless", "--no-sandbox", f"--user-data-dir={folder / 'profile'}",
+               "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=600,500",
+               "--virtual-time-budget=3000", "--enable-logging=stderr", f"--screenshot={out}",
+               f"file://{path}#frame={frame}"]
     result = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert out.exists() and "CONSOLE" not in result.stderr, result.stderr
     return image.imread(out)[70:330, :, :3]
