@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
+# mypy: disable-error-code="no-untyped-call"
+# distributed has types in part.
 # %% [markdown]
 # # Thousands of runs on more than one machine
 #
@@ -12,6 +14,8 @@
 # Needs `pip install distributed pandas matplotlib` beside `tetskin`, in the same versions on all machines.
 
 # %%
+from __future__ import annotations
+
 import argparse
 import contextlib
 import hashlib
@@ -35,6 +39,7 @@ from matplotlib.figure import Figure
 import tetskin as ts
 
 FRAME = 1 / 60  # seconds
+Model = tuple[ts.TriangleMesh, ts.Cage]
 Row = dict[str, Any]  # of a table; each has a "status", which is "ok" or says what went wrong
 INTERRUPTED = "not run: interrupted"
 
@@ -65,12 +70,12 @@ def box_mesh(size: Sequence[float], cells: Sequence[int]) -> ts.TriangleMesh:
     return ts.TriangleMesh((lattice / cells - 0.5) * size, index.reshape(-1)[np.concatenate(triangles)])
 
 
-def bar_model(tets: int) -> tuple[ts.TriangleMesh, ts.Cage]:
+def bar_model(tets: int) -> Model:
     mesh = box_mesh((2, 0.4, 0.4), (40, 8, 8))
     return mesh, ts.create_cage(mesh, target_tets=tets)
 
 
-def ball_model(tets: int, radius: float = 0.3) -> tuple[ts.TriangleMesh, ts.Cage]:
+def ball_model(tets: int, radius: float = 0.3) -> Model:
     cube = box_mesh((2, 2, 2), (12, 12, 12))
     positions = radius * cube.positions / np.linalg.norm(cube.positions, axis=1, keepdims=True)
     mesh = ts.TriangleMesh(positions, cube.triangles)
@@ -92,7 +97,7 @@ def new_world() -> ts.World:
 # else is computed there, or only little, while the time on the clock would.
 
 # %%
-def bend(model, stiffness: float, substeps: int, frames: int, **solver) -> tuple[np.ndarray, float]:
+def bend(model: Model, stiffness: float, substeps: int, frames: int, **solver: Any) -> tuple[np.ndarray, float]:
     """Positions (frames, vertices, 3) float32 of the bar's surface, world space, and the processor's ms per frame."""
     mesh, cage = model
     body = (world := new_world()).add_body(
@@ -108,7 +113,7 @@ def bend(model, stiffness: float, substeps: int, frames: int, **solver) -> tuple
     return positions, 1e3 * seconds / frames
 
 
-def bend_finely(plan: Row, model) -> np.ndarray | Exception:
+def bend_finely(plan: Row, model: Model) -> np.ndarray | Exception:
     """The reference of all runs of one stiffness: positions as of `bend`, or why there are none."""
     try:
         precise = {"solver_tolerance": 1e-6, "max_iterations": 1000}
@@ -117,7 +122,7 @@ def bend_finely(plan: Row, model) -> np.ndarray | Exception:
         return error
 
 
-def bend_and_compare(plan: Row, model, reference: np.ndarray | Exception) -> Row:
+def bend_and_compare(plan: Row, model: Model, reference: np.ndarray | Exception) -> Row:
     if isinstance(reference, Exception):
         raise reference
     positions, milliseconds = bend(model, plan["stiffness"], plan["substeps"], plan["frames"])
@@ -149,7 +154,7 @@ def actions_of(knots: np.ndarray, frames: int) -> np.ndarray:
     return np.stack([np.interp(at, range(len(knots)), knots[:, k]) for k in (0, 1)], -1)
 
 
-def table_top(model) -> tuple[ts.World, ts.Body, ts.RigidBody]:
+def table_top(model: Model) -> tuple[ts.World, ts.Body, ts.RigidBody]:
     mesh, cage = model
     world = new_world()
     world.add_plane()
@@ -157,7 +162,7 @@ def table_top(model) -> tuple[ts.World, ts.Body, ts.RigidBody]:
     return world, ball, world.add_box((0.05, 0.2, 0.25), position=(-0.4, 0.25, 0), kinematic=True)
 
 
-def at_rest(model, frames: int = 90) -> bytes:
+def at_rest(model: Model, frames: int = 90) -> bytes:
     """The snapshot with which all rollouts begin."""
     world, _, _ = table_top(model)
     for _ in range(frames):
@@ -170,14 +175,14 @@ def centre(ball: ts.Body) -> np.ndarray:
     return np.array([math.fsum(ball.positions[:, k].tolist()) for k in (0, 2)]) / len(ball.positions)
 
 
-def roll_out(plan: Row, model, snapshot: bytes) -> Row:
+def roll_out(plan: Row, model: Model, snapshot: bytes) -> Row:
     """plan["actions"]: (frames, 2) float64, the paddle's velocity along x and z in each frame, world length / s."""
     world, ball, paddle = table_top(model)
     world.restore(snapshot)
     history = hashlib.sha256()
     for x, z in plan["actions"].tolist():
         before = centre(ball)
-        paddle.position = paddle.position + FRAME * np.array([x, 0, z])
+        paddle.position = (paddle.position + np.array([FRAME * x, 0, FRAME * z])).tolist()
         world.step(FRAME)
         history.update(ball.positions.tobytes())
     off, speed = centre(ball) - TARGET, (centre(ball) - before) / FRAME
@@ -194,7 +199,7 @@ def roll_out(plan: Row, model, snapshot: bytes) -> Row:
 # whose worker is lost; it gives up a run with which more than `distributed.scheduler.allowed-failures` (3) were lost.
 
 # %%
-def attempted(plan: Row, *inputs, function: Callable[..., Row], version: str) -> Row:
+def attempted(plan: Row, *inputs: Any, function: Callable[..., Row], version: str) -> Row:
     told = {"status": "ok", "worker": f"{socket.gethostname()}:{os.getpid()}"}
     if ts.__version__ != version:  # a worker that has joined since
         return {**told, "status": f"not run: tetskin {ts.__version__} there, and {version} here"}
@@ -204,7 +209,7 @@ def attempted(plan: Row, *inputs, function: Callable[..., Row], version: str) ->
         return {**told, "status": f"{type(error).__name__}: {error}".splitlines()[0]}
 
 
-def begun(client: Client | None, function: Callable, *inputs):
+def begun(client: Client | None, function: Callable[..., Any], *inputs: Any) -> Any:
     """A future of the function's result; without a client, the result.
 
     What many runs need is the result of such a task, and is sent once to each worker that makes some. It is not
@@ -213,27 +218,33 @@ def begun(client: Client | None, function: Callable, *inputs):
     return client.submit(function, *inputs, pure=False) if client else function(*inputs)
 
 
-def farm(client: Client | None, function: Callable[..., Row], plans: list[Row], *inputs) -> Iterator[tuple[int, Row]]:
+def farm(
+    client: Client | None, function: Callable[..., Row], plans: list[Row], *inputs: Any
+) -> Iterator[tuple[int, Row]]:
     """Yields the index of a plan and its row, in the order in which they are done; without a client, here.
 
     inputs  the function's arguments after the plan: for each a list, of as many values or futures as there are plans
     """
-    run = {"function": function, "version": ts.__version__}
+    run: dict[str, Any] = {"function": function, "version": ts.__version__}
     if not client:
         yield from ((k, attempted(*arguments, **run)) for k, arguments in enumerate(zip(plans, *inputs)))
         return
     # With a lost worker, Dask counts a failure of all runs that it had been given, not only of the one that it was at.
     # So workers are given few at a time; and those that Dask has given up are tried once more, each without others.
     waiting, given_up = enumerate(zip(plans, *inputs)), []
-    index: dict[Future, int] = {}
+    threads, counted = 0, -math.inf
+    index: dict[Future[Row], int] = {}
 
-    def begin(k: int, arguments: tuple) -> Future:
-        future = client.submit(attempted, *arguments, **run, pure=False)  # pure: results of another sweep would do
+    def begin(k: int, arguments: tuple[Any, ...]) -> Future[Row]:
+        future = client.submit(attempted, *arguments, **run, pure=False)  # or results of another sweep were ours
         index[future] = k
         return future
 
-    def next_ones() -> list[Future]:
-        free = max(1, 2 * sum(client.nthreads().values()) - len(index))
+    def next_ones() -> list[Future[Row]]:
+        nonlocal threads, counted
+        if time.monotonic() - counted > 1:  # workers come and go
+            threads, counted = sum(client.nthreads().values()), time.monotonic()
+        free = max(1, 2 * threads - len(index))
         return [begin(k, arguments) for k, arguments in itertools.islice(waiting, free)]
 
     try:
@@ -255,7 +266,7 @@ def farm(client: Client | None, function: Callable[..., Row], plans: list[Row], 
         client.cancel(list(index))
 
 
-def lost(result) -> str:
+def lost(result: Any) -> str:
     """What is told of a run that Dask has given up, whose result is an exception or `sys.exc_info` of one."""
     error = result[1] if isinstance(result, tuple) else result
     return f"lost: {type(error).__name__}: {error}".splitlines()[0]
@@ -326,7 +337,7 @@ class Refused(Exception):
     """Nothing can be run; the text says what to do."""
 
 
-def version_of(told: dict) -> str:
+def version_of(told: Any) -> str:
     """In one of `Client.get_versions`. Functions are sent as Python's code, which is its minor version's."""
     python = ".".join(str(told["host"]["python"]).split(".")[:2])
     version = told["packages"]["tetskin"]
@@ -335,7 +346,7 @@ def version_of(told: dict) -> str:
 
 def check_versions(client: Client) -> None:
     """Of the workers, and of the scheduler, too, which opens the tasks before it passes them on."""
-    versions = client.get_versions(packages=["tetskin"])
+    versions: Any = client.get_versions(packages=["tetskin"])
     here = version_of(versions["client"])
     there = {"the scheduler": versions["scheduler"], **versions["workers"]}
     others = {name: version_of(told) for name, told in there.items() if version_of(told) != here}
@@ -418,8 +429,8 @@ def differing(table: pd.DataFrame, other: pd.DataFrame) -> int:
     return int(next(both).ne(next(both)).any(axis=1).sum())
 
 
-def numbers(kind: type) -> Callable[[str], list]:
-    def listed(text: str) -> list:
+def numbers(kind: type) -> Callable[[str], list[Any]]:
+    def listed(text: str) -> list[Any]:
         return [kind(word) for word in text.split(",")]
 
     listed.__name__ = f"list of {kind.__name__}s, as 1,2,4,"  # for argparse's error

@@ -4,6 +4,7 @@
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,7 +15,11 @@ import pytest
 import tetskin as ts
 
 pytest.importorskip("distributed")
+pytest.importorskip("pandas")
+pytest.importorskip("matplotlib")
 from distributed import Client, LocalCluster
+
+from conftest import torus
 
 SCRIPT = Path(__file__).parents[3] / "demos/python/sweep.py"
 HANG = 300  # seconds after which a program is taken to hang, on any machine
@@ -155,6 +160,21 @@ def test_arguments_that_mean_nothing_are_refused(arguments, capsys):
     with pytest.raises(SystemExit) as ended:
         sweep.main(arguments)
     assert ended.value.code == 2 and "usage:" in capsys.readouterr().err
+
+
+def test_the_program_of_the_page_runs_as_written_and_prints_what_it_shows(tmp_path):
+    """As a file of its own, which its workers import, with the torus of the other pages."""
+    page = (Path(__file__).parents[3] / "plugin/docs/many_runs.md").read_text()
+    (code,), (shown,) = (re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL) for language in ("python", "text"))
+    (tmp_path / "program.py").write_text(code)
+    positions, triangles = torus()
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in positions.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles.tolist()]
+    (tmp_path / "dragon.obj").write_text("\n".join(lines) + "\n")
+    command = [sys.executable, "program.py"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout == shown
 
 
 def test_workers_without_tetskin_or_with_another_are_refused(tmp_path):
