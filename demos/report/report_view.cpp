@@ -36,7 +36,7 @@ std::string labelOf(const char* what, std::size_t tets) {
 
 void writeView(SceneRunner& runner, const ReportModel& model, const ReportOptions& options) {
   const ShownMotion shown = runner.shownMotion();
-  scenes::ViewPage page(
+  scenes::ViewPage page = scenes::newPage(
       scenes::titleOf(model.name) + ": " + runner.scene(),
       {scenes::withCommas(model.mesh.vertexCount()) + " vertices", "a coarse cage beside the reference"},
       Interpolation::Quadratic);
@@ -56,7 +56,7 @@ void writeView(SceneRunner& runner, const ReportModel& model, const ReportOption
     const Points points = bySurface ? runner.rightSurface(static_cast<int>(k)) : toDouble(shown.rightNodes[k]);
     page.keep({{toDouble(shown.nodes[k]), moved(points, beside)}, {}});
   }
-  page.write(options.view, options.quiet);
+  scenes::writePage(page, options.view, options.quiet);
 }
 
 }  // namespace tetskin::report

@@ -59,6 +59,12 @@ std::vector<SurfaceMaterial> surfaceMaterials() {
   return all;
 }
 
+std::vector<view::ViewMaterial> viewMaterials() {
+  std::vector<view::ViewMaterial> all;
+  for (const Material& m : kMaterials) all.push_back({m.name, m.colour, m.shine, m.opacity});
+  return all;
+}
+
 std::string materialLibrary(const TriangleMesh& mesh) {
   std::set<std::string> names;
   for (const TriangleGroup& group : mesh.groups) names.insert(group.material);

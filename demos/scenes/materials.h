@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "view/view_page.h"
+
 namespace tetskin::scenes {
 
 struct Material {
@@ -26,7 +28,8 @@ const Material* materialNamed(const std::string& name);
 /// The mesh's materials that are in the table, as a Wavefront material library. Empty if none is.
 std::string materialLibrary(const TriangleMesh& mesh);
 
-/// The whole table, for GLB.
+/// The whole table, for GLB, and for pages.
 std::vector<SurfaceMaterial> surfaceMaterials();
+std::vector<view::ViewMaterial> viewMaterials();
 
 }  // namespace tetskin::scenes

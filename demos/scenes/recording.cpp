@@ -16,7 +16,7 @@ namespace tetskin::scenes {
 Recording::Recording(const OutputOptions& output, std::string view, const std::string& title,
                      const std::vector<std::string>& facts, Interpolation interpolation)
     : view_(std::move(view)), quiet_(output.quiet), frames_(output.frames), interpolation_(interpolation) {
-  if (!view_.empty()) page_.emplace(title, facts, interpolation);
+  if (!view_.empty()) page_.emplace(newPage(title, facts, interpolation));
   if (!formatsOf(output).glb) return;
   const std::string path = (std::filesystem::path(output.out) / kGlbName).string();
   Result<GlbWriter> writer = GlbWriter::create(path, kFrameRate);
@@ -83,7 +83,7 @@ void Recording::writeGlb() {
 }
 
 void Recording::writePage() const {
-  if (page_) page_->write(view_, quiet_);
+  if (page_) scenes::writePage(*page_, view_, quiet_);
 }
 
 }  // namespace tetskin::scenes

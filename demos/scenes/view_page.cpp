@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/view_page.h"
 
-#include <cassert>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -17,72 +15,6 @@ namespace {
 constexpr const char* kFolder = TETSKIN_VIEW;
 constexpr const char* kThree = TETSKIN_THREE;
 constexpr const char* kOrbitControls = TETSKIN_ORBIT_CONTROLS;
-/// The scripts, in the order in which the page runs them.
-constexpr const char* kScripts[] = {"data.js", "skin.js", "shading.js", "stage.js", "player.js"};
-
-std::string partOf(const std::string& path) {
-  std::optional<std::string> text = contentsOf(path);
-  if (!text) throw InputError(path + ": cannot be read; the HTML page is made from it");
-  return std::move(*text);
-}
-
-std::string inFolder(const char* name) {
-  return std::string(kFolder) + "/" + name;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
-/// Escapes what would look like the end of a script element.
-std::string escaped(const std::string& script) {
-  return replaced(script, "</", "<\\/");
-}
-
-std::string scripts() {
-  std::string text;
-  for (const char* name : kScripts) text += partOf(inFolder(name));
-  return text;
-}
-
-/// The template, with each word of the form @NAME@ replaced once by its text.
-std::string filled(const std::string& text, const std::vector<std::pair<std::string, std::string>>& words) {
-  std::string result;
-  std::size_t copied = 0;
-  for (const auto& [word, instead] : words) {  // in the order of their appearance in the template
-    const std::size_t at = text.find(word, copied);
-    if (at == std::string::npos) throw InputError(inFolder("view.html") + ": does not contain " + word);
-    result.append(text, copied, at - copied);
-    result += instead;
-    copied = at + word.size();
-  }
-  return result.append(text, copied);
-}
-
-Json toJson(const Eigen::Vector3d& p) {
-  return {p.x(), p.y(), p.z()};
-}
-Json toJson(const Box3& box) {
-  return {{"min", toJson(box.min())}, {"max", toJson(box.max())}};
-}
-
-/// A coordinate inside a box, quantised to 16 bits.
-std::uint16_t quantised(float x, double low, double size) {
-  constexpr double kMax = 65535.0;
-  if (size == 0.0) return 0;
-  return static_cast<std::uint16_t>(std::lround(std::min(kMax, kMax * (static_cast<double>(x) - low) / size)));
-}
-
-void appendMaterials(const TriangleMesh& mesh, Json& json) {
-  for (const TriangleGroup& group : mesh.groups) {
-    const Material* material = materialNamed(group.material);
-    if (!material) continue;
-    json[group.material] = {{"colour", material->colour}, {"shine", material->shine}, {"opacity", material->opacity}};
-  }
-}
 
 }  // namespace
 
@@ -115,115 +47,22 @@ std::string viewPath(const OutputOptions& options) {
   return (std::filesystem::path(options.out) / "view.html").string();
 }
 
-ViewPage::ViewPage(std::string title, std::vector<std::string> facts, Interpolation interpolation)
-    : title_(std::move(title)), facts_(std::move(facts)), interpolation_(interpolation) {}
-
-std::size_t ViewPage::addModel(const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding) {
-  Json& json = models_.emplace_back(trianglesOf(mesh));
-  json["cage"] = skinOf(cage, mesh, embedding);
-  appendMaterials(mesh, materials_);
-  return models_.size() - 1;
+view::ViewFiles viewFiles() {
+  return {kFolder, kThree, kOrbitControls};
 }
 
-std::size_t ViewPage::addSurface(const TriangleMesh& mesh) {
-  models_.push_back(trianglesOf(mesh));
-  appendMaterials(mesh, materials_);
-  return models_.size() - 1;
+ViewPage newPage(std::string title, std::vector<std::string> facts, Interpolation interpolation) {
+  return ViewPage(std::move(title), std::move(facts), interpolation, viewMaterials());
 }
 
-void ViewPage::addBody(const ViewBody& body) {
-  assert(body.model < models_.size() && frames_.size() == 0);
-  bodies_.push_back(body);
-}
-
-void ViewPage::addProp(const TriangleMesh& mesh) {
-  assert(frames_.size() == 0);
-  props_.push_back(mesh);
-  appendMaterials(mesh, materials_);
-}
-
-Box3 ViewPage::focus() const {
-  if (!focus_.isEmpty()) return Box3(focus_.min() - frames_.origin(), focus_.max() - frames_.origin());
-  Box3 box;
-  for (std::size_t k = 0; k < frames_.size(); ++k) box.extend(frames_.box(k));
-  return box;
-}
-
-Json ViewPage::bodyData(std::size_t body) const {
-  Box3 box;
-  for (std::size_t k = 0; k < frames_.size(); ++k) {
-    const std::vector<float>& nodes = frames_.nodes(k, body);
-    box.extend(boundingBox(PointView<const float>(nodes.data(), nodes.size() / 3)));
-  }
-  std::vector<std::uint16_t> words;
-  for (std::size_t k = 0; k < frames_.size(); ++k) {
-    const std::vector<float>& nodes = frames_.nodes(k, body);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const auto axis = static_cast<Eigen::Index>(i % 3);
-      words.push_back(quantised(nodes[i], box.min()[axis], box.sizes()[axis]));
-    }
-  }
-  const ViewBody& solved = bodies_[body];
-  return {{"model", solved.model},
-          {"label", solved.label},
-          {"skin", solved.skin},
-          {"box", toJson(box)},
-          {"nodes", packed(words)}};
-}
-
-Json ViewPage::propData(std::size_t prop) const {
-  std::vector<float> numbers;  // for each moment: the columns of a matrix, without its last row
-  for (std::size_t k = 0; k < frames_.size(); ++k) {
-    const Eigen::Matrix4f& matrix = frames_.prop(k, prop);
-    for (Eigen::Index c = 0; c < 4; ++c) {
-      for (Eigen::Index r = 0; r < 3; ++r) numbers.push_back(matrix(r, c));
-    }
-  }
-  Json json = rigidMeshOf(props_[prop], Eigen::Vector3d::Zero());
-  json["places"] = packed(numbers);
-  return json;
-}
-
-Json ViewPage::data() const {
-  assert(frames_.size() > 0 && frames_.bodyCount() == bodies_.size() && frames_.propCount() == props_.size());
-  Json json;
-  json["title"] = title_;
-  json["facts"] = facts_;
-  json["skin"] = interpolation_ == Interpolation::Linear ? "linear" : "quadratic";
-  json["moments"] = frames_.size();
-  json["stride"] = frames_.stride();
-  json["origin"] = toJson(frames_.origin());
-  json["focus"] = toJson(focus());
-  json["materials"] = materials_;
-  if (!obstacles_.groups.empty()) appendMaterials(obstacles_, json["materials"]);
-  json["models"] = models_;
-  json["bodies"] = Json::array();
-  for (std::size_t k = 0; k < bodies_.size(); ++k) json["bodies"].push_back(bodyData(k));
-  json["props"] = Json::array();
-  for (std::size_t k = 0; k < props_.size(); ++k) json["props"].push_back(propData(k));
-  if (!obstacles_.positions.empty()) json["obstacles"] = rigidMeshOf(obstacles_, frames_.origin());
-  return json;
-}
-
-std::string ViewPage::html() const {
-  // File names of models may consist of any bytes, and may look like any tag.
-  const std::string text = data().dump(-1, ' ', false, Json::error_handler_t::replace);
-  return filled(partOf(inFolder("view.html")), {{"@STYLE@", partOf(inFolder("view.css"))},
-                                                {"@DATA@", replaced(text, "<", "\\u003c")},
-                                                {"@NOTICE@", partOf(inFolder("three_notice.txt"))},
-                                                {"@THREE@", escaped(partOf(kThree))},
-                                                {"@CONTROLS@", escaped(partOf(kOrbitControls))},
-                                                {"@SCRIPTS@", escaped(scripts())}});
-}
-
-void ViewPage::write(const std::string& path, bool quiet) const {
-  const std::string page = html();
-  writeFile(path, page);
+void writePage(const ViewPage& page, const std::string& path, bool quiet) {
+  const std::string text = page.html(viewFiles());
+  writeFile(path, text);
   if (quiet) return;
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);
   std::printf("\nTo see the run in a browser (%s, %s), open file://%s\n", path.c_str(),
-              sizeText(static_cast<double>(page.size())).c_str(), absolute.c_str());
+              sizeText(static_cast<double>(text.size())).c_str(), absolute.c_str());
 }
 
 std::vector<std::string> factsOf(const Model& model) {
@@ -239,12 +78,6 @@ std::string titleOf(const std::string& name) {
 std::string factOf(Contact contact, bool withItself) {
   const std::string where = contact == Contact::Surface ? "contact at the surface" : "contact at the cage's nodes";
   return withItself ? where + ", self-contact" : where;
-}
-
-std::string withCommas(std::size_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
-  return text;
 }
 
 }  // namespace tetskin::scenes

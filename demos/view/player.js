@@ -3,7 +3,6 @@
 //
 // Time, and the page's controls.
 
-const FRAMES_A_SECOND = 60;
 const element = id => document.getElementById(id);
 
 class Player {
@@ -23,10 +22,12 @@ class Player {
 
   setTexts() {
     const {title, facts, skin, moments, bodies} = this.data;
-    document.title = title;
+    document.title = title || 'tetskin';
     element('title').textContent = title;
     element('facts').textContent = facts.join(' \u00b7 ');
     element('slider').max = moments - 1;
+    for (const player of document.querySelectorAll('.player')) player.hidden = moments === 1;
+    element('cages').hidden = bodies.every(body => !this.data.models[body.model].cage);
     element('skin').value = skin;
     element('skins').hidden = bodies.every(body => body.skin !== '' || !this.data.models[body.model].cage);
   }
@@ -96,7 +97,7 @@ class Player {
     this.stage.show(moment, element('skin').value === 'quadratic');
     const frame = moment * this.data.stride;
     element('slider').value = Math.round(moment);
-    element('clock').textContent = `frame ${Math.round(frame)} \u00b7 ${(frame / FRAMES_A_SECOND).toFixed(2)} s`;
+    element('clock').textContent = `frame ${Math.round(frame)} \u00b7 ${(frame / this.data.rate).toFixed(2)} s`;
     this.changed = true;
   }
 
@@ -123,7 +124,7 @@ class Player {
   /** seconds: since the last call */
   advance(seconds) {
     if (!this.playing) return;
-    const last = this.data.moments - 1, rate = FRAMES_A_SECOND / this.data.stride * Number(element('speed').value);
+    const last = this.data.moments - 1, rate = this.data.rate / this.data.stride * Number(element('speed').value);
     const moment = this.moment + rate * seconds;
     this.seek(moment > last ? 0 : moment);
   }

@@ -94,7 +94,8 @@ class Body {
     this.move(0);
     this.skin(false);
     this.drawn = new DrawnMesh(model.triangles, this.positions);
-    this.mesh = meshOf(this.drawn, model.groups, materials);
+    const groups = model.groups.map(group => data.material ? {...group, material: data.material} : group);
+    this.mesh = meshOf(this.drawn, groups, materials);
     for (const material of this.mesh.material) material.side = THREE.DoubleSide;  // surfaces may be open
     this.cage = model.cage ? this.makeCage(model.cage.edges) : null;
   }
@@ -346,7 +347,8 @@ class Stage {
     setAttribute(mesh.geometry, 'uv', places, 2);
     mesh.material = new THREE.MeshLambertMaterial({color: FLOOR_COLOUR, alphaMap: fadingTexture(), dithering: true,
       blending: THREE.CustomBlending});
-    drawGrid(mesh.material, Math.max(...this.bodies.map(body => sizeOf(body.positions))));
+    const sizes = this.bodies.map(body => sizeOf(body.positions));
+    drawGrid(mesh.material, sizes.length > 0 ? Math.max(...sizes) : this.radius);
     mesh.geometry.clearGroups();
     mesh.renderOrder = -1;
     mesh.castShadow = false;

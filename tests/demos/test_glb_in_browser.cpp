@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "browser.h"
-#include "scenes/view_data.h"
+#include "view/view_data.h"
 
 namespace tetskin {
 namespace {
@@ -18,7 +18,7 @@ std::string pageOf(const CommandFolder& folder, const std::string& glb) {
   for (const char* script : {TETSKIN_THREE, TETSKIN_GLTF_LOADER}) {  // absolute paths
     page += "<script>" + folder.read(script) + "</script>\n";
   }
-  page += "<script>const GLB = '" + scenes::base64(folder.read(glb)) + "';</script>\n";
+  page += "<script>const GLB = '" + view::base64(folder.read(glb)) + "';</script>\n";
   return page + "<script>" + folder.read(TETSKIN_GLB_PROBE) + "</script>\n</body></html>\n";
 }
 

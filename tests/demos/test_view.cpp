@@ -11,6 +11,7 @@
 namespace tetskin::scenes {
 namespace {
 
+using namespace view;
 using test::CommandFolder;
 using test::CommandResult;
 
@@ -23,7 +24,7 @@ std::vector<Eigen::Vector3d> shifted(std::vector<Eigen::Vector3d> points, double
 ViewPage risingPage(const ModelOptions& options, int frames, double step, const std::string& title = "title") {
   const Model model = loadModel(options);
   const Embedding embedding = embed(model.cage, model.mesh).value();
-  ViewPage page(title, {"a fact"}, Interpolation::Linear);
+  ViewPage page = newPage(title, {"a fact"}, Interpolation::Linear);
   page.addBody({page.addModel(model.cage, model.mesh, embedding), "", ""});
   for (int k = 0; k < frames; ++k) page.keep({{shifted(model.cage.mesh.nodes, step * k)}, {}});
   return page;
@@ -70,7 +71,7 @@ TEST(ViewFrames, HoldsWhatIsFarFromTheOriginInFloat) {
 }
 
 TEST(ViewPage, IsOneFileWithAllThatItNeeds) {
-  const std::string page = risingPage(smallSerpent(), 3, 0.1, "</script><b>").html();
+  const std::string page = risingPage(smallSerpent(), 3, 0.1, "</script><b>").html(viewFiles());
   for (const char* part :
        {"three.js authors", "OrbitControls", "class Skin", "class Stage", "\"moments\":3", "a fact"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
@@ -86,7 +87,7 @@ TEST(ViewPage, Of240FramesOfThirtyThousandVerticesIsBelow12Megabytes) {
   options.triangles = 60000;
   const ViewPage page = risingPage(options, 240, 0.01);
   EXPECT_EQ(page.frames().stride(), 1);
-  const std::size_t bytes = page.html().size();
+  const std::size_t bytes = page.html(viewFiles()).size();
   EXPECT_LT(bytes, 12'000'000u);
   EXPECT_GT(bytes, 1'000'000u);
 }
@@ -96,13 +97,13 @@ TEST(ViewPage, HoldsASurfaceByItsVertices) {
   ViewPage page("title", {}, Interpolation::Linear);
   page.addBody({page.addSurface(mesh), "", ""});
   for (const double along : {0.0, 0.5}) page.keep({{shifted(mesh.positions, along)}, {}});
-  const std::string html = page.html();
+  const std::string html = page.html(viewFiles());
   EXPECT_EQ(html.find("\"cage\":"), std::string::npos);
   EXPECT_NE(html.find("\"vertices\":" + std::to_string(mesh.vertexCount())), std::string::npos);
 }
 
 TEST(ViewPage, GrowsByTheNodesOfAFrameAndNoFurtherThanItsRoom) {
-  const auto bytes = [](int frames) { return risingPage(smallSerpent(), frames, 0.01).html().size(); };
+  const auto bytes = [](int frames) { return risingPage(smallSerpent(), frames, 0.01).html(viewFiles()).size(); };
   const auto nodes = static_cast<double>(loadModel(smallSerpent()).cage.mesh.nodeCount());
   EXPECT_NEAR(static_cast<double>(bytes(120) - bytes(20)), 100 * 6 * nodes * 4 / 3, 50);
 }

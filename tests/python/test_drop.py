@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import tetskin as ts
+from tetskin.page import has_three
 
 
 @pytest.mark.parametrize("page", ["python/README.md", "docs/python.md"])
@@ -21,7 +22,8 @@ def test_the_programs_of_the_pages_run_as_written(page, obj, tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     names = {}
     for program in programs:  # each goes on where the last one ended
-        exec(program, names)
+        if has_three() or "ts.Film" not in program:
+            exec(program, names)
     positions = names["body"].positions
     assert positions.shape == (800, 3) and positions.dtype == np.float32 and not positions.flags.writeable
     assert -0.01 < positions[:, 1].min() < 0.02  # it has landed, at its surface

@@ -181,6 +181,11 @@ Vector4 newQuaternion(const Quaternion& quaternion) {
                  nb::capsule(numbers, [](void* p) noexcept { delete static_cast<Quaternion*>(p); }));
 }
 
+ProgressCall::ProgressCall(const nb::object& call, const char* what) : call_(call) {
+  if (call.ptr() == Py_False) call_ = nb::none();
+  if (call.ptr() == Py_True) call_ = nb::module_::import_("tetskin.progress").attr("Bar")(what);
+}
+
 std::function<bool(double)> ProgressCall::function() {
   if (call_.is_none()) return {};
   return [this](double fraction) {

@@ -52,7 +52,7 @@ struct OutsideRules {
 struct Layouts {
   static constexpr auto kNames = nb::detail::const_name("typing.Literal['rows', 'columns']");
 };
-/// Called with the fraction done; or None.
+/// Called with the fraction done; True, which prints a bar; or None.
 struct Progress {
   nb::object call;
   operator const nb::object&() const { return call; }
@@ -245,10 +245,11 @@ auto released(Work&& work) {
 }
 
 /// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. Ctrl-C cancels,
-/// too.
+/// too. True: a bar that is printed; None or False: nothing.
 class ProgressCall {
  public:
-  explicit ProgressCall(const nb::object& call) : call_(call) {}
+  /// what  is done, before a bar
+  ProgressCall(const nb::object& call, const char* what);
   /// What the library calls, without the GIL.
   std::function<bool(double)> function();
   /// Throws what was raised.
@@ -272,10 +273,10 @@ struct type_caster<tetskin::python::ArrayLike> {
 };
 template <>
 struct type_caster<tetskin::python::Progress> {
-  NB_TYPE_CASTER(tetskin::python::Progress, const_name("collections.abc.Callable[[float], object] | None"))
+  NB_TYPE_CASTER(tetskin::python::Progress, const_name("collections.abc.Callable[[float], object] | bool | None"))
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.call = borrow(source);
-    return source.is_none() || PyCallable_Check(source.ptr());
+    return source.is_none() || PyBool_Check(source.ptr()) || PyCallable_Check(source.ptr());
   }
 };
 /// Vectors and quaternions: any sequence of numbers, which an array is too, though for type checkers it is none.

@@ -181,7 +181,7 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, c
 
 }  // namespace
 
-void bindBodies(nb::module_& module, Class<World>& world) {
+Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
   Class<ImpulseResult>(module, "ImpulseResult", "Sums over all vertices that a radial impulse has pushed.")
       .def_prop_ro(
           "linear", [](const ImpulseResult& r) { return vectorOf(r.linear); },
@@ -317,6 +317,7 @@ void bindBodies(nb::module_& module, Class<World>& world) {
             return all;
           },
           "The soft bodies, in the order in which they were added.");
+  return body;
 }
 
 }  // namespace tetskin::python

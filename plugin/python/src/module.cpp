@@ -84,9 +84,10 @@ NB_MODULE(_core, module) {
   bindElasticBodies(module);
   Class<World> world = bindWorlds(module);
   bindRigidBodies(module, world);
-  bindBodies(module, world);
+  Class<BodyHandle> body = bindBodies(module, world);
   bindContacts(module, world);
   bindTouch(module, world);
   bindRuns(module, world);
   bindAnimations(module);
+  bindPages(module, world, body);
 }

@@ -203,4 +203,8 @@ void bindIdentity(Class<Of>& type) {
   type.def("__hash__", [](const Of& a) { return std::hash<const void*>()(a.state.get()); });
 }
 
+/// See models.h; these need the type of a body.
+Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world);
+void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body);
+
 }  // namespace tetskin::python

@@ -63,6 +63,14 @@ Class<World> bindWorlds(nb::module_& module) {
       .def("restore", restore, "snapshot"_a,
            "Restores a state in place. The world has the same bodies and joints as when it was saved, made in the same "
            "order. On an Error nothing is changed.")
+      .def(
+          "__reduce__",
+          [](const std::shared_ptr<World>&) -> nb::tuple {
+            throw nb::type_error(
+                "cannot pickle a World. Pickle what builds it, a function with its meshes and cages, and world.save(), "
+                "which restore() of a world built alike takes");
+          },
+          "Raises a TypeError: what travels is what builds a world, and its snapshot.")
       .def_prop_rw(
           "gravity",
           [](const std::shared_ptr<World>& w) {

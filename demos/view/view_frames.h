@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tetskin::scenes {
+namespace tetskin::view {
 
 /// The positions of everything at one moment.
 struct ViewMoment {
@@ -57,4 +57,4 @@ class ViewFrames {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
 
-}  // namespace tetskin::scenes
+}  // namespace tetskin::view

@@ -11,13 +11,19 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace tetskin::scenes {
+namespace tetskin::view {
 
 using Json = nlohmann::ordered_json;
+
+/// No page can be made: a mesh does not fit its cage, or a file that pages are made from cannot be read.
+struct ViewError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 std::string base64(std::string_view bytes);
 /// Uses 16 bits if they suffice for the largest index.
@@ -30,9 +36,9 @@ Json trianglesOf(const TriangleMesh& mesh);
 /// A mesh that does not deform: triangles, materials, and positions relative to an origin.
 Json rigidMeshOf(const TriangleMesh& mesh, const Eigen::Vector3d& origin);
 
-/// Everything that linear and quadratic skinning need of a mesh in its cage, and the cage's edges. Throws InputError if
+/// Everything that linear and quadratic skinning need of a mesh in its cage, and the cage's edges. Throws ViewError if
 /// they do not fit.
 /// embedding  of the mesh in the cage
 Json skinOf(const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding);
 
-}  // namespace tetskin::scenes
+}  // namespace tetskin::view

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "scenes/view_frames.h"
+#include "view/view_frames.h"
 
 #include <cassert>
 
-namespace tetskin::scenes {
+namespace tetskin::view {
 
 void ViewFrames::keep(const ViewMoment& moment) {
   if (told_ == 0) {
@@ -51,4 +51,4 @@ void ViewFrames::leaveOutEverySecond() {
   stride_ *= 2;
 }
 
-}  // namespace tetskin::scenes
+}  // namespace tetskin::view

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "scenes/view_data.h"
+#include "view/view_data.h"
 
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/exported/skin_binding.h>
@@ -10,9 +10,7 @@
 #include <cstring>
 #include <set>
 
-#include "scenes/input_error.h"
-
-namespace tetskin::scenes {
+namespace tetskin::view {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -165,7 +163,7 @@ Json skinOf(const Cage& cage, const TriangleMesh& mesh, const Embedding& embeddi
   BindingOptions options;
   options.interpolation = Interpolation::Quadratic;
   const auto binding = SkinBinding<float>::create(cage, mesh, options, embedding);
-  require(binding.status());
+  if (!binding.status().ok()) throw ViewError(binding.status().message);
   const SkinData<float>& data = dataOf(*binding.value());
   return {{"nodes", cage.mesh.nodeCount()},
           {"tets", cage.mesh.tetCount()},
@@ -174,4 +172,4 @@ Json skinOf(const Cage& cage, const TriangleMesh& mesh, const Embedding& embeddi
           {"stencils", stencilsOf(*data.quadratic)}};
 }
 
-}  // namespace tetskin::scenes
+}  // namespace tetskin::view
