@@ -47,8 +47,9 @@ INTERRUPTED = "not run: interrupted"
 # %% [markdown]
 # ## The models
 #
-# They are made once, here. Meshes, cages and snapshots can be pickled, so that every worker gets the same bits, whatever
-# machine it is on. A world cannot: what travels in its place is the function that builds it, and `world.save()`.
+# They are made once, here. Meshes, cages and snapshots can be pickled, so that every worker gets the same bits,
+# whatever machine it is on. A world cannot: what travels in its place is the function that builds it, and
+# `world.save()`.
 
 # %%
 def box_mesh(size: Sequence[float], cells: Sequence[int]) -> ts.TriangleMesh:
@@ -101,7 +102,13 @@ def bend(model: Model, stiffness: float, substeps: int, frames: int, **solver: A
     """Positions (frames, vertices, 3) float32 of the bar's surface, world space, and the processor's ms per frame."""
     mesh, cage = model
     body = (world := new_world()).add_body(
-        cage, mesh, pinned=cage.nodes[:, 0] < -0.9, youngs_modulus=stiffness, density=1000, stiffness_damping=0, **solver
+        cage,
+        mesh,
+        pinned=cage.nodes[:, 0] < -0.9,
+        youngs_modulus=stiffness,
+        density=1000,
+        stiffness_damping=0,
+        **solver,
     )
     positions = np.empty((frames, mesh.vertex_count, 3), np.float32)
     seconds = 0.0
@@ -195,8 +202,9 @@ def roll_out(plan: Row, model: Model, snapshot: bytes) -> Row:
 # %% [markdown]
 # ## Many of them
 #
-# `attempted` is what a worker does: a run that fails is a row that says so, and the others go on. Dask makes a run again
-# whose worker is lost; it gives up a run with which more than `distributed.scheduler.allowed-failures` (3) were lost.
+# `attempted` is what a worker does: a run that fails is a row that says so, and the others go on. Dask makes a run
+# again whose worker is lost; it gives up a run with which more than `distributed.scheduler.allowed-failures` (3) were
+# lost.
 
 # %%
 def attempted(plan: Row, *inputs: Any, function: Callable[..., Row], version: str) -> Row:
@@ -461,7 +469,7 @@ def options_of(arguments: Sequence[str] | None) -> argparse.Namespace:
     add("--seed", type=int, default=1, help="of the rollouts' actions")
     add("--frames", type=positive, default=90, help="of each run")
     add("--tets", type=positive, default=500, help="of the cage, about")
-    add("--output", type=Path, default=Path("out/sweep"), metavar="FOLDER", help="gets a table (CSV) and a figure (PNG)")
+    add("--output", type=Path, default=Path("out/sweep"), metavar="FOLDER", help="gets a table and a figure")
     add("--quick", action="store_true", help="smaller models and fewer runs: seconds")
     add("--check", action="store_true", help="makes all runs here once more, in this process, and compares the bits")
     # In a notebook, arguments are those of its kernel.
