@@ -12,7 +12,9 @@
 import argparse
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pybullet as p
@@ -34,7 +36,7 @@ PLACE = (0.5, 0.0)
 
 
 # %%
-def make_arm(client):
+def make_arm(client: int) -> tuple[int, int]:
     """The ground and the arm, whose hand looks down."""
     p.setAdditionalSearchPath(pybullet_data.getDataPath(), physicsClientId=client)
     p.setGravity(*GRAVITY, physicsClientId=client)
@@ -48,7 +50,7 @@ def make_arm(client):
     return ground, arm
 
 
-def add_ball(world, subdivisions):
+def add_ball(world: ts.World, subdivisions: int) -> ts.Body:
     sphere = trimesh.creation.icosphere(subdivisions=subdivisions, radius=RADIUS)
     cage = ts.create_cage(sphere, target_tets=500)
     return world.add_body(cage, sphere, position=(*PLACE, RADIUS + 0.0005), mass=MASS, youngs_modulus=3e4, friction=0.8)
@@ -58,26 +60,27 @@ def add_ball(world, subdivisions):
 class Control:
     """What the arm shall do: the hand's height goes on evenly, and fingers are open, or close with a force."""
 
-    def __init__(self, client, arm):
+    def __init__(self, client: int, arm: int) -> None:
         self.client, self.arm = client, arm
         self.height = 0.2
 
-    def move(self, towards, speed=0.15):
-        self.height += np.clip(towards - self.height, -speed * STEP, speed * STEP)
+    def move(self, towards: float, speed: float = 0.15) -> None:
+        self.height += float(np.clip(towards - self.height, -speed * STEP, speed * STEP))
         angles = p.calculateInverseKinematics(self.arm, BETWEEN_FINGERS, (*PLACE, self.height), (1, 0, 0, 0),
                                               maxNumIterations=50, physicsClientId=self.client)
         p.setJointMotorControlArray(self.arm, ARM, p.POSITION_CONTROL, angles[:7], forces=[200] * 7,
                                     physicsClientId=self.client)
 
-    def grip(self, force):
+    def grip(self, force: float | None) -> None:
         """force: newton, of each finger; None: they open."""
         for finger in FINGERS:
             p.setJointMotorControl2(self.arm, finger, p.POSITION_CONTROL, OPEN if force is None else 0,
                                     force=20 if force is None else force, maxVelocity=0.05, physicsClientId=self.client)
 
 
-def picture(client, ball, path):
+def picture(client: int, ball: ts.Body, path: Path) -> None:
     """What pybullet sees, with the ball as it is now."""
+    assert ball.mesh
     shape = p.createVisualShape(p.GEOM_MESH, vertices=ball.positions.tolist(),
                                 indices=ball.mesh.triangles.ravel().tolist(), rgbaColor=(0.9, 0.3, 0.2, 1),
                                 physicsClientId=client)
@@ -91,7 +94,7 @@ def picture(client, ball, path):
 
 
 # %%
-def run(output=None, force=6.0, quick=False):
+def run(output: Path | None = None, force: float = 6.0, quick: bool = False) -> dict[str, Any]:
     """Lowers the hand, grips, lifts, holds. Returns what it has measured. output: a folder for pictures, or None.
     quick: a coarser ball, held for a shorter time."""
     client = p.connect(p.DIRECT)
@@ -102,7 +105,7 @@ def run(output=None, force=6.0, quick=False):
         mirror = tetskin.pybullet.Mirror(client, world, bodies=[ground])
         mirror.add(arm, links=[HAND, *FINGERS])
         control = Control(client, arm)
-        measured = {}
+        measured: dict[str, Any] = {}
         start = time.perf_counter()
         steps = 0
         # seconds, height of the fingertips' middle, force of each finger
@@ -122,8 +125,8 @@ def run(output=None, force=6.0, quick=False):
                               "carried": float(-felt[0][2] - felt[1][2]),
                               "on_ground": float(world.forces_on(ball, mirror.rigid_bodies(ground)[0]).total.force[2])}
             if output:
-                Path(output).mkdir(parents=True, exist_ok=True)
-                picture(client, ball, Path(output) / f"{len(measured)}_{name}.png")
+                output.mkdir(parents=True, exist_ok=True)
+                picture(client, ball, output / f"{len(measured)}_{name}.png")
         measured["step"] = (time.perf_counter() - start) / steps
         return measured
     finally:
@@ -131,7 +134,7 @@ def run(output=None, force=6.0, quick=False):
 
 
 # %%
-def report(measured):
+def report(measured: dict[str, Any]) -> None:
     print(f"ball: {MASS * 9.81:.3f} N, {2e3 * RADIUS:.0f} mm wide")
     for name, m in measured.items():
         if name == "step":
@@ -141,7 +144,7 @@ def report(measured):
     print(f"{1e3 * measured['step']:.1f} ms per step of {1e3 * STEP:.1f} ms, the arm's control and pictures included")
 
 
-def faults(measured):
+def faults(measured: dict[str, Any]) -> Iterator[str]:
     """What is wrong with a lift."""
     weight = MASS * 9.81
     lifted, held = measured["lifted"], measured["held"]
@@ -158,7 +161,7 @@ def faults(measured):
 
 
 # %%
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description="pybullet's arm lifts a soft ball of tetskin's.")
     parser.add_argument("--output", type=Path, default=Path("out/gripper_of_pybullet"), help="folder for pictures")
     parser.add_argument("--force", type=float, default=6.0, help="of each finger, N")

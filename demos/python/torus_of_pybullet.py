@@ -11,7 +11,9 @@
 import argparse
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pybullet as p
@@ -22,21 +24,21 @@ import tetskin as ts
 import tetskin.pybullet
 
 STEP = 1 / 240
-MATERIAL = dict(mass=3, useNeoHookean=1, NeoHookeanMu=400, NeoHookeanLambda=600, NeoHookeanDamping=0.02,
-                collisionMargin=0.006, useSelfCollision=0, frictionCoeff=0.5)
+MATERIAL: dict[str, Any] = dict(mass=3, useNeoHookean=1, NeoHookeanMu=400, NeoHookeanLambda=600, NeoHookeanDamping=0.02,
+                                collisionMargin=0.006, useSelfCollision=0, frictionCoeff=0.5)
 
 
 # %%
-def fine_torus(iterations):
+def fine_torus(iterations: int) -> Any:
     path = Path(pybullet_data.getDataPath()) / "torus" / "torus_textured.obj"
-    coarse = trimesh.load(path, force="mesh", process=False)
+    coarse: Any = trimesh.load(path, force="mesh", process=False)
     coarse = trimesh.Trimesh(coarse.vertices, coarse.faces, process=False)
     coarse.merge_vertices(merge_tex=True, merge_norm=True)
     return coarse.subdivide_loop(iterations=iterations)
 
 
-def difference_of(skin, cage, mesh):
-    """The largest difference between the skin and each vertex's tet, found by trying all: (vertices,) of a sample."""
+def difference_of(skin: tetskin.pybullet.Skin, cage: ts.Cage, mesh: Any) -> float:
+    """The largest difference between the skin and each vertex's tet, found by trying all tets: of a sample."""
     sample = np.random.default_rng(1).choice(len(mesh.vertices), 500, replace=False)
     rest, tets = np.asarray(cage.nodes), np.asarray(cage.tets)
     edges = np.linalg.inv(np.stack([rest[tets[:, k]] - rest[tets[:, 3]] for k in range(3)], -1))
@@ -45,11 +47,11 @@ def difference_of(skin, cage, mesh):
     weights = np.concatenate([weights, 1 - weights.sum(-1, keepdims=True)], -1)
     tet = weights.min(-1).argmax(0)
     expected = np.einsum("vk,vkj->vj", weights[tet, np.arange(len(sample))], skin.nodes[tets[tet]])
-    return np.abs(expected - skin.positions[sample]).max()
+    return float(np.abs(expected - skin.positions[sample]).max())
 
 
 # %%
-def run(output=None, seconds=3.0, quick=False):
+def run(output: Path | None = None, seconds: float = 3.0, quick: bool = False) -> dict[str, Any]:
     """Drops the torus. Returns what it has measured. output: a folder for the surface at the end, or None. quick: a
     coarser surface, and a shorter run."""
     mesh = fine_torus(1 if quick else 2)
@@ -65,7 +67,8 @@ def run(output=None, seconds=3.0, quick=False):
         _, skin = tetskin.pybullet.load_soft_body(cage, mesh, client=client, normals="recomputed",
                                                   basePosition=(0, 0, 1.5),
                                                   baseOrientation=p.getQuaternionFromEuler((1.2, 0, 0)), **MATERIAL)
-        lowest, stepping, skinning = [], 0.0, 0.0
+        lowest: list[float] = []
+        stepping = skinning = 0.0
         for _ in range(round(seconds / STEP)):
             start = time.perf_counter()
             p.stepSimulation(physicsClientId=client)
@@ -74,10 +77,10 @@ def run(output=None, seconds=3.0, quick=False):
             stepping, skinning = stepping + middle - start, skinning + time.perf_counter() - middle
             lowest.append(float(skin.positions[:, 2].min()))
         if output:
-            Path(output).mkdir(parents=True, exist_ok=True)
-            trimesh.Trimesh(skin.positions, mesh.faces, process=False).export(Path(output) / "torus.obj")
+            output.mkdir(parents=True, exist_ok=True)
+            trimesh.Trimesh(skin.positions, mesh.faces, process=False).export(output / "torus.obj")
         return {"vertices": len(mesh.vertices), "nodes": len(cage.nodes), "lowest": lowest,
-                "difference": float(difference_of(skin, cage, mesh)), "step": stepping / len(lowest),
+                "difference": difference_of(skin, cage, mesh), "step": stepping / len(lowest),
                 "update": skinning / len(lowest),
                 "height": float(np.ptp(skin.positions[:, 2]))}
     finally:
@@ -85,7 +88,7 @@ def run(output=None, seconds=3.0, quick=False):
 
 
 # %%
-def report(measured):
+def report(measured: dict[str, Any]) -> None:
     print(f"{measured['vertices']} vertices on {measured['nodes']} nodes of pybullet's")
     print(f"lowest point: {measured['lowest'][0]:.3f} m at first, {measured['lowest'][-1]:.4f} m at last; "
           f"{measured['height']:.3f} m high")
@@ -93,7 +96,7 @@ def report(measured):
     print(f"{1e3 * measured['step']:.2f} ms per step of pybullet's, {1e3 * measured['update']:.2f} ms per update")
 
 
-def faults(measured):
+def faults(measured: dict[str, Any]) -> Iterator[str]:
     """What is wrong with a drop."""
     if measured["vertices"] < 2000:
         yield "the surface is not fine"
@@ -106,7 +109,7 @@ def faults(measured):
 
 
 # %%
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description="A soft body of pybullet's own, with a fine surface.")
     parser.add_argument("--output", type=Path, default=Path("out/torus_of_pybullet"), help="folder for the surface")
     parser.add_argument("--seconds", type=float, default=3.0)
