@@ -31,7 +31,8 @@ def ball(radius: float, rings: int) -> ts.TriangleMesh:
     i, j = np.meshgrid(np.arange(rings), np.arange(rings), indexing="ij")
     a, b = (i * (rings + 1) + j).ravel(), ((i + 1) * (rings + 1) + j).ravel()
     face = np.concatenate([np.stack([a, b, b + 1], -1), np.stack([a, b + 1, a + 1], -1)])
-    positions, triangles = [], []
+    positions: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
     for axis in range(3):
         for sign in (1, -1):
             side = np.stack([x * sign, y, np.full_like(x, sign)], -1).reshape(-1, 3)

@@ -46,7 +46,9 @@ def notebook_of(name: str, arguments: tuple[str, ...] = ()) -> nbformat.Notebook
     for number, cell in enumerate(cells):
         cell["id"] = f"{name}-{number}"
     kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
-    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}})
+    told = {"kernelspec": kernel, "language_info": {"name": "python"}}
+    notebook: nbformat.NotebookNode = nbformat.v4.new_notebook(cells=cells, metadata=told)
+    return notebook
 
 
 def run(notebook: nbformat.NotebookNode, folder: Path, timeout: int = 300) -> None:
