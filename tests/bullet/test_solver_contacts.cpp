@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Contacts and anchors of nodes with rigid bodies, in scenes whose results can be checked by hand.
+#include "recorded_forces.h"
 #include "rigid_bodies.h"
 
 #include <algorithm>
@@ -188,4 +189,72 @@ TEST(SolverContacts, AreHeldByAHingeAsFarAsItsMotorCan) {
 }
 
 }  // namespace
+/// A plate on a vertical slider above a block of 1 kg and 0.9 m, which lies on the floor.
+struct Press {
+  explicit Press(btScalar mass) : plate(block.world, tetskin::plate(), mass, btVector3(0, 1, 0)) {
+    block.world.deformable().setGravity(btVector3(0, -10, 0));
+    block.body().setActivationState(DISABLE_DEACTIVATION);
+    slider.setLowerLinLimit(-1);
+    slider.setUpperLinLimit(1);
+    block.world.deformable().addConstraint(&slider);
+  }
+  ~Press() { block.world.deformable().removeConstraint(&slider); }
+  void run(int frames, int substeps) {
+    const btScalar frame = btScalar(1) / btScalar(60);
+    for (int k = 0; k < frames; ++k) {
+      block.world.deformable().stepSimulation(frame, substeps, frame / static_cast<btScalar>(substeps));
+    }
+  }
+  /// Newtons on the floor.
+  double onFloor() { return -static_cast<double>(forces->forcesOn(test::floorOf(block.world)).total().force.y()); }
+
+  FlyingBlock block{0.02};
+  std::unique_ptr<ForceRecord> forces = test::forcesIn(block.world);
+  Rigid plate;
+  btSliderConstraint slider{*plate.body, btTransform(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI)), true};
+};
+
+/// It rests then, and the floor carries both weights and the motor's largest force, whatever the substeps are.
+TEST(SolverContacts, ArePressedByAMotorNoMoreThanItMay) {
+  for (const double force : {0.0, 10.0, 40.0}) {
+    for (const int substeps : {2, 8}) {
+      Press press(1);
+      press.slider.setPoweredLinMotor(true);
+      press.slider.setMaxLinMotorForce(static_cast<btScalar>(force));
+      press.slider.setTargetLinMotorVelocity(-1);
+      press.run(300, substeps);
+      EXPECT_NEAR(press.onFloor(), 20.0 + force, 0.02 * (20.0 + force)) << force << " N, " << substeps << " substeps";
+      EXPECT_LT(press.plate.body->getLinearVelocity().length(), 0.002);
+    }
+  }
+}
+
+/// A motor that holds its place against a block, and against gravity, as long as it may.
+TEST(SolverContacts, AreHeldByAMotorThatHasForceLeft) {
+  Press press(1);
+  press.run(240, 4);
+  const double height = press.plate.height();
+  press.slider.setPoweredLinMotor(true);
+  press.slider.setMaxLinMotorForce(1000);
+  press.slider.setTargetLinMotorVelocity(0);
+  press.run(60, 4);
+  EXPECT_NEAR(press.plate.height(), height, 1e-3);
+}
+
+/// Heavy plates lie on the stop of their slider, 3 cm below the block's top: the block takes a part of the weight off
+/// the stop, the same of each, and lifts none.
+TEST(SolverContacts, TakeOffAStopWhatTheyPushAndNoMore) {
+  double onBlock[2];
+  for (const int k : {0, 1}) {
+    Press press(k == 0 ? btScalar(50) : btScalar(400));
+    press.slider.setLowerLinLimit(btScalar(-0.08));
+    press.run(300, 4);
+    EXPECT_NEAR(press.plate.height(), 0.92, 0.001);
+    EXPECT_LT(press.plate.body->getLinearVelocity().length(), 0.002);
+    onBlock[k] = press.onFloor() - 10.0;
+  }
+  EXPECT_GT(onBlock[0], 20.0);
+  EXPECT_NEAR(onBlock[0], onBlock[1], 0.01 * onBlock[1]);
+}
+
 }  // namespace tetskin

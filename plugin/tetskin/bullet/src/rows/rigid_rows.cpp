@@ -5,6 +5,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <tetskin/bullet/src/rows/joint_impulses.h>
 #include <tetskin/bullet/src/rows/rigid_rows.h>
 
 #include <algorithm>
@@ -135,49 +136,25 @@ class RigidRowCollector {
   std::unordered_map<const void*, std::vector<std::size_t>> edgesOf_;  ///< by the bodies' keys: in `edges_`
 };
 
-/// The rows of a joint, in the form in which Bullet's solver asks for them.
-struct JointRows {
-  /// One row for each degree of freedom; and btScalars from one to the next.
-  static constexpr std::size_t kMaxRows = 6, kStride = 16;
-  std::array<btScalar, kMaxRows * kStride> linearA{}, angularA{}, linearB{}, angularB{}, rest{}, softness{}, lowest{},
-      highest{};
-
-  btTypedConstraint::btConstraintInfo2 info(btScalar seconds) {
-    btTypedConstraint::btConstraintInfo2 info;
-    info.fps = 1 / seconds;
-    info.erp = btScalar(0.2);
-    info.m_J1linearAxis = linearA.data();
-    info.m_J1angularAxis = angularA.data();
-    info.m_J2linearAxis = linearB.data();
-    info.m_J2angularAxis = angularB.data();
-    info.rowskip = static_cast<int>(kStride);
-    info.m_constraintError = rest.data();
-    info.cfm = softness.data();
-    info.m_lowerLimit = lowest.data();
-    info.m_upperLimit = highest.data();
-    info.m_damping = 1;
-    return info;
-  }
-};
-
-btVector3 vectorAt(const std::array<btScalar, JointRows::kMaxRows * JointRows::kStride>& from, int row) {
-  assert(row >= 0 && row < static_cast<int>(JointRows::kMaxRows));
-  const auto at = static_cast<std::size_t>(row) * JointRows::kStride;
-  return {from[at], from[at + 1], from[at + 2]};
+/// What a bounded row is short of the velocity that Bullet was to give it: all that its bound has cost, as far as the
+/// impulse, which is at that bound, may still grow or shrink.
+btScalar missingVelocity(const JointRows& rows, std::size_t row, btScalar impulse, btScalar velocity) {
+  const btScalar missing = rows.number(rows.rest, row) - velocity;
+  const btScalar lowest = rows.number(rows.lowest, row), highest = rows.number(rows.highest, row);
+  const btScalar near = (1 - kStuck) * std::max(std::abs(impulse), std::min(std::abs(lowest), std::abs(highest)));
+  if (impulse >= highest - near && missing > 0) return missing;
+  if (impulse <= lowest + near && missing < 0) return missing;
+  return 0;
 }
 
-/// Each row begins with the impulse that Bullet has left it, and adds what else is needed.
+/// Each row begins with the impulse that Bullet has left it, and adds what else is needed. That impulse is of interest
+/// only where it is bounded: any other may grow and shrink as it likes.
 void RigidRowCollector::addJoint(btTypedConstraint& joint) {
-  btTypedConstraint::btConstraintInfo1 counts{};
-  joint.getInfo1(&counts);
-  if (counts.m_numConstraintRows <= 0 || counts.m_numConstraintRows > static_cast<int>(JointRows::kMaxRows)) return;
-  JointRows from;
-  from.lowest.fill(-BT_LARGE_FLOAT);
-  from.highest.fill(BT_LARGE_FLOAT);
-  auto info = from.info(seconds_);
-  joint.getInfo2(&info);
+  const JointRows from(joint, seconds_);
   const btRigidBody &a = joint.getRigidBodyA(), &b = joint.getRigidBodyB();
-  for (int k = 0; k < counts.m_numConstraintRows; ++k) {
+  std::array<btScalar, JointRows::kMaxRows> impulses{};
+  bool known = false;
+  for (std::size_t k = 0; k < from.count; ++k) {
     RowOrigin origin;
     origin.object = &b;
     origin.position = a.getWorldTransform().getOrigin();
@@ -188,18 +165,23 @@ void RigidRowCollector::addJoint(btTypedConstraint& joint) {
       if (point.unknown >= 0) point.jacobian = rigids_.addScalarJacobian(linear, angular);
       return point;
     };
-    row.ends[0].rigid = at(a, vectorAt(from.linearA, k), vectorAt(from.angularA, k));
+    row.ends[0].rigid = at(a, from.vector(from.linearA, k), from.vector(from.angularA, k));
     // The row of the other body has the opposite sign.
-    row.ends[1].rigid = at(b, -vectorAt(from.linearB, k), -vectorAt(from.angularB, k));
+    row.ends[1].rigid = at(b, -from.vector(from.linearB, k), -from.vector(from.angularB, k));
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     if (!(row.effectiveMass > 0)) continue;
-    const auto index = static_cast<std::size_t>(k) * JointRows::kStride;
     row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
-    if (from.softness[index] > 0) {
-      row.stiffness = std::min(row.stiffness, row.effectiveMass / from.softness[index]);
+    const btScalar softness = from.number(from.softness, k);
+    if (softness > 0) row.stiffness = std::min(row.stiffness, row.effectiveMass / softness);
+    row.lowest = from.number(from.lowest, k);
+    row.highest = from.number(from.highest, k);
+    if (from.isBounded(k)) {
+      if (!known) impulses = JointImpulses::of(joint, from, seconds_);
+      known = true;
+      const btScalar applied = std::min(std::max(impulses[k], row.lowest), row.highest);
+      row.given = applied * row.normal;
+      row.gapVelocity = -missingVelocity(from, k, applied, from.velocity(joint, k)) - applied / row.stiffness;
     }
-    row.lowest = from.lowest[index];
-    row.highest = from.highest[index];
     rows_.add(row, origin);
   }
 }

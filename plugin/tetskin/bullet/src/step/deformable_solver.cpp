@@ -109,6 +109,7 @@ void DeformableSolver::setConstraints(const btContactSolverInfo& info) {
   impl_->clock.end(&StepTimes::rigidSearch);
   btDeformableBodySolver::setConstraints(info);
   if (!impl_->solving) return;
+  impl_->jointImpulses.begin(impl_->bodies.worlds());
   btDeformableContactProjection& projection = m_objective->m_projection;
   assert(static_cast<std::size_t>(projection.m_nodeRigidConstraints.size()) >= impl_->bodies.bodies().size());
   for (std::size_t b = 0; b < impl_->bodies.bodies().size(); ++b) {

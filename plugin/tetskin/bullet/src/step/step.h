@@ -19,6 +19,7 @@
 #include <tetskin/bullet/src/motion/sleepers.h>
 #include <tetskin/bullet/src/motion/stillness.h>
 #include <tetskin/bullet/src/rows/contact_rows.h>
+#include <tetskin/bullet/src/rows/joint_impulses.h>
 #include <tetskin/bullet/src/search/obstacle_changes.h>
 #include <tetskin/bullet/src/step/hidden_bodies.h>
 #include <tetskin/bullet/src/step/recorded_forces.h>
@@ -114,6 +115,7 @@ struct DeformableSolver::Impl {
   ObstacleChanges obstacleChanges;
   RigidUnknowns rigids;
   ContactRows rows;
+  JointImpulses jointImpulses;  ///< of Bullet's own solve in this step
   OtherForces others;
   StepClock clock;
   HiddenBodies hidden;

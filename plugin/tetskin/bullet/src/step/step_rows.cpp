@@ -96,6 +96,7 @@ void DeformableSolver::Impl::collectRows() {
   }
   rows.setStiffness(bodies, rigids, dt());
   collectRigidRowsOfWorlds();
+  jointImpulses.end();
   joinByRows();
   runTasks(threads, bodies.bodies().size(), [&](std::size_t k) {
     SolvedBody& body = bodies.bodies()[k];
