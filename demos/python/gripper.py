@@ -62,6 +62,7 @@ for side in (-1, 1):
     fingers.append(finger)
     slides.append(world.add_slider(finger, carriage, axis=(-side, 0, 0)))
 CLOSED = 0.012  # where the left finger stays: 6 mm into the ball, were it hard
+GRIP = 4.0  # newtons, the most that the right finger's motor has
 STEPS = {"close": 0.3, "lift": 1.0, "hold": 2.0, "end": 3.0}
 
 film = ts.Film(world, title="Two fingers lift a soft ball")
@@ -71,7 +72,7 @@ for frame in range(1, int(60 * STEPS["end"]) + 1):
     now = frame / 60
     closing = now > STEPS["close"]
     slides[0].set_motor(np.clip(20 * (CLOSED - slides[0].coordinate), -0.05, 0.05) if closing else 0, 100)
-    slides[1].set_motor(0.05 if closing else 0, 4)
+    slides[1].set_motor(0.05 if closing else 0, GRIP)
     lift.set_motor(0.08 if STEPS["lift"] < now < STEPS["hold"] else 0, 200)
     world.step(1 / 60, substeps=8)
     film.add_frame()
@@ -106,7 +107,7 @@ figure.savefig(options.output / "forces.png", dpi=100)
 
 # %% [markdown]
 # ## Check
-# In the last half second, at rest in the air: the fingers carry the weight, and grip equally.
+# In the last half second, at rest in the air: the fingers carry the weight, and grip with the motor's largest force.
 
 # %%
 held = now > STEPS["end"] - 0.5
@@ -116,5 +117,5 @@ print(f"lifted by {1000 * height[-1]:.0f} mm; grips {grips[0]:.2f} N and {grips[
 print(f"the fingers carry {carry:.3f} N of a weight of {weight:.3f} N")
 if height[-1] < 0.05:
     sys.exit("gripper.py: the ball was not lifted")
-if abs(carry - weight) > 0.02 * weight or abs(grips[0] - grips[1]) > 0.02 * grips[0]:
+if abs(carry - weight) > 0.02 * weight or max(abs(grip - GRIP) for grip in grips) > 0.02 * GRIP:
     sys.exit("gripper.py: the forces are not in balance")
