@@ -2,10 +2,15 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """What the tests of the Python package share. They need the installed package, NumPy and pytest alone."""
 
+import signal
+
 import numpy as np
 import pytest
 
 import tetskin as ts
+
+# A shell has what it starts in the background ignore Ctrl-C, and so all that this starts: tests interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def torus(rings=40, sides=20):
