@@ -24,6 +24,7 @@ SCRIPTS = [
     "drop",
     "gripper",
     "cage_from_scan",
+    "torus_of_pybullet",
 ]
 """The demos that are notebooks, too."""
 LARGEST = 200_000

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pybullet as p
 import pybullet_data
@@ -81,8 +82,8 @@ def run(output: Path | None = None, seconds: float = 3.0, quick: bool = False) -
             trimesh.Trimesh(skin.positions, mesh.faces, process=False).export(output / "torus.obj")
         return {"vertices": len(mesh.vertices), "nodes": len(cage.nodes), "lowest": lowest,
                 "difference": difference_of(skin, cage, mesh), "step": stepping / len(lowest),
-                "update": skinning / len(lowest),
-                "height": float(np.ptp(skin.positions[:, 2]))}
+                "update": skinning / len(lowest), "height": float(np.ptp(skin.positions[:, 2])),
+                "positions": skin.positions.copy(), "triangles": np.asarray(mesh.faces)}
     finally:
         p.disconnect(client)
 
@@ -94,6 +95,20 @@ def report(measured: dict[str, Any]) -> None:
           f"{measured['height']:.3f} m high")
     print(f"largest difference from the tets of its vertices: {measured['difference']:.1e} m")
     print(f"{1e3 * measured['step']:.2f} ms per step of pybullet's, {1e3 * measured['update']:.2f} ms per update")
+
+
+def draw(measured: dict[str, Any], path: Path) -> None:
+    """The surface at the end, and its lowest point over time."""
+    figure = plt.figure(figsize=(8, 3.2), layout="constrained")
+    surface: Any = figure.add_subplot(1, 2, 1, projection="3d")
+    x, y, z = measured["positions"].T
+    surface.plot_trisurf(x, y, z, triangles=measured["triangles"], color="#1a7045", linewidth=0)
+    surface.set(box_aspect=(np.ptp(x), np.ptp(y), np.ptp(z)), title=f"{len(x)} vertices")
+    surface.set_axis_off()
+    heights = figure.add_subplot(1, 2, 2)
+    heights.plot(STEP * np.arange(1, len(measured["lowest"]) + 1), measured["lowest"])
+    heights.set(xlabel="time (s)", ylabel="lowest point (m)")
+    figure.savefig(path, dpi=100)
 
 
 def faults(measured: dict[str, Any]) -> Iterator[str]:
@@ -117,6 +132,7 @@ def main() -> None:
     arguments = parser.parse_args()
     measured = run(arguments.output, arguments.seconds, arguments.quick)
     report(measured)
+    draw(measured, arguments.output / "torus.png")
     wrong = list(faults(measured))
     if wrong:
         sys.exit("torus_of_pybullet.py: " + "; ".join(wrong))
