@@ -39,7 +39,7 @@ MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|plat
                        r"^((plugin/|tests/|demos/)?CMakeLists[.]txt|CMakePresets[.]json|[.]clang-tidy|[.]clang-format)$")
 PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own.
-PYTHON = re.compile(r"^(plugin|demos|tests)/python/")
+PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers)/")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 
