@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Runs scenes with all peers, error against time, and writes FOLDER/peers.csv. `run` calls it in an environment that has them.
 
-compare.py [--quick] [--only SCENE]... [--peers LIST] [--out FOLDER]
+compare.py [--quick] [--only SCENE]... [--peers LIST] [--out FOLDER] [--check]
 
 Each run is a process of its own: what crashes, hangs or explodes is a cell of the table. Cases take turns, in rounds, so
 that what else the machine does meets all alike; times are processor time, with medians, least and largest. Exit status: 0
@@ -37,6 +37,7 @@ def arguments():
     parser.add_argument("--only", action="append", metavar="SCENE", help=f"may be repeated: {', '.join(SCENES)}")
     parser.add_argument("--peers", metavar="LIST", help=f"with commas: {','.join(PEERS)}")
     parser.add_argument("--out", metavar="FOLDER", default="out/peers")
+    parser.add_argument("--check", action="store_true", help="check the arguments, and run nothing")
     options = parser.parse_args()
     options.scenes = options.only or SCENES
     options.peers = options.peers.split(",") if options.peers else PEERS
@@ -71,8 +72,9 @@ def run_one(scene, task, folder, limit):
     except subprocess.TimeoutExpired:
         return {"status": "hangs", "why": f"no end within {60 + 8 * limit:.0f} s"}
     lines = done.stdout.strip().split("\n")
-    if done.returncode == 0 and lines[-1].startswith("{"):
-        return json.loads(lines[-1])
+    told = [line for line in lines if line.startswith('{"status"')]
+    if done.returncode == 0 and told:
+        return json.loads(told[-1])
     if done.returncode == -signal.SIGXCPU or done.returncode == -signal.SIGKILL:
         return {"status": "too slow", "why": f"more than {limit:.0f} s of processor time"}
     words = (done.stderr.strip().split("\n") or [""])[-1]
@@ -132,6 +134,8 @@ def rows_of(name, cases, outcomes):
 
 def main():
     options = arguments()
+    if options.check:
+        return
     folder = Path(options.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     began, rows, head = time.time(), [], [f"date {datetime.date.today()}", f"machine {machine()}", f"Python {platform.python_version()}"]
@@ -145,6 +149,12 @@ def main():
         rows += rows_of(name, cases, outcomes)
         head.append(f"{name} {time.time() - start:.0f} s, load {load()}")
         write(folder / "peers.csv", head, rows)  # after each scene: what is interrupted has its rows
+    try:
+        import draw
+    except ImportError as fault:
+        print(f"no plots: {fault}")
+    else:
+        draw.draw(folder / "peers.csv", folder)
     print(f"{len(rows)} rows in {folder / 'peers.csv'}, after {(time.time() - began) / 60:.1f} minutes")
 
 

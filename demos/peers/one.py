@@ -38,6 +38,9 @@ class Clock:
         self.seconds += self.parts[-1]
 
 
+ABSURD = 1e3  # in percent or in metres: no figure of a simulation that holds is larger
+
+
 class Exploded(Exception):
     """The simulation has left all bounds."""
 
@@ -45,8 +48,8 @@ class Exploded(Exception):
 def finite(figures):
     """The figures, with those of a lost simulation refused."""
     numbers = [value for value in figures.values() if value is not None]
-    if not np.all(np.isfinite(numbers)):
-        raise Exploded("a position is not finite")
+    if not np.all(np.isfinite(numbers)) or max(map(abs, numbers), default=0) > ABSURD:
+        raise Exploded("a position is not finite, or far away")
     return {name: None if value is None else float(value) for name, value in figures.items()}
 
 

@@ -33,6 +33,8 @@ class Simulation:
     def add_soft(self, body):
         first, material = len(self.builder.particle_q), body.material
         mu, lam = material.lame
+        if self.kind == "semi-implicit":  # whose energy has the logarithm that Bullet's has
+            mu, lam = 4 / 3 * mu, lam + 5 / 6 * mu
         self.builder.add_soft_mesh(pos=warp.vec3(0, 0, 0), rot=warp.quat_identity(), scale=1.0, vel=warp.vec3(0, 0, 0),
                                    vertices=[warp.vec3(*p) for p in body.nodes], indices=body.tets.ravel().tolist(),
                                    density=material.density, k_mu=mu, k_lambda=lam, k_damp=mu * material.damping / 2,

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from materials import MATERIALS, corotated, linear_elements, quadratic_elements, simulate, volumes
+from materials import MATERIALS, bullet_neo_hookean, corotated, linear_elements, quadratic_elements, simulate, volumes
 from plan import cases
 from problem import FRAME, GRAVITY, Body, Material
 from shapes import box_tets
@@ -29,13 +29,23 @@ def plan(quick):
     substeps = (1, 4, 16) if quick else (1, 2, 4, 8, 16, 32)
     same = "3,000 tets"
     of = lambda counts, **more: [{"substeps": n, **more} for n in counts]  # noqa: E731
+    fem = {"solver": "fem", "iterations": 100}
     planned = [
         *cases("tetskin", "world", of(substeps), {"substeps": 4}, same),
         *cases("tetskin", "world, the mesh's own masses", of(substeps, own_masses=True, tolerance=1e-4), None, same),
         *cases("tetskin", "ElasticBody", of(substeps, kind="alone", tolerance=1e-4), None, same),
         *cases("mujoco", "discrete", of((4,) if quick else (1, 4, 16)), {"substeps": 16}, same),
         *cases("mujoco", "Euler", of((10, 16) if quick else (10, 12, 16, 32), integrator="Euler"), {"substeps": 16}, same),
+        *cases("rapier", "constraints", of((4, 16) if quick else (4, 8, 16, 32, 64)), {"substeps": 4}, same),
+        *cases("rapier", "finite elements", of((4,) if quick else (1, 4, 16, 64), **fem), {"substeps": 4}, same),
+        *cases("pybullet", "neo-Hookean", of((8, 16) if quick else (4, 8, 12, 16, 32)), {"substeps": 4}, same),
+        *cases("pybullet", "neo-Hookean by Lamé's constants", of((16,), lame=True), None, same),
     ]
+    pairs = ((10, 10),) if quick else ((4, 10), (4, 40), (10, 10), (20, 20))
+    planned += cases("newton", "VBD", [{"substeps": n, "iterations": m} for n, m in pairs], {"substeps": 10, "iterations": 10}, same)
+    if not quick:
+        planned += cases("newton", "XPBD", of((10,), iterations=10, solver="xpbd"), None, same)
+        planned += cases("newton", "semi-implicit", of((16, 32), solver="semi-implicit"), None, same)
     for mesh, cells in list(QUADRATIC.items())[: 2 if quick else 3]:
         planned += cases("tetskin", "quadratic tets", of(substeps, kind="alone", quadratic=True), None, mesh)
         planned += cases("mujoco", "quadratic cells", of((4, 16), solver="Newton", cells=cells), {"substeps": 16}, mesh)
@@ -70,7 +80,7 @@ def swing(simulation, body, frames=FRAMES, clock=None):
 
 def run(Simulation, case, clock, references):
     way = swing(Simulation(**case.setting), body_of(case.mesh), clock=clock)
-    stress = MATERIALS[case.peer].__name__
+    stress = (MATERIALS[case.peer] if case.curve != "semi-implicit" else bullet_neo_hookean).__name__
     in_time = error(way, references[f"{stress} {case.mesh}"]) if case.mesh == "3,000 tets" else None
     return {"error in time": in_time, "error in all": error(way, references[stress])}
 

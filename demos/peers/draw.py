@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""Draws what compare.py has measured: FOLDER/SCENE_FIGURE.png, error against time, and tables.md.
+
+draw.py peers.csv [FOLDER]
+
+In a plot every run is a point, each peer a colour, and a line joins those of its runs that none of its others beats in
+both. A star is the setting of the peer's own example. Needs matplotlib.
+"""
+import csv
+import math
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
+from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, plt  # noqa: E402
+
+COLOURS = {"tetskin": BLUE, "mujoco": ORANGE, "rapier": GREEN, "pybullet": GREY, "newton": PINK}
+NAMES = {"tetskin": "tetskin", "mujoco": "MuJoCo", "rapier": "Rapier", "pybullet": "pybullet", "newton": "Newton"}
+MARKERS = "osD^vPX<>h"
+PLOTS = {("beam", "error in time"): "RMS error of the tip's way, % of the largest: in time alone, the same 3,000 tets",
+         ("beam", "error in all"): "RMS error of the tip's way, % of the largest, in all",
+         ("snake", "error"): "RMS error of the surface at rest, % of its size"}
+
+
+def rows_of(path):
+    """The head's lines, and the table's rows with numbers where there are numbers."""
+    with open(path, newline="", encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    head = [line[2:] for line in lines if line.startswith("# ")]
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
+    for row in rows:
+        for name in ("value", "ms_per_frame", "ms_least", "ms_most"):
+            row[name] = float(row[name]) if row[name] else math.nan
+        row["example"] = row["example"] == "1"
+    return head, rows
+
+
+def front(points):
+    """Those (time, error) that none of the others beats in both, in the order of time."""
+    best, kept = math.inf, []
+    for time, error in sorted(points):
+        if error < best:
+            best = error
+            kept.append((time, error))
+    return kept
+
+
+def good(rows, scene, figure):
+    return [row for row in rows if (row["scene"], row["figure"]) == (scene, figure) and row["status"] == "ok"]
+
+
+def plot(rows, scene, figure, label, path):
+    rows = good(rows, scene, figure)
+    if not rows:
+        return
+    canvas, axes = plt.subplots(figsize=(7.5, 4.6), layout="constrained")
+    for peer, colour in COLOURS.items():
+        own = [row for row in rows if row["peer"] == peer and row["value"] > 0]
+        if not own:
+            continue
+        line = front([(row["ms_per_frame"], row["value"]) for row in own])
+        axes.plot(*zip(*line), color=colour, linewidth=1.5, label=NAMES[peer], zorder=2)
+        for marker, curve in zip(MARKERS, dict.fromkeys((row["curve"], row["mesh"]) for row in own)):
+            points = [row for row in own if (row["curve"], row["mesh"]) == curve]
+            x, y = [row["ms_per_frame"] for row in points], [row["value"] for row in points]
+            spread = [[row["ms_per_frame"] - row["ms_least"] for row in points], [row["ms_most"] - row["ms_per_frame"] for row in points]]
+            axes.errorbar(x, y, xerr=spread, fmt=marker, color=colour, markersize=4, alpha=0.55, linewidth=0.8, zorder=3)
+        stars = [(row["ms_per_frame"], row["value"]) for row in own if row["example"]]
+        if stars:
+            axes.plot(*zip(*stars), "*", color=colour, markersize=13, markeredgecolor="white", zorder=4)
+    axes.set(xscale="log", yscale="log", xlabel="processor time per frame of 1/60 s, ms", ylabel=label)
+    axes.yaxis.label.set_fontsize(8)
+    axes.grid(color="#dddddd", linewidth=0.6)
+    axes.legend(frameon=False, fontsize=9)
+    canvas.savefig(path, dpi=DPI, metadata={"Software": ""})
+    plt.close(canvas)
+
+
+def number(value):
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}"
+
+
+def scene_table(rows, scene):
+    """All of a scene: a row for each case."""
+    rows = [row for row in rows if row["scene"] == scene]
+    figures = [name for name in dict.fromkeys(row["figure"] for row in rows) if name]
+    cases = {}
+    for row in rows:
+        cases.setdefault((row["peer"], row["curve"], row["mesh"], row["setting"]), []).append(row)
+    lines = [f"| peer | what, mesh | setting | ms per frame | {' | '.join(figures)} |", "|---" * (4 + len(figures)) + "|"]
+    for (peer, curve, mesh, setting), own in cases.items():
+        first = own[0]
+        begin = f"| {NAMES[peer]} {first['version']} | {curve}{', ' + mesh if mesh else ''} | {setting}{' *' if first['example'] else ''} |"
+        if first["status"] != "ok":
+            lines.append(f"{begin} | {first['status']}: {first['why'].replace('|', '/')} |" + " |" * (len(figures) - 1))
+            continue
+        values = {row["figure"]: number(row["value"]) for row in own}
+        spread = f" ({number(first['ms_least'])} to {number(first['ms_most'])})" if int(first["runs"]) > 1 else ""
+        lines.append(f"{begin} {number(first['ms_per_frame'])}{spread} | {' | '.join(values.get(name, '') for name in figures)} |")
+    return "\n".join(lines)
+
+
+def losses(rows):
+    """Where a peer has less error in less time than any run of ours, by scene and figure that is an error."""
+    found = []
+    for scene, figure in dict.fromkeys((row["scene"], row["figure"]) for row in rows if "error" in row["figure"]):
+        table = good(rows, scene, figure)
+        ours = front([(row["ms_per_frame"], row["value"]) for row in table if row["peer"] == "tetskin"])
+        worst = {}
+        for row in table:
+            if row["peer"] == "tetskin":
+                continue
+            enough = [time for time, error in ours if error <= row["value"]]
+            times = min(enough) / row["ms_per_frame"] if enough else math.inf
+            if times > 1 and times >= worst.get(row["peer"], (0,))[0]:
+                worst[row["peer"]] = (times, row)
+        for peer, (times, row) in worst.items():
+            how = f"takes 1/{times:.1f} of our time" if times < math.inf else "and we reach that with no setting"
+            found.append(f"- {scene}, {figure}: {NAMES[peer]} ({row['curve']}, {row['setting']}) has {number(row['value'])} "
+                         f"in {number(row['ms_per_frame'])} ms, {how}.")
+    return found
+
+
+def draw(path, folder):
+    head, rows = rows_of(path)
+    folder = Path(folder)
+    for (scene, figure), label in PLOTS.items():
+        plot(rows, scene, figure, label, folder / f"{scene}_{figure.replace(' ', '_')}.png")
+    text = ["Measured " + "; ".join(head) + ". A star is the setting of the peer's own example.", ""]
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        text += [f"## {scene}", "", scene_table(rows, scene), ""]
+    text += ["## Lost", "", *(losses(rows) or ["Nothing."]), ""]
+    (folder / "tables.md").write_text("\n".join(text), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    draw(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else Path(sys.argv[1]).parent)
