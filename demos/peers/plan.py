@@ -27,3 +27,18 @@ def cases(peer, curve, settings, example=None, mesh=""):
     """A curve: one case for each setting. example: the entries of the setting of the peer's own example."""
     is_example = lambda setting: example is not None and example.items() <= setting.items()  # noqa: E731
     return [Case(peer, curve, setting, mesh, is_example(setting)) for setting in settings]
+
+
+def usual(quick):
+    """For scenes with contact: each peer in the setting of its own example, and unless quick in a finer one."""
+    of = lambda counts, **more: [{"substeps": n, **more} for n in counts]  # noqa: E731
+    planned = [
+        *cases("tetskin", "world", of((4,) if quick else (2, 4, 8, 16)), {"substeps": 4}),
+        *cases("rapier", "constraints", of((4,) if quick else (4, 8, 16)), {"substeps": 4}),
+        *cases("mujoco", "discrete", of((16,)), {"substeps": 16}),
+        *cases("pybullet", "neo-Hookean", of((4, 16)), {"substeps": 4}),
+        *cases("newton", "VBD", of((10,), iterations=10), {"substeps": 10}),
+    ]
+    if not quick:
+        planned += cases("rapier", "finite elements", of((4, 16), solver="fem", iterations=100), {"substeps": 4})
+    return planned

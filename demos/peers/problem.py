@@ -17,12 +17,20 @@ Each module in `adapters` has a class `Simulation` with these functions, which s
 
 What a peer does not have raises Unsupported, with the reason in words: it becomes the cell of the table.
 """
+import contextlib
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 GRAVITY = (0.0, -9.81, 0.0)
 FRAME = 1 / 60
+
+
+def advance(simulation, frames, clock=None):
+    """So many frames, by the clock."""
+    for _ in range(frames):
+        with clock or contextlib.nullcontext():
+            simulation.step(FRAME)
 
 
 class Unsupported(Exception):
@@ -51,8 +59,6 @@ class Body:
 
     skin: positions (v, 3) and triangles (m, 3), counter-clockwise from outside, in the space of the nodes, or None:
     then its surface is that of the tets. contact: with the ground and with others; self_contact: with itself, too.
-    grid: numbers of cells along x, y and z, for peers that simulate a grid of their own around the tets (MuJoCo's
-    quadratic cells). quadratic: for a refined mesh, the number of the tet of second order of each tet.
     """
     nodes: np.ndarray
     tets: np.ndarray
@@ -83,7 +89,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A rigid box or ball. mass 0: it does not move. rotation: x, y, z, w."""
+    """A rigid box or ball. mass 0: it does not move. rotation: x, y, z, w. friction: with soft bodies whose own is 1."""
     shape: str  # "box" or "ball"
     size: object  # half extents, or the radius
     mass: float = 0.0

@@ -4,7 +4,8 @@
 
 Their material is Saint Venant-Kirchhoff's; damping is Rayleigh's, in seconds, as ours. A flex divides its mass evenly
 among its points: the masses of the tets are set after the model has been compiled. Its elasticity is implicit under the
-integrator "discrete" alone, and explicit under "Euler". The settings of their own examples are those of
+integrator "discrete" alone, and explicit under "Euler". The friction of a contact would be the larger of the two: that of
+planes and rigid bodies is given priority. The settings of their own examples are those of
 model/flex/mechanisms: discrete, Newton, a tolerance of 1e-7, steps of 1 ms.
 """
 import mujoco
@@ -14,6 +15,7 @@ from problem import GRAVITY, Unsupported
 from shapes import surface_of
 
 VERSION = mujoco.__version__
+NO_SKIN = "a flex of tets has no second, finer surface; a surface in a grid of cells is simulated and drawn as one"
 RADIUS = 0.002  # of the vertices, in contact: that of their examples
 
 
@@ -32,7 +34,7 @@ class Simulation:
         self.parts, self.soft, self.rigid = [], [], []
 
     def add_plane(self, friction=1.0):
-        self.parts.append(f'<geom type="plane" size="0 0 1" zaxis="0 1 0" friction="{friction} 0.005 0.0001"/>')
+        self.parts.append(f'<geom type="plane" size="0 0 1" zaxis="0 1 0" priority="1" friction="{friction} 0.005 0.0001"/>')
 
     def add_soft(self, body):
         name, material = f"flex{len(self.soft)}", body.material
@@ -71,7 +73,7 @@ class Simulation:
         joint = "<freejoint/>" if rigid.mass else ""
         mass = f' mass="{rigid.mass}"' if rigid.mass else ""
         self.parts.append(f'<body name="{name}" pos="{numbers(rigid.position)}" quat="{numbers((w, x, y, z))}">{joint}'
-                          f'<geom type="{shape}" size="{numbers(rigid.size)}"{mass} friction="{rigid.friction} 0.005 0.0001"/>'
+                          f'<geom type="{shape}" size="{numbers(rigid.size)}"{mass} priority="1" friction="{rigid.friction} 0.005 0.0001"/>'
                           '</body>')
         self.rigid.append(rigid)
         return name

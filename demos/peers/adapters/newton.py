@@ -16,6 +16,8 @@ from problem import GRAVITY, Unsupported  # noqa: E402
 
 VERSION = newton.__version__
 
+NO_SKIN = "it attaches finer surfaces to tets for drawing on the GPU alone"
+
 
 class Simulation:
     """substeps: per frame; iterations: within each. stiffness, damping, radius: of contact, N/m, N s/m and metres."""
