@@ -29,6 +29,7 @@ HERE = Path(__file__).resolve().parent
 SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.stem != "__init__"]
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
 ROUNDS, ENOUGH = 5, 6.0  # at most so many runs of a case, and no further one after so many seconds in all
+LIMIT, QUICK_LIMIT = 90, 15  # seconds of processor time for one run
 COLUMNS = ["scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
            "ms_most", "runs", "status", "why"]
 
@@ -114,7 +115,7 @@ def prepare(name, scene, folder, quick):
     print("\n".join("  " + line for line in done.stdout.strip().split("\n")))
 
 
-def measured(name, scene, cases, folder, quick):
+def measured(name, cases, folder, quick):
     """Outcomes of each case, of all rounds: those that are slow, or not ok, have one."""
     outcomes = [[] for _ in cases]
     for turn in range(1 if quick else ROUNDS):
@@ -122,7 +123,7 @@ def measured(name, scene, cases, folder, quick):
             done = outcomes[k]
             if done and (done[0]["status"] != "ok" or sum(one["cost"] for one in done) > ENOUGH):
                 continue
-            done.append(run_one(name, json.dumps(case.as_dict()), folder, scene.LIMIT))
+            done.append(run_one(name, json.dumps(case.as_dict()), folder, QUICK_LIMIT if quick else LIMIT))
             if turn == 0:
                 print(f"  {line_of(case, done[0])}", flush=True)
     return outcomes
@@ -166,7 +167,7 @@ def main():
         prepare(name, scene, folder, options.quick)
         cases = [case for case in scene.plan(options.quick) if case.peer in options.peers]
         start = time.time()
-        outcomes = measured(name, scene, cases, folder, options.quick)
+        outcomes = measured(name, cases, folder, options.quick)
         rows += rows_of(name, cases, outcomes)
         head.append(f"{name} {time.time() - start:.0f} s, load {load()}")
         write(folder / "peers.csv", head, rows)  # after each scene: what is interrupted has its rows

@@ -8,7 +8,6 @@ from problem import FRAME, Body, Material, advance
 from shapes import ball_tets
 
 TITLE = "Heap of 26 balls of 384 tets: radius 0.2 m, E 2e5 Pa, 200 kg/m3, damping 0.02 s, mu 1"
-LIMIT = 150
 
 
 def plan(quick):

@@ -8,7 +8,6 @@ from problem import Body, Material, Rigid, advance
 from shapes import box_tets
 
 TITLE = "Pit: 50 rigid balls of 1 kg on a soft mat of 3,072 tets: E 1e5 Pa, 200 kg/m3, damping 0.02 s, mu 0.5"
-LIMIT = 120
 RADIUS, COUNT = 0.08, 50
 
 

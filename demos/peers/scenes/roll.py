@@ -8,7 +8,6 @@ from problem import Body, Material, advance
 from shapes import ball_tets, volume_of
 
 TITLE = "Soft ball rolls down 10 degrees: radius 0.2 m, E 1e6 Pa, 200 kg/m3, 1,296 tets, damping 0.02 s, mu 1"
-LIMIT = 120
 SLOPE, SECONDS = np.radians(10), 2
 
 

@@ -12,7 +12,6 @@ from problem import FRAME, advance
 from scenes.beam import body_of as swinging, corners_of
 
 TITLE = "Clamped beam 4 x 1 x 1 m at rest: E 8e6 Pa, 100 kg/m3, 3,000 tets, damping 0.05 s"
-LIMIT = 120
 
 
 def plan(quick):

@@ -13,7 +13,6 @@ from problem import Unsupported
 from scenes.snake import body_of
 
 TITLE = "Bind and update of 60,000 triangles in some 1,000 tets"
-LIMIT = 120
 
 
 def plan(quick):

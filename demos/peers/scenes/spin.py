@@ -11,7 +11,6 @@ from problem import Body, Material, advance
 from shapes import box_tets
 
 TITLE = "Free spin at 6 rad/s for 5 s: E 1e5 Pa, 200 kg/m3, 600 tets, no damping"
-LIMIT = 120
 OMEGA = np.array([1.0, 0.5, 6.0])
 
 

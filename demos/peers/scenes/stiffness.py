@@ -11,7 +11,6 @@ from problem import FRAME, Body, Material, advance
 from shapes import box_tets
 
 TITLE = "Cube of 0.3 m and 384 tets that falls 0.1 m, 1e3 to 1e9 Pa: 200 kg/m3, damping 0.02 s, mu 0.5"
-LIMIT = 60
 
 
 def plan(quick):
