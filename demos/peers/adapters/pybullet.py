@@ -3,8 +3,8 @@
 """pybullet's deformable world, with its neo-Hookean force.
 
 The force's constants are not Lamé's: 4/3 mu and lambda + 5/6 mu have the same Young's modulus and Poisson's ratio. A body
-divides its mass evenly among its nodes, and no call changes that; damping is Rayleigh's, without rotation. Their example
-is deformable_torus.py: margin 0.006, friction 0.5, repulsion 800, steps of 1/240 s.
+divides its mass evenly among its nodes, and no call changes that; damping is Rayleigh's, without rotation. Soft
+bodies meet each other only where self-collision is on. Their example is deformable_torus.py: margin 0.006, friction 0.5, repulsion 800, steps of 1/240 s.
 """
 import contextlib
 import os
@@ -80,7 +80,7 @@ class Simulation:
             handle = bullet.loadSoftBody(str(path), mass=float(body.masses.sum()), useNeoHookean=1, NeoHookeanMu=mu,
                                          NeoHookeanLambda=lam, NeoHookeanDamping=body.material.damping,
                                          collisionMargin=self.margin, frictionCoeff=body.material.friction,
-                                         useSelfCollision=int(body.self_contact), repulsionStiffness=800)
+                                         useSelfCollision=int(body.contact), repulsionStiffness=800)
             for node in np.flatnonzero(body.held):
                 bullet.createSoftBodyAnchor(handle, int(node))
         self.soft[handle] = body

@@ -6,7 +6,7 @@ The drift of its angular momentum, and what is left of its kinetic energy, which
 """
 import numpy as np
 
-from plan import usual
+from plan import cases, usual
 from problem import Body, Material, advance
 from shapes import box_tets
 
@@ -15,7 +15,7 @@ OMEGA = np.array([1.0, 0.5, 6.0])
 
 
 def plan(quick):
-    return usual(quick)
+    return usual(quick) + cases("mujoco", "Euler", [{"substeps": 16, "integrator": "Euler"}], {"substeps": 16})
 
 
 def run(Simulation, case, clock, _):
