@@ -7,7 +7,7 @@ from plan import usual
 from problem import Body, Material, advance
 from shapes import ball_tets, volume_of
 
-TITLE = "Soft ball rolls down 10 degrees: radius 0.2 m, E 1e6 Pa, 200 kg/m3, 1,296 tets, damping 0.02 s, mu 1"
+TITLE = "Soft ball rolls down 10 degrees: radius 0.2 m, E 1e6 Pa, 200 kg/m3, 1,296 tets, damping 0.001 s, mu 1"
 SLOPE, SECONDS = np.radians(10), 2
 
 
@@ -17,7 +17,7 @@ def plan(quick):
 
 def run(Simulation, case, clock, _):
     nodes, tets = ball_tets(0.2, 6, (0.0, 0.202, 0.0))
-    ball = Body(nodes, tets, Material(youngs_modulus=1e6, density=200.0, damping=0.02, friction=1.0))
+    ball = Body(nodes, tets, Material(youngs_modulus=1e6, density=200.0, damping=0.001, friction=1.0))
     simulation = Simulation(**case.setting, gravity=(9.81 * np.sin(SLOPE), -9.81 * np.cos(SLOPE), 0.0))
     simulation.add_plane(1.0)
     handle = simulation.add_soft(ball)
