@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Runs scenes with all peers, error against time, and writes FOLDER/peers.csv. `run` calls it in an environment that has them.
+"""Runs scenes with all peers, error against time, and writes FOLDER/peers.csv. `run` calls it in an environment that
+has them.
 
 compare.py [--quick] [--only SCENE]... [--peers LIST] [--out FOLDER] [--check]
 
-Each run is a process of its own: what crashes, hangs or explodes is a cell of the table. Cases take turns, in rounds, so
-that what else the machine does meets all alike; times are processor time, with medians, least and largest. Exit status: 0
-done, 2 bad arguments.
+Each run is a process of its own: what crashes, hangs or explodes is a cell of the table. Cases take turns, in rounds,
+so that what else the machine does meets all alike; times are processor time, with medians, least and largest. Exit
+status: 0 done, 2 bad arguments.
 """
 import argparse
 import csv
@@ -30,8 +31,10 @@ SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.s
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
 ROUNDS, ENOUGH = 5, 6.0  # at most so many runs of a case, and no further one after so many seconds in all
 LIMIT, QUICK_LIMIT = 90, 15  # seconds of processor time for one run
-COLUMNS = ["scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
-           "ms_most", "runs", "status", "why"]
+COLUMNS = [
+    "scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
+    "ms_most", "runs", "status", "why"
+]
 
 
 def arguments():
@@ -91,7 +94,8 @@ def run_one(scene, task, folder, limit):
 def overdue(process, began, limit):
     """What to say of a process that has taken too long, or None.
 
-    The limit is not set in the process: under RLIMIT_CPU, Linux counts its processor time in ticks of some milliseconds.
+    The limit is not set in the process: under RLIMIT_CPU, Linux counts its processor time in ticks of some
+    milliseconds.
     """
     try:
         ticks = open(f"/proc/{process}/stat").read().rpartition(")")[2].split()[11:13]
@@ -108,8 +112,13 @@ def overdue(process, began, limit):
 def prepare(name, scene, folder, quick):
     if not hasattr(scene, "prepare"):
         return
-    done = subprocess.run([sys.executable, str(HERE / "one.py"), name, f"--prepare{'=quick' if quick else ''}", str(folder)],
-                          cwd=HERE, text=True, stdout=subprocess.PIPE)
+    done = subprocess.run(
+        [sys.executable,
+         str(HERE / "one.py"), name, f"--prepare{'=quick' if quick else ''}",
+         str(folder)],
+        cwd=HERE,
+        text=True,
+        stdout=subprocess.PIPE)
     if done.returncode:
         sys.exit(f"{name}: its reference was not computed")
     print("\n".join("  " + line for line in done.stdout.strip().split("\n")))
@@ -130,9 +139,12 @@ def measured(name, cases, folder, quick):
 
 
 def line_of(case, outcome):
-    figures = "  ".join(f"{name} {value:.4g}" for name, value in outcome.get("figures", {}).items() if value is not None)
-    told = f"{outcome['ms']:8.2f} ms  {figures}" if outcome["status"] == "ok" else f"{outcome['status']}: {outcome['why']}"
-    return f"{case.peer:9s} {case.curve}, {case.mesh + ', ' if case.mesh else ''}{case.words}{' *' if case.example else ''}: {told}"
+    told = f"{outcome['status']}: {outcome['why']}"
+    if outcome["status"] == "ok":
+        figures = [f"{name} {value:.4g}" for name, value in outcome["figures"].items() if value is not None]
+        told = "  ".join([f"{outcome['ms']:8.2f} ms", *figures])
+    what = ", ".join(words for words in (case.curve, case.mesh, case.words) if words)
+    return f"{case.peer:9s} {what}{' *' if case.example else ''}: {told}"
 
 
 def rows_of(name, cases, outcomes):
@@ -140,9 +152,18 @@ def rows_of(name, cases, outcomes):
     for case, done in zip(cases, outcomes):
         first, good = done[0], [one for one in done if one["status"] == "ok"]
         times = [one["ms"] for one in good]
-        row = {"scene": name, "peer": case.peer, "version": first.get("version", ""), "curve": case.curve, "mesh": case.mesh,
-               "setting": case.words, "example": int(case.example), "runs": len(done), "status": first["status"],
-               "why": first["why"]}
+        row = {
+            "scene": name,
+            "peer": case.peer,
+            "version": first.get("version", ""),
+            "curve": case.curve,
+            "mesh": case.mesh,
+            "setting": case.words,
+            "example": int(case.example),
+            "runs": len(done),
+            "status": first["status"],
+            "why": first["why"]
+        }
         if not good:
             yield row
             continue
@@ -160,7 +181,9 @@ def main():
         return
     folder = Path(options.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    began, rows, head = time.time(), [], [f"date {datetime.date.today()}", f"machine {machine()}", f"Python {platform.python_version()}"]
+    began, rows, head = time.time(), [], [
+        f"date {datetime.date.today()}", f"machine {machine()}", f"Python {platform.python_version()}"
+    ]
     for name in options.scenes:
         scene = importlib.import_module(f"scenes.{name}")
         print(f"{name}: {scene.TITLE} (load {load()})", flush=True)

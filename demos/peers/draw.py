@@ -66,8 +66,9 @@ def plot(rows, scene, figure, label, path):
         for marker, curve in zip(MARKERS, dict.fromkeys((row["curve"], row["mesh"]) for row in own)):
             points = [row for row in own if (row["curve"], row["mesh"]) == curve]
             x, y = [row["ms_per_frame"] for row in points], [row["value"] for row in points]
-            spread = [[row["ms_per_frame"] - row["ms_least"] for row in points], [row["ms_most"] - row["ms_per_frame"] for row in points]]
-            axes.errorbar(x, y, xerr=spread, fmt=marker, color=colour, markersize=4, alpha=0.55, linewidth=0.8, zorder=3)
+            spread = [[row["ms_per_frame"] - row["ms_least"] for row in points],
+                      [row["ms_most"] - row["ms_per_frame"] for row in points]]
+            axes.errorbar(x, y, xerr=spread, fmt=marker, color=colour, markersize=4, alpha=0.55, linewidth=0.8)
         stars = [(row["ms_per_frame"], row["value"]) for row in own if row["example"]]
         if stars:
             axes.plot(*zip(*stars), "*", color=colour, markersize=13, markeredgecolor="white", zorder=4)
@@ -89,16 +90,21 @@ def scene_table(rows, scene):
     cases = {}
     for row in rows:
         cases.setdefault((row["peer"], row["curve"], row["mesh"], row["setting"]), []).append(row)
-    lines = [f"| peer | what, mesh | setting | ms per frame | {' | '.join(figures)} |", "|---" * (4 + len(figures)) + "|"]
+    lines = [
+        f"| peer | what, mesh | setting | ms per frame | {' | '.join(figures)} |", "|---" * (4 + len(figures)) + "|"
+    ]
     for (peer, curve, mesh, setting), own in cases.items():
         first = own[0]
-        begin = f"| {NAMES[peer]} {first['version']} | {curve}{', ' + mesh if mesh else ''} | {setting}{' *' if first['example'] else ''} |"
+        what, star = ", ".join(words for words in (curve, mesh) if words), " *" if first["example"] else ""
+        begin = f"| {NAMES[peer]} {first['version']} | {what} | {setting}{star} |"
         if first["status"] != "ok":
-            lines.append(f"{begin} | {first['status']}: {first['why'].replace('|', '/')} |" + " |" * (len(figures) - 1))
+            told = f"{first['status']}: {first['why']}".replace("|", "/")
+            lines.append(f"{begin} | {told} |" + " |" * (len(figures) - 1))
             continue
         values = {row["figure"]: number(row["value"]) for row in own}
         spread = f" ({number(first['ms_least'])} to {number(first['ms_most'])})" if int(first["runs"]) > 1 else ""
-        lines.append(f"{begin} {number(first['ms_per_frame'])}{spread} | {' | '.join(values.get(name, '') for name in figures)} |")
+        cells = " | ".join([f"{number(first['ms_per_frame'])}{spread}", *(values.get(name, "") for name in figures)])
+        lines.append(f"{begin} {cells} |")
     return "\n".join(lines)
 
 
@@ -117,8 +123,9 @@ def losses(rows):
                 worst[key] = times, row
         for (peer, reached), (times, row) in sorted(worst.items(), key=lambda item: item[0]):
             how = f"in 1/{times:.1f} of our time" if reached else "which we reach with no setting that was run"
-            found.append(f"- {scene}, {figure}: {NAMES[peer]} ({row['curve']}, {row['setting']}) has {number(row['value'])} "
-                         f"in {number(row['ms_per_frame'])} ms, {how}.")
+            found.append(
+                f"- {scene}, {figure}: {NAMES[peer]} ({row['curve']}, {row['setting']}) has {number(row['value'])} "
+                f"in {number(row['ms_per_frame'])} ms, {how}.")
     return found
 
 

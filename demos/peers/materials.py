@@ -75,7 +75,9 @@ def quadratic_elements(nodes, tets):
     ten = np.concatenate([tets, len(nodes) + inverse.reshape(-1, 6)], 1)
     g, points = gradients(nodes, tets), np.full((4, 4), 0.1381966011250105) + np.eye(4) * 0.4472135954999579
     corners = (4 * points - 1)[None, :, :, None] * g[:, None]
-    middles = [4 * (points[None, :, i, None] * g[:, None, j] + points[None, :, j, None] * g[:, None, i]) for i, j in EDGES]
+    middles = [
+        4 * (points[None, :, i, None] * g[:, None, j] + points[None, :, j, None] * g[:, None, i]) for i, j in EDGES
+    ]
     weights = np.repeat(volumes(nodes, tets)[:, None] / 4, 4, 1)
     return all_nodes, (ten, np.concatenate([corners, np.stack(middles, 2)], 2), weights)
 

@@ -72,8 +72,14 @@ def outcome_of(scene, case, folder):
         traceback.print_exc()
         return {"status": "fails", "why": f"{type(fault).__name__}: {fault}".split("\n")[0], "version": adapter.VERSION}
     frames = max(len(clock.parts), 1)
-    return {"status": "ok", "why": "", "figures": figures, "ms": 1e3 * clock.seconds / frames, "version": adapter.VERSION,
-            "cost": time.process_time() - began}
+    return {
+        "status": "ok",
+        "why": "",
+        "figures": figures,
+        "ms": 1e3 * clock.seconds / frames,
+        "version": adapter.VERSION,
+        "cost": time.process_time() - began
+    }
 
 
 def main(name, task, folder):

@@ -89,7 +89,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A rigid box or ball. mass 0: it does not move. rotation: x, y, z, w. friction: with soft bodies whose own is 1."""
+    """A rigid box or ball. mass 0: it does not move. rotation: x, y, z, w. friction: with soft bodies of friction 1."""
     shape: str  # "box" or "ball"
     size: object  # half extents, or the radius
     mass: float = 0.0

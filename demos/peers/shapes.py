@@ -64,7 +64,8 @@ def tube(line, radius, around):
     ring = np.cos(angle)[None, :, None] * side[:, None] + np.sin(angle)[None, :, None] * up[:, None]
     positions = (line[:, None] + radius[:, None, None] * ring).reshape(-1, 3)
     i, j = np.meshgrid(np.arange(count - 1), np.arange(around), indexing="ij")
-    a, b, c, d = i * around + j, i * around + (j + 1) % around, (i + 1) * around + (j + 1) % around, (i + 1) * around + j
+    a, b, c, d = i * around + j, i * around + (j + 1) % around, (i + 1) * around + (j + 1) % around, (i +
+                                                                                                      1) * around + j
     triangles = [np.stack([a, c, b], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)]
     first, last = len(positions), len(positions) + 1
     ends = np.arange(around)
@@ -81,7 +82,8 @@ def snake(vertices_along=300, around=100):
     thick = 0.045 * np.sqrt(np.clip(1 - (2 * t - 1) ** 4, 1e-4, None))
     positions, triangles = tube(line, thick, around)
     rows = np.arange(vertices_along * around).reshape(vertices_along, around)
-    scales = 1 + 0.03 * np.sin(0.9 * np.arange(vertices_along))[:, None] * np.cos(8 * 2 * np.pi * np.arange(around) / around)
+    scales = 1 + 0.03 * np.sin(0.9 * np.arange(vertices_along))[:, None] * np.cos(
+        8 * 2 * np.pi * np.arange(around) / around)
     centres = np.repeat(line, around, 0)
     positions[rows.ravel()] = centres + (positions[rows.ravel()] - centres) * scales.reshape(-1, 1)
     return positions, triangles

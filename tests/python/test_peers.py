@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/peers, which compares tetskin with others: that it still runs, with tetskin alone, and that what fails is a cell."""
+"""demos/peers, which compares tetskin with others: that it still runs, with tetskin alone, and that what fails is a
+cell."""
 import csv
 import subprocess
 import sys
@@ -77,8 +78,10 @@ def run(Simulation, case, clock, references):
     monkeypatch.setattr(harness, "HERE", tmp_path)
     outcomes = {}
     for what in ("cannot", "explodes", "crashes", "too slow", "ok"):
-        outcomes[what] = harness.run_one("trouble", harness.json.dumps(Case("peer", "", {}, what).as_dict()), tmp_path, 2)
-    outcomes["not installed"] = harness.run_one("trouble", harness.json.dumps(Case("nobody", "").as_dict()), tmp_path, 2)
+        outcomes[what] = harness.run_one("trouble", harness.json.dumps(Case("peer", "", {}, what).as_dict()), tmp_path,
+                                         2)
+    outcomes["not installed"] = harness.run_one("trouble", harness.json.dumps(Case("nobody", "").as_dict()), tmp_path,
+                                                2)
     assert {what: outcome["status"] for what, outcome in outcomes.items()} == {what: what for what in outcomes}
     assert outcomes["cannot"]["why"] == "it has no wheels" and "SIGABRT" in outcomes["crashes"]["why"]
 

@@ -4,9 +4,9 @@
 
 Their material is Saint Venant-Kirchhoff's; damping is Rayleigh's, in seconds, as ours. A flex divides its mass evenly
 among its points: the masses of the tets are set after the model has been compiled. Its elasticity is implicit under the
-integrator "discrete" alone, and explicit under "Euler". The friction of a contact would be the larger of the two: that of
-planes and rigid bodies is given priority. The settings of their own examples are those of
-model/flex/mechanisms: discrete, Newton, a tolerance of 1e-7, steps of 1 ms.
+integrator "discrete" alone, and explicit under "Euler". The friction of a contact would be the larger of the two: that
+of planes and rigid bodies is given priority. The settings of their own examples are those of model/flex/mechanisms:
+discrete, Newton, a tolerance of 1e-7, steps of 1 ms.
 """
 import mujoco
 import numpy as np
@@ -15,7 +15,7 @@ from problem import GRAVITY, Unsupported
 from shapes import surface_of
 
 VERSION = mujoco.__version__
-NO_SKIN = "a flex of tets has no second, finer surface; a surface in a grid of cells is simulated and drawn as one"
+NO_SKIN = "it attaches surfaces to a grid of cells of its own, and simulates that: none to given tets"
 RADIUS = 0.002  # of the vertices, in contact: that of their examples
 
 
@@ -26,7 +26,14 @@ def numbers(rows):
 class Simulation:
     """substeps: per frame. cells: of the grid, None: the tets themselves; order: 1 or 2, of the cells."""
 
-    def __init__(self, substeps=16, integrator="discrete", solver="CG", tolerance=1e-8, iterations=100, cells=None, order=2,
+    def __init__(self,
+                 substeps=16,
+                 integrator="discrete",
+                 solver="CG",
+                 tolerance=1e-8,
+                 iterations=100,
+                 cells=None,
+                 order=2,
                  gravity=GRAVITY):
         self.substeps, self.cells, self.order = substeps, cells, order
         self.option = (f'<option gravity="{numbers(gravity)}" integrator="{integrator}" solver="{solver}" '
@@ -34,7 +41,8 @@ class Simulation:
         self.parts, self.soft, self.rigid = [], [], []
 
     def add_plane(self, friction=1.0):
-        self.parts.append(f'<geom type="plane" size="0 0 1" zaxis="0 1 0" priority="1" friction="{friction} 0.005 0.0001"/>')
+        self.parts.append(
+            f'<geom type="plane" size="0 0 1" zaxis="0 1 0" priority="1" friction="{friction} 0.005 0.0001"/>')
 
     def add_soft(self, body):
         name, material = f"flex{len(self.soft)}", body.material
@@ -50,7 +58,8 @@ class Simulation:
         self.parts.append(
             f'<flexcomp name="{name}" type="direct" dim="3" dof="{dof}"{cells} radius="{RADIUS}" '
             f'mass="{body.masses.sum()}" point="{numbers(body.nodes)}" element="{numbers(body.tets)}">'
-            f'<elasticity young="{material.youngs_modulus}" poisson="{material.poisson_ratio}" damping="{material.damping}"/>'
+            f'<elasticity young="{material.youngs_modulus}" poisson="{material.poisson_ratio}" '
+            f'damping="{material.damping}"/>'
             f'<contact selfcollide="{"auto" if body.self_contact else "none"}"'
             f' friction="{material.friction} 0.005 0.0001"{contact}/>{pins}</flexcomp>')
         self.soft.append(body)
@@ -72,9 +81,11 @@ class Simulation:
         x, y, z, w = rigid.rotation
         joint = "<freejoint/>" if rigid.mass else ""
         mass = f' mass="{rigid.mass}"' if rigid.mass else ""
-        self.parts.append(f'<body name="{name}" pos="{numbers(rigid.position)}" quat="{numbers((w, x, y, z))}">{joint}'
-                          f'<geom type="{shape}" size="{numbers(rigid.size)}"{mass} priority="1" friction="{rigid.friction} 0.005 0.0001"/>'
-                          '</body>')
+        self.parts.append(
+            f'<body name="{name}" pos="{numbers(rigid.position)}" quat="{numbers((w, x, y, z))}">{joint}'
+            f'<geom type="{shape}" size="{numbers(rigid.size)}"{mass} priority="1" '
+            f'friction="{rigid.friction} 0.005 0.0001"/>'
+            '</body>')
         self.rigid.append(rigid)
         return name
 

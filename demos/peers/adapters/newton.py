@@ -2,9 +2,12 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Newton, on the processor: soft bodies by SolverVBD; also by SolverXPBD and SolverSemiImplicit.
 
-Its damping is of the rate of Green's strain, 4 k_damp for 2 mu times our seconds; that of the volume is not there. Their
-example is softbody_hanging: VBD, 10 substeps of 10 iterations, no self-contact, no tiles.
+Its damping is of the rate of Green's strain, 4 k_damp for 2 mu times our seconds; that of the volume is not there.
+Their example is softbody_hanging: VBD, 10 substeps of 10 iterations, no self-contact, no tiles.
 """
+import statistics
+import time
+
 import numpy as np
 import warp
 
@@ -16,13 +19,19 @@ from problem import GRAVITY, Unsupported  # noqa: E402
 
 VERSION = newton.__version__
 
-NO_SKIN = "it attaches finer surfaces to tets for drawing on the GPU alone"
 
 
 class Simulation:
     """substeps: per frame; iterations: within each. stiffness, damping, radius: of contact, N/m, N s/m and metres."""
 
-    def __init__(self, substeps=10, iterations=10, solver="vbd", stiffness=1e4, damping=10.0, radius=0.004, gravity=GRAVITY):
+    def __init__(self,
+                 substeps=10,
+                 iterations=10,
+                 solver="vbd",
+                 stiffness=1e4,
+                 damping=10.0,
+                 radius=0.004,
+                 gravity=GRAVITY):
         self.substeps, self.iterations, self.kind = substeps, iterations, solver
         self.stiffness, self.damping, self.radius = stiffness, damping, radius
         self.builder = newton.ModelBuilder(up_axis=newton.Axis.Y, gravity=tuple(map(float, gravity)))
@@ -54,7 +63,8 @@ class Simulation:
         place = warp.transform(warp.vec3(*rigid.position), warp.quat(*rigid.rotation))
         if rigid.mass:
             half = np.broadcast_to(rigid.size, 3)
-            inertia = rigid.mass / 3 * np.diag([half[1] ** 2 + half[2] ** 2, half[0] ** 2 + half[2] ** 2, half[0] ** 2 + half[1] ** 2])
+            inertia = rigid.mass / 3 * np.diag(
+                [half[1]**2 + half[2]**2, half[0]**2 + half[2]**2, half[0]**2 + half[1]**2])
             if rigid.shape == "ball":
                 inertia = 0.4 * rigid.mass * rigid.size**2 * np.eye(3)
             body = self.builder.add_body(xform=place, mass=rigid.mass, inertia=warp.mat33(*inertia.ravel()))
@@ -117,7 +127,7 @@ class Simulation:
 
     def surface(self, handle):
         if self.soft[handle][1].skin:
-            raise Unsupported("contact is at the nodes and triangles of the tets: a finer surface is drawn alone")
+            raise Unsupported("contact is at the nodes of the tets: a finer surface is drawn alone")
         return self.nodes(handle)
 
     def pose(self, handle):
@@ -126,3 +136,25 @@ class Simulation:
 
     def asleep(self, handle):
         return False
+
+
+def skin_times(body, moved):
+    """Seconds of processor time to build the model with the skin more than without, and to move it once: median of 20."""
+    spent = {}
+    for skinned in (True, False, True):  # the first one compiles what is not in its cache
+        simulation = Simulation(gravity=(0.0, 0.0, 0.0))
+        simulation.add_soft(body)
+        began = time.process_time()
+        if skinned:
+            simulation.builder.add_deformable_visual_mesh(body.skin[0].astype(np.float32), body.skin[1].ravel(),
+                                                          kind="tetrahedron", tet_range=(0, len(body.tets)))
+        model = simulation.builder.finalize(device="cpu")
+        spent[skinned] = time.process_time() - began
+    visuals, state, times = newton.geometry.DeformableVisuals(model), model.state(), []
+    state.particle_q.assign(moved.astype(np.float32))
+    visuals.update(state)
+    for _ in range(20):
+        began = time.process_time()
+        visuals.update(state)
+        times.append(time.process_time() - began)
+    return spent[True] - spent[False], statistics.median(times)

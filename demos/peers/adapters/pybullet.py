@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """pybullet's deformable world, with its neo-Hookean force.
 
-The force's constants are not Lamé's: 4/3 mu and lambda + 5/6 mu have the same Young's modulus and Poisson's ratio. A body
-divides its mass evenly among its nodes, and no call changes that; damping is Rayleigh's, without rotation. Soft
-bodies meet each other only where self-collision is on. Their example is deformable_torus.py: margin 0.006, friction 0.5, repulsion 800, steps of 1/240 s.
+The force's constants are not Lamé's: 4/3 mu and lambda + 5/6 mu have the same Young's modulus and Poisson's ratio. A
+body divides its mass evenly among its nodes, and no call changes that; damping is Rayleigh's, without rotation. Soft
+bodies meet each other only where self-collision is on. Their example is deformable_torus.py: margin 0.006, friction
+0.5, repulsion 800, steps of 1/240 s.
 """
 import contextlib
 import os
@@ -64,7 +65,11 @@ class Simulation:
         self._add(shape, 0, (0, -5, 0), (0, 0, 0, 1), friction)
 
     def _add(self, shape, mass, position, rotation, friction):
-        body = bullet.createMultiBody(mass, shape, basePosition=position, baseOrientation=rotation, useMaximalCoordinates=True)
+        body = bullet.createMultiBody(mass,
+                                      shape,
+                                      basePosition=position,
+                                      baseOrientation=rotation,
+                                      useMaximalCoordinates=True)
         bullet.changeDynamics(body, -1, lateralFriction=friction)
         return body
 
@@ -128,8 +133,8 @@ class Simulation:
 
 
 def skin_times(body, moved):
-    """Seconds of processor time to load the body with a mesh to draw more than without. Its update is a part of the step,
-    and cannot be timed by itself: the one of a step with the mesh more than without, the median of 10."""
+    """Seconds of processor time to load the body with a mesh to draw more than without. Its update is a part of the
+    step, and cannot be timed by itself: the one of a step with the mesh more than without, the median of 10."""
     spent, steps = {}, {}
     for drawn in (False, True):
         simulation = Simulation(gravity=(0.0, 0.0, 0.0))
@@ -137,7 +142,12 @@ def skin_times(body, moved):
         write_vtk(path / "cage.vtk", body.nodes, body.tets)
         lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in body.skin[0]]
         (path / "skin.obj").write_text("\n".join(lines + [f"f {a} {b} {c}" for a, b, c in body.skin[1] + 1]) + "\n")
-        files = {"fileName": str(path / "skin.obj"), "simFileName": str(path / "cage.vtk")} if drawn else {"fileName": str(path / "cage.vtk")}
+        files = {
+            "fileName": str(path / "skin.obj"),
+            "simFileName": str(path / "cage.vtk")
+        } if drawn else {
+            "fileName": str(path / "cage.vtk")
+        }
         began = time.process_time()
         with quiet():
             bullet.loadSoftBody(**files, mass=1.0, useNeoHookean=1, NeoHookeanMu=1e3, NeoHookeanLambda=1e3)

@@ -2,10 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Rapier: corotational cells, by its constraint solver (the default) or its implicit finite elements.
 
-Its world steps once per frame, and divides that by num_solver_iterations, 4 by default. Cells are damped by a ratio at a
-frequency of each cell: damping_ratio_of gives the one with the same Rayleigh damping in the mean, and
-the constraint solver gets at most 1. Its own examples
-(soft_fem3, soft_meshes3) leave substeps and iterations at the defaults.
+Its world steps once per frame, and divides that by num_solver_iterations, 4 by default. Cells are damped by a ratio at
+a frequency of each cell: damping_ratio_of gives the one with the same Rayleigh damping in the mean, and the constraint
+solver gets at most 1. Its own examples (soft_fem3, soft_meshes3) leave substeps and iterations at the defaults.
 """
 import statistics
 import time
@@ -25,8 +24,8 @@ VERSION = version("rapier3d")
 def damping_ratio_of(body):
     """The ratio whose Rayleigh coefficient, in the mean over the cells, is the material's damping in seconds.
 
-    Rapier's coefficient of a cell is twice the ratio over the mean of the frequencies of its six strains, each beside the
-    masses of its corners.
+    Rapier's coefficient of a cell is twice the ratio over the mean of the frequencies of its six strains, each beside
+    the masses of its corners.
     """
     if body.material.damping == 0:
         return 0.0
@@ -65,7 +64,8 @@ class Simulation:
         ratio = damping_ratio_of(body)
         if self.solver == "constraints":  # which a ratio above that of its examples makes worse, not more damped
             ratio = min(ratio, 1.0)
-        material = rapier.SoftBodyMaterial(young_modulus=body.material.youngs_modulus, poisson_ratio=body.material.poisson_ratio,
+        material = rapier.SoftBodyMaterial(young_modulus=body.material.youngs_modulus,
+                                           poisson_ratio=body.material.poisson_ratio,
                                            elastic_damping_ratio=float(ratio))
         kind = rapier.SoftBodySolver.FEM if self.solver == "fem" else rapier.SoftBodySolver.CONSTRAINTS
         builder = rapier.SoftBodyBuilder(body.nodes.astype(np.float32)).masses([float(m) for m in body.masses])
@@ -81,7 +81,8 @@ class Simulation:
             builder = builder.particle_radius(self.radius).surface_collider(collider).self_contacts(body.self_contact)
             builder = builder.surface(surface_of(body.tets).astype(np.uint32))
             if body.skin:
-                builder = builder.skin(body.skin[0].astype(np.float32), body.skin[1].astype(np.uint32)).skin_collision(True)
+                builder = builder.skin(body.skin[0].astype(np.float32),
+                                       body.skin[1].astype(np.uint32)).skin_collision(True)
         else:
             builder = builder.no_surface_collider()
         handle = self.world.add_soft_body(builder)
@@ -137,8 +138,8 @@ class Simulation:
 
 
 def skin_times(body, moved):
-    """Seconds of processor time to insert the body with its skin more than without, and to read the skin's vertices, which
-    Rapier computes from the particles when they are asked for: the median of 20."""
+    """Seconds of processor time to insert the body with its skin more than without, and to read the skin's vertices,
+    which Rapier computes from the particles when they are asked for: the median of 20."""
     spent = {}
     for skin in (None, body.skin):
         simulation = Simulation(gravity=(0.0, 0.0, 0.0))

@@ -20,7 +20,12 @@ TITLE = "Clamped beam 4 x 1 x 1 m that swings: E 5e5 Pa, nu 0.3, 100 kg/m3, no d
 LENGTH, FRAMES = 4.0, 90
 MATERIAL = Material(youngs_modulus=5e5, poisson_ratio=0.3, density=100.0)
 CELLS = {"3,000 tets": (20, 5, 5), "32,000 tets": (44, 11, 11)}
-QUADRATIC = {"4 x 1 x 1 cells": (4, 1, 1), "6 x 2 x 2 cells": (6, 2, 2), "8 x 2 x 2 cells": (8, 2, 2), "12 x 3 x 3 cells": (12, 3, 3)}
+QUADRATIC = {
+    "4 x 1 x 1 cells": (4, 1, 1),
+    "6 x 2 x 2 cells": (6, 2, 2),
+    "8 x 2 x 2 cells": (8, 2, 2),
+    "12 x 3 x 3 cells": (12, 3, 3)
+}
 REFERENCES = {"reference": (24, 6, 6), "coarser reference": (16, 4, 4)}
 
 
@@ -34,14 +39,16 @@ def plan(quick):
         *cases("tetskin", "world, the mesh's own masses", of(substeps, own_masses=True, tolerance=1e-4), None, same),
         *cases("tetskin", "ElasticBody", of(substeps, kind="alone", tolerance=1e-4), None, same),
         *cases("mujoco", "discrete", of((4,) if quick else (1, 4, 16)), {"substeps": 16}, same),
-        *cases("mujoco", "Euler", of((10, 16) if quick else (10, 12, 16, 32), integrator="Euler"), {"substeps": 16}, same),
+        *cases("mujoco", "Euler", of((10, 16) if quick else (10, 12, 16, 32), integrator="Euler"), {"substeps": 16},
+               same),
         *cases("rapier", "constraints", of((4, 16) if quick else (4, 8, 16, 32, 64)), {"substeps": 4}, same),
         *cases("rapier", "finite elements", of((4,) if quick else (1, 4, 16, 64), **fem), {"substeps": 4}, same),
         *cases("pybullet", "neo-Hookean", of((8, 16) if quick else (4, 8, 12, 16, 32)), {"substeps": 4}, same),
         *cases("pybullet", "neo-Hookean by Lamé's constants", of((16,), lame=True), None, same),
     ]
     pairs = ((10, 10),) if quick else ((4, 10), (4, 40), (10, 10), (20, 20))
-    planned += cases("newton", "VBD", [{"substeps": n, "iterations": m} for n, m in pairs], {"substeps": 10, "iterations": 10}, same)
+    settings = [{"substeps": n, "iterations": m} for n, m in pairs]
+    planned += cases("newton", "VBD", settings, {"substeps": 10, "iterations": 10}, same)
     if not quick:
         planned += cases("tetskin", "world, the mesh's own masses", of((4,), own_masses=True), None, "32,000 tets")
         planned += cases("newton", "XPBD", of((10,), iterations=10, solver="xpbd"), None, same)
@@ -100,7 +107,8 @@ def prepare(quick):
     if not quick:
         coarser, best = best, quadratic("reference")
         words.append(f"reference: from 1,536 to 5,184 quadratic tets it changes by {error(coarser, best):.2f} %")
-        words.append(f"tetskin's steps and NumPy's lead to the same: {error(explicit(corotated, '3,000 tets'), ours):.3f} %")
+        words.append(
+            f"tetskin's steps and NumPy's lead to the same: {error(explicit(corotated, '3,000 tets'), ours):.3f} %")
     ways = {"corotated 3,000 tets": ours, "corotated": best}
     base = explicit(corotated, "8 x 2 x 2 cells")
     for stress in set(MATERIALS.values()) - {corotated}:
@@ -156,7 +164,8 @@ def period_of(way, near):
         waves = np.stack([np.ones_like(times), np.cos(first * times), np.cos(second * times)], 1)
         return np.sum((way - waves @ np.linalg.lstsq(waves, way, rcond=None)[0]) ** 2)
 
-    pairs = [(first, ratio * first) for first in 2 * np.pi / near * np.linspace(0.96, 1.04, 81) for ratio in np.linspace(5, 6.5, 31)]
+    pairs = [(first, ratio * first) for first in 2 * np.pi / near * np.linspace(0.96, 1.04, 81)
+             for ratio in np.linspace(5, 6.5, 31)]
     return 2 * np.pi / min(pairs, key=lambda pair: left(*pair))[0]
 
 

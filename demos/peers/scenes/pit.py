@@ -28,9 +28,13 @@ def run(Simulation, case, clock, _):
         layer, place = divmod(k, 25)
         x, z = 0.28 * (place % 5 - 2), 0.28 * (place // 5 - 2)
         x, z = x + turn.uniform(-0.03, 0.03), z + turn.uniform(-0.03, 0.03)
-        balls.append(simulation.add_rigid(Rigid("ball", RADIUS, mass=1.0, position=(x, 0.4 + 0.3 * layer, z), friction=0.5)))
+        balls.append(
+            simulation.add_rigid(Rigid("ball", RADIUS, mass=1.0, position=(x, 0.4 + 0.3 * layer, z), friction=0.5)))
     simulation.start()
     advance(simulation, 180, clock)
     places = np.array([simulation.pose(ball)[0] for ball in balls])
     inside = np.abs(places[:, [0, 2]]).max(1) < 0.9
-    return {"balls that have sunk or left": float(np.sum((places[:, 1] < 0.15) | ~inside)), "lowest ball, mm above the mat": 1e3 * (places[:, 1].min() - 0.2 - RADIUS)}
+    return {
+        "balls that have sunk or left": float(np.sum((places[:, 1] < 0.15) | ~inside)),
+        "lowest ball, mm above the mat": 1e3 * (places[:, 1].min() - 0.2 - RADIUS)
+    }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""A soft ball rolls down a slope of 10 degrees for 2 s. Its way, over that of a rigid ball: 5/14 g t^2 sin 10 degrees."""
+"""A soft ball rolls down a slope of 10 degrees for 2 s. Its way, over that of a rigid ball: 5/14 g t^2 sin 10
+degrees."""
 import numpy as np
 
 from plan import usual

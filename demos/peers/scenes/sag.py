@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """A clamped beam, stiffer than the one that swings, sags under its weight and comes to rest within 3 s.
 
-Error: of the sag, beside the same tets at rest (tetskin's ElasticBody with a residual of 1e-7; strains are small, and all
-materials the same).
+Error: of the sag, beside the same tets at rest (tetskin's ElasticBody with a residual of 1e-7; strains are small, and
+all materials the same).
 """
 from dataclasses import replace
 
@@ -37,7 +37,11 @@ def sag_of(simulation, clock=None):
 
 def run(Simulation, case, clock, references):
     sag, speed = sag_of(Simulation(**case.setting), clock)
-    return {"sag, mm": 1e3 * sag, "error of the sag, %": 100 * abs(sag / references["sag"] - 1), "speed, mm/s": 1e3 * speed}
+    return {
+        "sag, mm": 1e3 * sag,
+        "error of the sag, %": 100 * abs(sag / references["sag"] - 1),
+        "speed, mm/s": 1e3 * speed
+    }
 
 
 def prepare(quick):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a fine surface costs by itself: to attach the snake's 60,000 triangles to a cage, and to move them once per frame.
+"""What a fine surface costs by itself: to attach the snake's 60,000 triangles to a cage, and to move them once per
+frame.
 
 Each adapter's function skin_times does what the peer offers; the cage's nodes are moved by a bend that all share.
 """

@@ -21,7 +21,8 @@ def run(Simulation, case, clock, _):
     slab = Body(nodes, tets, material, pinned=nodes[:, 1] < 1e-9)
     simulation = Simulation(**case.setting)
     simulation.add_soft(slab)
-    box = simulation.add_rigid(Rigid("box", (0.1, 0.05, 0.1), mass=2.0, position=(0.0, 0.255, 0.0), velocity=(SPEED, 0, 0), friction=MU))
+    box = simulation.add_rigid(
+        Rigid("box", (0.1, 0.05, 0.1), mass=2.0, position=(0.0, 0.255, 0.0), velocity=(SPEED, 0, 0), friction=MU))
     simulation.start()
     advance(simulation, 120, clock)
     before = simulation.pose(box)[0]
@@ -29,5 +30,10 @@ def run(Simulation, case, clock, _):
     position, rotation = simulation.pose(box)
     share = position[0] / (SPEED**2 / (2 * MU * 9.81))
     tilt = np.degrees(2 * np.arcsin(min(1.0, np.linalg.norm(rotation[:3]))))
-    return {"error of the way, %": 100 * abs(share - 1), "way, share of Coulomb's": share, "height above the slab, mm": 1e3 * (position[1] - 0.25),
-            "turned by, degrees": tilt, "speed at the end, mm/s": 1e3 * np.linalg.norm(position - before) / FRAME}
+    return {
+        "error of the way, %": 100 * abs(share - 1),
+        "way, share of Coulomb's": share,
+        "height above the slab, mm": 1e3 * (position[1] - 0.25),
+        "turned by, degrees": tilt,
+        "speed at the end, mm/s": 1e3 * np.linalg.norm(position - before) / FRAME
+    }

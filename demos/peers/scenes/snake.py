@@ -3,9 +3,9 @@
 """A snake of 60,000 triangles, in a cage of some 1,000 tets, falls 0.2 m onto the ground and rests there.
 
 All peers simulate the cage's tets, as they are. Those that take a second, finer surface are in contact at it; for the
-others the skin is put on afterwards, by tetskin's Skin: what is drawn is that in every peer, and its gap is measured. Error:
-RMS distance of the drawn surface, over the frames from 1.5 to 2 s, from that of tetskin's world in 64 substeps, in percent
-of the snake's size: it is a comparison with us, and not with the truth, which for the gap is 0.
+others the skin is put on afterwards, by tetskin's Skin: what is drawn is that in every peer, and its gap is measured.
+Error: RMS distance of the drawn surface, over the frames from 1.5 to 2 s, from that of tetskin's world in 64 substeps,
+in percent of the snake's size: it is a comparison with us, and not with the truth, which for the gap is 0.
 """
 import numpy as np
 import tetskin as ts
@@ -26,7 +26,7 @@ def plan(quick):
         *cases("rapier", "constraints", of((4,) if quick else (2, 4, 8)), {"substeps": 4}),
         *cases("mujoco", "discrete", of((16,) if quick else (4, 16)), {"substeps": 16}),
         *cases("pybullet", "neo-Hookean", of((16,) if quick else (4, 8, 16, 32)), {"substeps": 4}),
-        *cases("newton", "VBD", [{"substeps": n, "iterations": 10} for n in ((10,) if quick else (5, 10, 20))], {"substeps": 10}),
+        *cases("newton", "VBD", of((10,) if quick else (5, 10, 20), iterations=10), {"substeps": 10}),
     ]
     if not quick:
         planned += cases("rapier", "finite elements", of((4, 8), solver="fem", iterations=100), {"substeps": 4})
@@ -77,7 +77,11 @@ def land(simulation, clock=None, frames=REST):
     before = drawn()
     simulation.step(FRAME)
     speed = np.sqrt(np.mean(np.sum((drawn() - before) ** 2, axis=1))) / FRAME
-    return np.array(surfaces), {"gap, mm": 1e3 * before[:, 1].min(), "speed at the end, mm/s": 1e3 * speed, "asleep after, s": slept}
+    return np.array(surfaces), {
+        "gap, mm": 1e3 * before[:, 1].min(),
+        "speed at the end, mm/s": 1e3 * speed,
+        "asleep after, s": slept
+    }
 
 
 def run(Simulation, case, clock, references):

@@ -31,5 +31,10 @@ def run(Simulation, case, clock, _):
     advance(simulation, 1)
     after = np.stack([simulation.nodes(handle) for handle in handles])
     lean = np.linalg.norm((after.mean(1) - np.stack([body.nodes for body in boxes]).mean(1))[:, [0, 2]], axis=1).max()
-    return {"ms at rest": 1e3 * np.mean(clock.parts[-60:]), "asleep after, s": slept, "leans by, mm": 1e3 * lean,
-            "top, m": after[2, :, 1].max(), "speed at the end, mm/s": 1e3 * np.sqrt(np.mean(np.sum((after - before) ** 2, axis=-1))) / FRAME}
+    return {
+        "ms at rest": 1e3 * np.mean(clock.parts[-60:]),
+        "asleep after, s": slept,
+        "leans by, mm": 1e3 * lean,
+        "top, m": after[2, :, 1].max(),
+        "speed at the end, mm/s": 1e3 * np.sqrt(np.mean(np.sum((after - before)**2, axis=-1))) / FRAME
+    }
