@@ -30,7 +30,7 @@ HERE = Path(__file__).resolve().parent
 SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.stem != "__init__"]
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
 ROUNDS, ENOUGH = 5, 6.0  # at most so many runs of a case, and no further one after so many seconds in all
-LIMIT, QUICK_LIMIT = 90, 15  # seconds of processor time for one run
+LIMIT, QUICK_LIMIT = 60, 8  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
 COLUMNS = [
     "scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
     "ms_most", "runs", "status", "why"
@@ -124,15 +124,15 @@ def prepare(name, scene, folder, quick):
     print("\n".join("  " + line for line in done.stdout.strip().split("\n")))
 
 
-def measured(name, cases, folder, quick):
+def measured(name, cases, folder, limit, rounds):
     """Outcomes of each case, of all rounds: those that are slow, or not ok, have one."""
     outcomes = [[] for _ in cases]
-    for turn in range(1 if quick else ROUNDS):
+    for turn in range(rounds):
         for k, case in enumerate(cases):
             done = outcomes[k]
             if done and (done[0]["status"] != "ok" or sum(one["cost"] for one in done) > ENOUGH):
                 continue
-            done.append(run_one(name, json.dumps(case.as_dict()), folder, QUICK_LIMIT if quick else LIMIT))
+            done.append(run_one(name, json.dumps(case.as_dict()), folder, limit))
             if turn == 0:
                 print(f"  {line_of(case, done[0])}", flush=True)
     return outcomes
@@ -190,7 +190,8 @@ def main():
         prepare(name, scene, folder, options.quick)
         cases = [case for case in scene.plan(options.quick) if case.peer in options.peers]
         start = time.time()
-        outcomes = measured(name, cases, folder, options.quick)
+        limit = getattr(scene, "QUICK_LIMIT", QUICK_LIMIT) if options.quick else LIMIT
+        outcomes = measured(name, cases, folder, limit, 1 if options.quick else ROUNDS)
         rows += rows_of(name, cases, outcomes)
         head.append(f"{name} {time.time() - start:.0f} s, load {load()}")
         write(folder / "peers.csv", head, rows)  # after each scene: what is interrupted has its rows

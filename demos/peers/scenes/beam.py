@@ -18,6 +18,7 @@ from shapes import box_tets
 
 TITLE = "Clamped beam 4 x 1 x 1 m that swings: E 5e5 Pa, nu 0.3, 100 kg/m3, no damping"
 LENGTH, FRAMES = 4.0, 90
+QUICK_LIMIT = 25  # for Newton
 MATERIAL = Material(youngs_modulus=5e5, poisson_ratio=0.3, density=100.0)
 CELLS = {"3,000 tets": (20, 5, 5), "32,000 tets": (44, 11, 11)}
 QUADRATIC = {
