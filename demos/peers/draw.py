@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Draws what compare.py has measured: FOLDER/SCENE_FIGURE.png, error against time, and tables.md.
+"""Draws what compare.py has measured: FOLDER/SCENE_FIGURE.png, error against time, and tables.md, a short one first.
 
 draw.py peers.csv [FOLDER]
 
@@ -23,6 +23,21 @@ MARKERS = "osD^vPX<>h"
 PLOTS = {("beam", "error in time"): "error of the tip's way in time alone, %\nof the largest (the same 3,000 tets)",
          ("beam", "error in all"): "error of the tip's way in all, %\nof the largest",
          ("snake", "error"): "distance of the drawn surface from\ntetskin in 64 substeps, % of its size"}
+
+
+# The table for a first page: label, scene, figure, and the error that the quickest run must have, or None: the figure in
+# the setting of the peer's own example. Without a figure: its time.
+SUMMARY = [("beam: ms for 1 % error in time", "beam", "error in time", 1.0),
+           ("beam: ms for 0.1 %", "beam", "error in time", 0.1),
+           ("beam: ms for 1 % error in all", "beam", "error in all", 1.0),
+           ("stiff beam at rest: error of the sag, %", "sag", "error of the sag, %", None),
+           ("free spin: error of the angular momentum, %", "spin", "error of the angular momentum, %", None),
+           ("snake that lands: ms", "snake", "", None), ("gap of its surface, mm", "snake", "gap, mm", None),
+           ("ms as it lies there", "snake", "ms at rest", None),
+           ("box slides on a soft slab: share of Coulomb's way", "slide", "way, share of Coulomb's", None),
+           ("box on a soft slab: ms", "slide", "", None), ("three boxes in a stack: ms", "stack", "", None),
+           ("26 balls in a heap: ms", "heap", "", None), ("50 balls on a mat: ms", "pit", "", None),
+           ("60,000 triangles: attached in ms", "skin", "bind, ms", None), ("moved in ms", "skin", "", None)]
 
 
 def rows_of(path):
@@ -108,8 +123,32 @@ def scene_table(rows, scene):
     return "\n".join(lines)
 
 
+def summary(rows):
+    """The table for a first page, of the scenes that were run."""
+    lines = [f"| | {' | '.join(NAMES.values())} |", "|---" * (1 + len(NAMES)) + "|"]
+    for label, scene, figure, most in SUMMARY:
+        cells = [summary_cell([row for row in rows if (row["scene"], row["peer"]) == (scene, peer)], figure, most)
+                 for peer in NAMES]
+        if any(cells):
+            lines.append(f"| {label} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def summary_cell(rows, figure, most):
+    """Of the runs of a scene by one peer."""
+    if most is not None:
+        times = [row["ms_per_frame"] for row in rows if row["figure"] == figure and row["value"] <= most]
+        return number(min(times)) if times else ("not reached" if rows else "")
+    own = [row for row in rows if row["example"]] or rows
+    good_ones = [row for row in own if row["status"] == "ok" and (row["figure"] == figure or not figure)]
+    if good_ones:
+        first = min(good_ones, key=lambda row: row["ms_per_frame"])
+        return number(first["value"] if figure else first["ms_per_frame"])
+    return own[0]["status"] if own else ""
+
+
 def losses(rows):
-    """Where a peer has less error in less time than any run of ours, by scene and figure that is an error."""
+    """Where a peer has less error in less time than any run of ours, or takes less time in its example's setting."""
     found = []
     for scene, figure in dict.fromkeys((row["scene"], row["figure"]) for row in rows if "error" in row["figure"]):
         table = good(rows, scene, figure)
@@ -126,6 +165,12 @@ def losses(rows):
             found.append(
                 f"- {scene}, {figure}: {NAMES[peer]} ({row['curve']}, {row['setting']}) has {number(row['value'])} "
                 f"in {number(row['ms_per_frame'])} ms, {how}.")
+    for label, scene, figure, _ in SUMMARY:
+        cells = {peer: summary_cell([row for row in rows if (row["scene"], row["peer"]) == (scene, peer)], "", None)
+                 for peer in NAMES} if not figure else {}
+        times = {peer: float(cell.replace(",", "")) for peer, cell in cells.items() if cell[:1].isdigit()}
+        found += [f"- {label}: {NAMES[peer]} {cells[peer]}, tetskin {cells['tetskin']}." for peer, time in times.items()
+                  if time < times.get("tetskin", math.inf)]
     return found
 
 
@@ -135,6 +180,7 @@ def draw(path, folder):
     for (scene, figure), label in PLOTS.items():
         plot(rows, scene, figure, label, folder / f"{scene}_{figure.replace(' ', '_')}.png")
     text = ["Measured " + "; ".join(head) + ". A star is the setting of the peer's own example.", ""]
+    text += [summary(rows), ""]
     for scene in dict.fromkeys(row["scene"] for row in rows):
         text += [f"## {scene}", "", scene_table(rows, scene), ""]
     text += ["## Lost", "", *(losses(rows) or ["Nothing."]), ""]
