@@ -8,6 +8,7 @@ import numpy as np
 import tetskin as ts
 
 from problem import GRAVITY, Unsupported
+from shapes import surface_of
 
 VERSION = ts.__version__
 
@@ -21,7 +22,7 @@ class Simulation:
         self.tolerance = {} if tolerance is None else {"solver_tolerance": tolerance}
         self.gravity = tuple(gravity)
         self.world = None if self.alone else ts.World(gravity=gravity, record_forces=False)
-        self.body = None
+        self.body, self.forms = None, {}
 
     def add_plane(self, friction=1.0):
         if self.alone:
@@ -29,40 +30,50 @@ class Simulation:
         self.world.add_plane(friction=friction)
 
     def add_soft(self, body):
-        cage = ts.Cage(body.nodes, body.tets)
-        if self.quadratic:
-            cage = ts.refine_quadratic(cage)
+        cage, mesh, place = self.shared(body)
         material = body.material
         options = {"youngs_modulus": material.youngs_modulus, "poisson_ratio": material.poisson_ratio,
                    "stiffness_damping": material.damping, "density": material.density}
-        pinned = self.pinned_of(body, cage)
+        pinned = self.pinned_of(body, cage, place)
         if self.alone:
             if self.body is not None:
                 raise Unsupported("an ElasticBody is alone")
             tolerance = {"tolerance": self.tolerance["solver_tolerance"]} if self.tolerance else {}
             self.body = ts.ElasticBody(cage, **options, **tolerance)
+            self.body.positions = self.body.positions + place
             self.body.set_pinned(pinned)
             return self.body
-        mesh = ts.TriangleMesh(*body.skin) if body.skin else None
-        if body.contact and not mesh:
-            from shapes import surface_of
-            mesh = ts.TriangleMesh(body.nodes, surface_of(body.tets))
         if self.own_masses:
             options["node_masses"] = body.masses
-        return self.world.add_body(cage, mesh, pinned=pinned, friction=material.friction,
-                                   soft_contact=body.contact and mesh is not None,
-                                   self_contact=body.self_contact, **options, **self.tolerance)
+        return self.world.add_body(cage, mesh, position=place, pinned=pinned, friction=material.friction,
+                                   soft_contact=mesh is not None, self_contact=body.self_contact, **options,
+                                   **self.tolerance)
 
-    def pinned_of(self, body, cage):
+    def shared(self, body):
+        """The body's cage, and its surface if it has contact, with its first node at the origin; and where that is.
+
+        Bodies of one form share them, and what the world computes of them once.
+        """
+        place = body.nodes[0].copy()
+        skin = body.skin or (body.nodes, surface_of(body.tets))
+        key = [np.round(rows, 9).tobytes() for rows in (body.nodes - place, skin[0] - place)]
+        key = (*key, body.tets.tobytes(), body.contact)
+        if key not in self.forms:
+            cage = ts.Cage(body.nodes - place, body.tets)
+            cage = ts.refine_quadratic(cage) if self.quadratic else cage
+            self.forms[key] = cage, ts.TriangleMesh(skin[0] - place, skin[1]) if body.contact else None
+        return *self.forms[key], place
+
+    def pinned_of(self, body, cage, place):
         """The pinned nodes of the cage: those of the body and, of second order, those in the middle between two."""
         if not self.quadratic:
             return body.held
         edges = body.tets[:, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]].reshape(-1, 2)
         edges = edges[body.held[edges].all(1)]
         held = np.concatenate([body.nodes[body.held], body.nodes[edges].mean(1)])
-        place = lambda point: tuple(np.round(point, 6) + 0.0)  # noqa: E731
-        places = {place(point) for point in held}
-        return np.array([place(point) in places for point in cage.nodes])
+        rounded = lambda point: tuple(np.round(point, 6) + 0.0)  # noqa: E731
+        places = {rounded(point) for point in held}
+        return np.array([rounded(point) in places for point in cage.nodes + place])
 
     def add_rigid(self, rigid):
         if self.alone:
