@@ -74,7 +74,7 @@ def run_one(scene, task, folder, limit):
     """How one process ended: an outcome as one.py prints it. limit: seconds of processor time."""
     command = [sys.executable, str(HERE / "one.py"), scene, task, str(folder)]
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
-        process, began = subprocess.Popen(command, cwd=HERE, stdout=out, stderr=err), time.monotonic()
+        process, began = subprocess.Popen(command, cwd=folder, stdout=out, stderr=err), time.monotonic()
         while process.poll() is None:
             time.sleep(0.05)
             stopped = overdue(process.pid, began, limit)
