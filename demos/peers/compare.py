@@ -39,7 +39,7 @@ COLUMNS = [
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], allow_abbrev=False)
-    parser.add_argument("--quick", action="store_true", help="fewer settings, shorter scenes: five minutes")
+    parser.add_argument("--quick", action="store_true", help="fewer settings, shorter scenes")
     parser.add_argument("--only", action="append", metavar="SCENE", help=f"may be repeated: {', '.join(SCENES)}")
     parser.add_argument("--peers", metavar="LIST", help=f"with commas: {','.join(PEERS)}")
     parser.add_argument("--out", metavar="FOLDER", default="out/peers")

@@ -39,6 +39,7 @@ void bindSkins(nb::module_& module);
 void bindElasticBodies(nb::module_& module);
 void bindAnimations(nb::module_& module);
 void bindRigidBodies(nb::module_& module, Class<World>& world);
+void bindJoints(nb::module_& module, Class<World>& world);
 void bindContacts(nb::module_& module, Class<World>& world);
 void bindTouch(nb::module_& module, Class<World>& world);
 Class<World> bindWorlds(nb::module_& module);

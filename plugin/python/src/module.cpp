@@ -84,6 +84,7 @@ NB_MODULE(_core, module) {
   bindElasticBodies(module);
   Class<World> world = bindWorlds(module);
   bindRigidBodies(module, world);
+  bindJoints(module, world);
   Class<BodyHandle> body = bindBodies(module, world);
   bindContacts(module, world);
   bindTouch(module, world);
