@@ -229,6 +229,33 @@ TEST(SolverContacts, ArePressedByAMotorNoMoreThanItMay) {
   }
 }
 
+/// The same by a joint of six degrees of freedom, several of whose rows are bounded, and whose axes are turned.
+TEST(SolverContacts, ArePressedByAMotorOfSeveralNoMoreThanItMay) {
+  Press press(1);
+  press.block.world.deformable().removeConstraint(&press.slider);
+  const btTransform turned(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI));  // its x is up
+  btGeneric6DofConstraint joint(*press.plate.body, turned, true);
+  joint.setLinearLowerLimit(btVector3(1, 0, 0));  // free along x, as the lower limit is above the upper one
+  joint.setLinearUpperLimit(btVector3(-1, 0, 0));
+  joint.setAngularLowerLimit(btVector3(0, 0, 0));
+  joint.setAngularUpperLimit(btVector3(0, 0, 0));
+  btTranslationalLimitMotor& motor = *joint.getTranslationalLimitMotor();
+  motor.m_enableMotor[0] = true;
+  motor.m_maxMotorForce[0] = 30;
+  press.block.world.deformable().addConstraint(&joint);
+  double carried[2];
+  for (const int k : {0, 1}) {
+    motor.m_targetVelocity[0] = k == 0 ? btScalar(1) : btScalar(-1);  // of the world, seen from the plate
+    press.run(240, 4);
+    carried[k] = press.onFloor();
+    if (k == 0) motor.m_maxMotorForce[0] = 5;  // then it pulls, too weakly to lift
+  }
+  press.block.world.deformable().removeConstraint(&joint);
+  press.block.world.deformable().addConstraint(&press.slider);
+  EXPECT_NEAR(carried[0], 20.0 + 30.0, 1.0);
+  EXPECT_NEAR(carried[1], 20.0 - 5.0, 0.3);
+}
+
 /// A motor that holds its place against a block, and against gravity, as long as it may.
 TEST(SolverContacts, AreHeldByAMotorThatHasForceLeft) {
   Press press(1);

@@ -5,8 +5,8 @@
 // and with the world, and joints.
 //
 // Bullet has solved for these already, without the impulses of soft bodies. They become rows of the same solve, and
-// begin where Bullet has left them: a contact with the impulse and the velocity that Bullet has found, so that nothing
-// changes where nothing pushes. Rows are followed from body to body, up to kMaxUnknowns; bodies beyond move as Bullet
+// begin where Bullet has left them: a contact, a motor or a stop with the impulse and the velocity that Bullet has
+// found, so that nothing changes where nothing pushes. Rows are followed from body to body, up to kMaxUnknowns; bodies beyond move as Bullet
 // has solved them.
 #pragma once
 
