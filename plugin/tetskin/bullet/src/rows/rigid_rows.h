@@ -6,8 +6,8 @@
 //
 // Bullet has solved for these already, without the impulses of soft bodies. They become rows of the same solve, and
 // begin where Bullet has left them: a contact, a motor or a stop with the impulse and the velocity that Bullet has
-// found, so that nothing changes where nothing pushes. Rows are followed from body to body, up to kMaxUnknowns; bodies beyond move as Bullet
-// has solved them.
+// found, so that nothing changes where nothing pushes. Rows are followed from body to body, up to kMaxUnknowns; bodies
+// beyond move as Bullet has solved them.
 #pragma once
 
 #include <tetskin/bullet/src/rows/contact_rows.h>
