@@ -77,7 +77,8 @@ def run(Simulation, case, clock, references):
 """)
     monkeypatch.setattr(harness, "HERE", tmp_path)
     outcomes = {}
-    for what in ("cannot", "explodes", "crashes", "too slow", "ok"):
+    timed = ["too slow"] if Path("/proc/self/stat").exists() else []  # else it would be "hangs", after a minute
+    for what in ("cannot", "explodes", "crashes", "ok", *timed):
         outcomes[what] = harness.run_one("trouble", harness.json.dumps(Case("peer", "", {}, what).as_dict()), tmp_path,
                                          2)
     outcomes["not installed"] = harness.run_one("trouble", harness.json.dumps(Case("nobody", "").as_dict()), tmp_path,
