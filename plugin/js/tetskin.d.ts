@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// tetskin for JavaScript: soft bodies of Bullet, simulated in coarse cages, with detailed surfaces embedded in them.
+//
+// Units are yours, with seconds for time; vectors are x, y, z; quaternions x, y, z, w; a count of "n x 3" is 3 n numbers
+// side by side. Rest space is that of the mesh as it was read, world space that of the simulation.
+//
+// Views are typed arrays of the module's own memory: nothing is copied, and the next call that changes the thing changes
+// them. When the memory grows, which any call may do, all views that were made before have the length 0: get each view
+// anew where it is used, or compare `memoryVersion`, or copy it with `slice()`.
+
+/** Of the npm package. */
+export const version: string;
+
+/** Starts the module: compiles it, with memory of its own. Each call gives another one, with no thing in common. */
+export function load(): Promise<Tetskin>;
+
+export type ErrorCode =
+  | "FileNotFound" | "FileNotWritable" | "UnsupportedFormat" | "Malformed" | "Empty" | "IndexOutOfRange" | "NonFinite"
+  | "Degenerate" | "SizeMismatch" | "InvalidOption" | "OutsideCage" | "CageMismatch" | "TooLarge" | "Asleep" | "Hidden"
+  | "Unbound" | "TopologyChanged" | "NoHit" | "BodyDeleted" | "Released" | "OtherBody" | "NotInWorld" | "NotAdded"
+  | "Enclosed" | "NotSaved" | "SnapshotMismatch" | "Cancelled"
+  /** An argument is of another type, or has another shape, than it should. */
+  | "InvalidArgument"
+  /** A thing was used after its `delete()`, or that of its world. */
+  | "Deleted"
+  /** There is not enough memory for this. What there was is unharmed. */
+  | "OutOfMemory"
+  /** The browser has no WebAssembly with SIMD and exceptions: see the page on JavaScript for the versions that have. */
+  | "Unsupported";
+
+/** What all functions throw. When one has thrown, nothing has changed. */
+export class TetskinError extends Error {
+  readonly name: "TetskinError";
+  /** For programs; `message` says what is wrong, and what to do. */
+  readonly code: ErrorCode;
+}
+
+/** n numbers, as an array or a typed array. */
+export type Numbers = ArrayLike<number>;
+/** x, y, z */
+export type Vector = Numbers;
+/** x, y, z, w; need not be of unit length. */
+export type Quaternion = Numbers;
+
+/** What has memory of the module's. It is freed by `delete()`, or by `using` at the end of a block. */
+export interface Thing {
+  /** Frees it. Deleting again does nothing. What others still need of it stays until they are deleted. */
+  delete(): void;
+  readonly deleted: boolean;
+  [Symbol.dispose](): void;
+}
+
+export interface Tetskin {
+  /** Grows by 1 whenever the memory has grown: views that were made before are then empty. */
+  readonly memoryVersion: number;
+  /** Bytes that the module has taken, which never become fewer. At most 2 GB. */
+  readonly memoryBytes: number;
+
+  /**
+   * Reads a mesh file.
+   * @param bytes   the whole file
+   * @param format  its extension, in any case: obj, ply, off, stl, glb, gltf or vrm; a path or name with one is taken,
+   *                too. A .gltf must have its buffers inside
+   * @throws Malformed, UnsupportedFormat, Empty, IndexOutOfRange, NonFinite, OutOfMemory
+   */
+  readMesh(bytes: Uint8Array | ArrayBuffer, format: string): Mesh;
+  /**
+   * A mesh of arrays.
+   * @param positions  n x 3, any unit
+   * @param triangles  m x 3 vertex indices, counter-clockwise from outside
+   */
+  createMesh(positions: Numbers, triangles: Numbers, options?: MeshArrays): Mesh;
+  /** The mesh that `toBytes` has written, in any instance of the module of this version. */
+  meshFromBytes(bytes: Uint8Array): Mesh;
+
+  /**
+   * Builds a cage of tets around a mesh. The same input gives the same cage. Blocks until it is done, half a second for
+   * 60,000 triangles or so on a desktop: call it in a worker, and hand over `toBytes()`.
+   * @throws Cancelled, Empty, Degenerate, InvalidOption, OutOfMemory
+   */
+  createCage(mesh: Mesh, options?: CageOptions): Cage;
+  /** A copy with the stiffness factors that make the cage as compliant as the body in it. Takes seconds. */
+  calibrate(cage: Cage, options?: CalibrationOptions): Cage;
+  /** A cage of quadratic tets: each tet becomes one, held as eight. For meshes that fill their cage. */
+  refineQuadratic(cage: Cage): Cage;
+  /** A cage of tets alone: n x 3 nodes, t x 4 node indices. */
+  cageOfTets(nodes: Numbers, tets: Numbers): Cage;
+  /** The cage that `toBytes` has written, in any instance of the module of this version. */
+  cageFromBytes(bytes: Uint8Array): Cage;
+
+  /** What a GPU needs to draw a mesh in its cage. */
+  createPalette(cage: Cage, mesh: Mesh, options?: PaletteOptions): Palette;
+
+  createWorld(options?: WorldOptions): World;
+}
+
+export interface MeshArrays {
+  /** n x 3, of unit length */
+  normals?: Numbers;
+  /** n x 2 */
+  texcoords?: Numbers;
+}
+
+/** A surface at rest. It does not change. All arrays are views. */
+export interface Mesh extends Thing {
+  readonly vertexCount: number;
+  readonly triangleCount: number;
+  /** n x 3, rest space */
+  readonly positions: Float64Array;
+  /** m x 3 vertex indices */
+  readonly triangles: Int32Array;
+  /** n x 3 as in the file, or empty */
+  readonly normals: Float32Array;
+  /** n x 2 as in the file, or empty */
+  readonly texcoords: Float32Array;
+  /** n x 3, a new array: the file's normals, or those of the triangles, smooth across coincident vertices. */
+  restNormals(): Float32Array;
+  /** Two corners of its box: minimum x, y, z, maximum x, y, z; a new array. */
+  readonly bounds: Float64Array;
+  /** All of it as bytes, a new array; a worker may transfer its buffer. */
+  toBytes(): Uint8Array;
+}
+
+export interface CageOptions {
+  /** About how many tets; 3000 */
+  targetTets?: number;
+  /** Whether regions of the mesh that are near each other get a copy of a tet each; true */
+  duplicateElements?: boolean;
+  /** Whether the boundary is moved towards the surface; true */
+  fit?: boolean;
+  /** Called with the fraction done, 0 to 1; cancels by returning false. What it throws is thrown. */
+  progress?: (fraction: number) => boolean | void;
+}
+
+export interface CalibrationOptions {
+  /** Of the material that will be simulated; 0.3 */
+  poissonRatio?: number;
+  /** How many vibrations are compared; 6 */
+  modeCount?: number;
+  /** As of CageOptions */
+  progress?: (fraction: number) => boolean | void;
+}
+
+/** Tets at rest. It does not change. All arrays are views. */
+export interface Cage extends Thing {
+  readonly nodeCount: number;
+  readonly tetCount: number;
+  /** n x 3, rest space */
+  readonly nodes: Float64Array;
+  /** t x 4 node indices */
+  readonly tets: Int32Array;
+  /** Of each vertex of the mesh that the cage was made for, the tet that carries it; or empty. */
+  readonly vertexTets: Int32Array;
+  /** Of each tet, the number of the quadratic tet of which it is one of eight, or -1; or empty. */
+  readonly quadraticTet: Int32Array;
+  /** e x 2 node indices of all edges, a new array. */
+  edges(): Int32Array;
+  /** f x 3 node indices of the boundary's faces, outwards, a new array. */
+  boundaryFaces(): Int32Array;
+  /** How it was made, and how well it fits; empty for a cage from bytes or arrays. */
+  readonly report: string;
+  /** A copy of another size, with its masses. */
+  scaled(scale: number): Cage;
+  /** All of it as bytes, a new array; a worker may transfer its buffer. */
+  toBytes(): Uint8Array;
+}
+
+export interface PaletteOptions {
+  /** Of the surface; "linear" */
+  interpolation?: "linear" | "quadratic";
+  /** Whether bones of the linear surface have the gradients of their nodes, for normals in a shader; false. */
+  gradients?: boolean;
+  /** rows: 12 floats a bone, 3 rows of 4; columns: 16 floats, a matrix of WebGL's; "rows" */
+  layout?: "rows" | "columns";
+}
+
+/**
+ * Bones [A | t], one per node, by which a vertex shader draws the surface. With the four bones and weights b of a
+ * vertex at X, rest space:
+ *   position            sum of b_i (A_i X + t_i)
+ *                       linear with gradients: X + sum of b_i t_i
+ *   normal              normalize(cofactor(sum of b_i A_i) N), N the normal at rest
+ * Bones of the linear surface without gradients have A = 1, and do not turn normals. Needs no world.
+ */
+export interface Palette extends Thing {
+  readonly boneCount: number;
+  /** vertices x 4: which bones carry a vertex, a new array. */
+  vertexBones(): Uint16Array;
+  /** vertices x 4: how much of each, a new array. They sum to 1; some are negative where a vertex is outside. */
+  vertexWeights(): Float32Array;
+  /** A view of boneCount x 12 or 16 floats, which the next update overwrites. */
+  readonly bones: Float32Array;
+  /**
+   * Computes the bones, and returns them.
+   * @param nodes  n x 3, world space; or a body with this cage
+   */
+  update(nodes: Numbers | Body): Float32Array;
+}
+
+export interface WorldOptions {
+  /** World length / s^2; 0, -9.81, 0 */
+  gravity?: Vector;
+  /** The same bits in every browser and on every processor, as natively, for some percent of the time; false */
+  deterministic?: boolean;
+}
+
+/** Milliseconds of the last `step`, by stage, in the order in which each substep runs them. */
+export interface StageTimes {
+  /** Forces, and the elastic solve without contacts */
+  readonly prediction: number;
+  /** The search for contacts with rigid bodies, and between these */
+  readonly rigidSearch: number;
+  /** The search for contacts among soft bodies */
+  readonly softSearch: number;
+  /** Collecting contacts, springs and pins */
+  readonly rows: number;
+  /** The solve with them */
+  readonly system: number;
+  /** What is left: Bullet's own work */
+  readonly other: number;
+  /** Surfaces that are visible, on the CPU */
+  readonly surfaces: number;
+  /** Of all */
+  readonly total: number;
+}
+
+export interface RigidOptions {
+  /** 0 for one that does not move by itself; 0 */
+  mass?: number;
+  position?: Vector;
+  rotation?: Quaternion;
+  /** World length / s */
+  velocity?: Vector;
+  /** Radians / s */
+  angularVelocity?: Vector;
+  /** Coulomb's coefficient, which is multiplied by that of what is touched; 0.5 */
+  friction?: number;
+  /** Whether it is moved by assigning its position and rotation; false */
+  kinematic?: boolean;
+}
+
+export interface BodyOptions {
+  /** Of the rest space in the world; 0, 0, 0 */
+  position?: Vector;
+  /** Of the rest space in the world; 0, 0, 0, 1 */
+  rotation?: Quaternion;
+  /** Nodes to pin: their indices */
+  pinned?: Numbers;
+  /** Mass per volume of the mesh; 100 */
+  density?: number;
+  /** Total mass, in place of the density */
+  mass?: number;
+  /** Pressure units; without it, relativeStiffness tells */
+  youngsModulus?: number;
+  /** Young's modulus over density x gravity x size: from 30 (wobbles, sags) to 300 (firm); 50 */
+  relativeStiffness?: number;
+  /** 0 to below 0.5; 0.3 */
+  poissonRatio?: number;
+  /** Seconds: Rayleigh damping; 0.02 */
+  stiffnessDamping?: number;
+  /** 0 to 1; 0.5 */
+  friction?: number;
+  /** How the surface follows the tets; "linear" */
+  interpolation?: "linear" | "quadratic";
+  /** "none" */
+  normals?: "none" | "transformed" | "recomputed";
+  /** Whether steps compute the surface, on the CPU; true. With a Palette, false saves their time. */
+  visible?: boolean;
+  /** Contact with rigid bodies at the visible surface, otherwise at nodes; true */
+  surfaceContact?: boolean;
+  /** Contact with other bodies that have it; takes a second for 20,000 triangles, once; false */
+  softContact?: boolean;
+  /** The same, and contact with itself; false */
+  selfContact?: boolean;
+  /** The distance kept, world length; without it, 0.2 % of the size */
+  contactMargin?: number;
+}
+
+/** A world of soft and rigid bodies, which it keeps: deleting it deletes them. */
+export interface World extends Thing {
+  gravity: Float64Array | Vector;
+  /**
+   * Goes on by dt seconds, in so many of Bullet's steps; 1/60 and 4.
+   * @returns the number of steps made
+   * @throws NonFinite, if the simulation is unstable: restore a snapshot
+   */
+  step(dt?: number, substeps?: number): number;
+  /** Of the last step. */
+  readonly times: StageTimes;
+  /** Seconds simulated since the world was made. Snapshots do not have it. */
+  readonly time: number;
+
+  /** All below a plane: normal . x < offset; y < 0 by default. */
+  addPlane(options?: {normal?: Vector; offset?: number; friction?: number}): RigidBody;
+  addBox(halfExtents: Vector, options?: RigidOptions): RigidBody;
+  addSphere(radius: number, options?: RigidOptions): RigidBody;
+  /** Along y; height is that of the part between the caps. */
+  addCapsule(radius: number, height: number, options?: RigidOptions): RigidBody;
+  /** Along y. */
+  addCylinder(radius: number, height: number, options?: RigidOptions): RigidBody;
+  /** The hull of n x 3 points. */
+  addConvexHull(points: Numbers, options?: RigidOptions): RigidBody;
+  /** A surface, for bodies without a mass: met from the side from which triangles look counter-clockwise. */
+  addMesh(mesh: Mesh, options?: RigidOptions): RigidBody;
+  /** A soft body. Without a mesh (null) it has no surface, and collides at its nodes. */
+  addBody(cage: Cage, mesh: Mesh | null, options?: BodyOptions): Body;
+
+  /** In the order in which they were added. */
+  readonly bodies: readonly Body[];
+  /** In the order in which they were added. */
+  readonly rigidBodies: readonly RigidBody[];
+  /** Of all rigid bodies, 7 numbers each: position and rotation. A view, which the next call overwrites. */
+  poses(): Float32Array;
+
+  /** The first intersection of the segment with the surfaces of soft bodies, or null. */
+  raycast(start: Vector, end: Vector): Hit | null;
+  /** Pulls the point of a surface that a ray has hit to where it is now, which `setTarget` moves. */
+  addSpring(hit: Hit, options?: SpringOptions): Spring;
+  /** Mass times velocity, at the point of a hit, at once. */
+  applyImpulse(hit: Hit, impulse: Vector): void;
+
+  /** Bytes of a snapshot now. */
+  readonly snapshotSize: number;
+  /**
+   * The state, from which `restore` goes on to the last bit, in this instance or another.
+   * @param into  memory for it of at least snapshotSize bytes; without it, new memory
+   * @returns the part of `into` that was written
+   */
+  save(into?: Uint8Array): Uint8Array;
+  /** Takes a state back. The world has the bodies and springs that it had then, made in the same order. */
+  restore(snapshot: Uint8Array): void;
+  /** 16 hexadecimal digits of the positions and velocities of all nodes and rigid bodies, to the last bit. */
+  readonly hash: string;
+}
+
+/** Where a ray has met a surface. */
+export interface Hit {
+  readonly body: Body;
+  /** Index in the mesh */
+  readonly triangle: number;
+  /** Barycentric, of the triangle's corners */
+  readonly weights: readonly [number, number, number];
+  /** World space */
+  readonly point: readonly [number, number, number];
+  /** Of the triangle, unit length */
+  readonly normal: readonly [number, number, number];
+  /** From the start of the ray, world length */
+  readonly distance: number;
+}
+
+export interface SpringOptions {
+  /** Over a point's mass, in 1 / (1/240 s)^2; 10 */
+  stiffness?: number;
+  /** 0 */
+  dampingRatio?: number;
+  /** Without it, some times the body's weight */
+  maxForce?: number;
+}
+
+/** Deleting it lets go. */
+export interface Spring extends Thing {
+  readonly body: Body;
+  /** World space */
+  setTarget(target: Vector): void;
+  setStiffness(stiffness: number): void;
+  setMaxForce(force: number): void;
+  /** Where the point of the surface is, world space; a new array. */
+  readonly position: Float64Array;
+  /** On the body in the last step, world space; a new array. */
+  readonly force: Float64Array;
+  /** From the point to the target, world length */
+  readonly stretch: number;
+}
+
+/** Deleting it takes it out of its world. */
+export interface RigidBody extends Thing {
+  /** World space, a new array. Assigned to a kinematic body, it moves there in the next step. */
+  get position(): Float64Array;
+  set position(at: Vector);
+  /** A new array. */
+  get rotation(): Float64Array;
+  set rotation(quaternion: Quaternion);
+  get velocity(): Float64Array;
+  set velocity(velocity: Vector);
+  get angularVelocity(): Float64Array;
+  set angularVelocity(velocity: Vector);
+  friction: number;
+  readonly mass: number;
+  readonly kinematic: boolean;
+  /** Mass times velocity, at a point in world space, or at the centre of mass. */
+  applyImpulse(impulse: Vector, at?: Vector): void;
+}
+
+/** Deleting it takes it out of its world, with its springs. */
+export interface Body extends Thing {
+  readonly cage: Cage;
+  /** Null without a surface */
+  readonly mesh: Mesh | null;
+  readonly nodeCount: number;
+  /** n x 3, world space. A view, which is filled by this call, and by the next one. */
+  readonly nodes: Float32Array;
+  /** n x 3, world length / s. A view, as nodes. */
+  get velocities(): Float32Array;
+  /** n x 3. Those of pinned nodes stay. */
+  set velocities(velocities: Numbers);
+  /** vertices x 3, world space. A view, which each step overwrites if the body is visible. */
+  readonly positions: Float32Array;
+  /** vertices x 3, or empty. A view, as positions. */
+  readonly normals: Float32Array;
+  /** Two corners of the surface's box, world space; a new array. */
+  readonly bounds: Float64Array;
+  /** Whether steps compute positions and normals. When shown again, they are computed at once. */
+  visible: boolean;
+  /** Whether it is at rest. */
+  readonly asleep: boolean;
+  /** Total, without pinned nodes */
+  readonly mass: number;
+  youngsModulus: number;
+  readonly relativeStiffness: number;
+  poissonRatio: number;
+  stiffnessDamping: number;
+  friction: number;
+  /** Its own gravity; null: that of the world. */
+  setGravity(gravity: Vector | null): void;
+  /** Pins nodes where they are, or releases them. */
+  setPinned(nodes: Numbers, pinned?: boolean): void;
+  /** Of each node 1 if it is pinned, otherwise 0; a new array. */
+  readonly pinned: Uint8Array;
+  /** Moves pinned nodes to n x 3 positions, world space, in the next step: once per frame. */
+  setPinnedPositions(nodes: Numbers, positions: Numbers): void;
+  /** Moves the whole body at once: rotated about the world's origin, then by position. */
+  transform(position: Vector, rotation?: Quaternion): void;
+  /**
+   * Pushes the surface in a ball away from its centre.
+   * @param strength  sum of the magnitudes at all vertices: mass times velocity
+   * @returns the number of vertices pushed
+   */
+  applyRadialImpulse(centre: Vector, radius: number, strength: number): number;
+}
