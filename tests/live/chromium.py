@@ -306,8 +306,11 @@ class Page:
           const one = document.querySelector({json.dumps(selector)});
           if (!one) return null;
           one.scrollIntoView({{block: 'nearest', inline: 'nearest'}});
-          const box = one.getBoundingClientRect();
-          return [box.x + box.width / 2, box.y + box.height / 2, box.width, box.height];
+          // What is pressed is what has been drawn.
+          return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {{
+            const box = one.getBoundingClientRect();
+            done([box.x + box.width / 2, box.y + box.height / 2, box.width, box.height]);
+          }})));
         }})()""")
         if found is None:
             raise Fault(f"there is no {selector}")

@@ -63,7 +63,7 @@ class Driver(unittest.TestCase):
                 self.assertEqual(seen[0][2:], [10, 20, 1])
                 self.assertEqual(seen[-2][2:], [100, 120, 1])
                 page.click_on("#low")
-                self.assertTrue(page.evaluate("clicked"), "scrolled to, and pressed")
+                page.until("clicked", 10)  # scrolled to, and pressed
 
     def test_files_are_dropped_with_their_names_and_contents(self):
         page = self.open()
