@@ -3,18 +3,13 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """The live page: its file, its scenes, time that goes back, memory, and the bits of its nodes."""
 import gzip
-import json
 import re
-import struct
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 from live import DESKTOP, NATIVE, PAGE, Server, WithBrowser, colours
+from native import hash_of, native_hash, nodes_of
 
 SCENES = ["serpent", "heap", "pit", "gripper", "stack", "twist"]
-DESCRIBE = (Path(__file__).parent / "describe.js").read_text(encoding="utf-8")
 MEGABYTE = 1e6
 
 
@@ -99,40 +94,6 @@ class OneScene(WithBrowser):
         live.open("serpent")
         live.step(120)
         self.assertEqual(hash_of(nodes_of(live)), native_hash(live, "serpent", 120))
-
-
-def nodes_of(live):
-    """Positions of all nodes, body by body, as bytes."""
-    return live.page.evaluate("simulation.parts.map(({body}) => [...new Uint8Array(body.nodes.slice().buffer)])",
-                              session=live.worker())
-
-
-def hash_of(bodies):
-    """FNV-1a"""
-    value = 1469598103934665603
-    for nodes in bodies:
-        for byte in nodes:
-            value = (value ^ byte) * 1099511628211 & 0xffffffffffffffff
-    return f"{value:016x}"
-
-
-def native_hash(live, scene, frames):
-    """What live_native makes of the scene, which it gets from the page's worker."""
-    described = live.page.evaluate(f"{DESCRIBE}; describeScene({json.dumps(scene)}, simulation.settings)",
-                                   session=live.worker())
-    with tempfile.TemporaryDirectory() as folder:
-        lines = []
-        for name, mesh in described["meshes"].items():
-            path = Path(folder) / name
-            positions, triangles = mesh["positions"], mesh["triangles"]
-            path.write_bytes(struct.pack("<2i", len(positions) // 3, len(triangles) // 3) +
-                             struct.pack(f"<{len(positions)}d", *positions) +
-                             struct.pack(f"<{len(triangles)}i", *triangles))
-            lines.append(f"mesh {name} {path}")
-        text = Path(folder) / "scene.txt"
-        text.write_text("\n".join(lines + described["lines"]) + "\n", encoding="utf-8")
-        said = subprocess.run([NATIVE, str(text), str(frames)], capture_output=True, text=True, check=True).stdout
-    return re.search("hash (.*)", said)[1]
 
 
 class OtherScenes(WithBrowser):
