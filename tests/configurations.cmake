@@ -127,6 +127,25 @@ foreach(way IN ITEMS package beside_others staged_package versions fresh_root)
   endif()
 endforeach()
 
+# The module for JavaScript in Node, and the live page in headless Chromium: both are built in one folder, by one test at
+# a time, which compiles what has changed since the last one. Without Emscripten, Node or Chromium they are skipped.
+# tests/run --change runs one scene where only the library below them has changed.
+set(command_js.module js/run)
+set(command_live.driver live/run --driver)
+set(command_live.one_scene live/run --one-scene)
+set(command_live.page live/run)
+foreach(test IN ITEMS js.module live.driver live.one_scene live.page)
+  list(POP_FRONT command_${test} script)
+  add_test(NAME ${test} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/${script} ${command_${test}})
+  set_tests_properties(${test} PROPERTIES LABELS "config;js" TIMEOUT 3600 PROCESSORS ${nested_parallel}
+    SKIP_RETURN_CODE 77)
+  set_property(TEST ${test} PROPERTY RESOURCE_LOCK js_build bullet_sources)
+endforeach()
+set_property(TEST live.one_scene APPEND PROPERTY LABELS change)
+set_tests_properties(js.module live.one_scene live.page PROPERTIES
+  ENVIRONMENT TETSKIN_LIVE_NATIVE=$<$<TARGET_EXISTS:tetskin_live_native>:$<TARGET_FILE:tetskin_live_native>>)
+set_tests_properties(live.driver PROPERTIES TIMEOUT 300 PROCESSORS 1)
+
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 set(labels_full "config;full")
 function(tetskin_test_consumer name)

@@ -4,6 +4,7 @@
 
 #include "replay_models.h"
 
+#include <facade/state_hash.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
@@ -13,7 +14,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 namespace tetskin::test {
 namespace {
@@ -209,23 +209,6 @@ class Pit : public OnFloor {
   Soft body_{world(), model_, {0.0625, 2, 0.125}, firmness(50)};
 };
 
-/// FNV-1a.
-class Hash {
- public:
-  void add(const btVector3& v) {
-    for (int k = 0; k < 3; ++k) {
-      const btScalar x = v[k];
-      unsigned char bytes[sizeof x];
-      std::memcpy(bytes, &x, sizeof x);
-      for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 1099511628211u;
-    }
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 1469598103934665603u;
-};
-
 template <class Scene>
 std::unique_ptr<ReplayScene> make(const DeformableWorldOptions& options) {
   return std::make_unique<Scene>(options);
@@ -253,24 +236,7 @@ void ReplayScene::step(int frame) {
 }
 
 std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
-  Hash hash;
-  for (int i = 0; i < world.getNumCollisionObjects(); ++i) {
-    const btCollisionObject* object = world.getCollisionObjectArray()[i];
-    if (const btSoftBody* soft = btSoftBody::upcast(object)) {
-      for (int n = 0; n < soft->m_nodes.size(); ++n) {
-        hash.add(soft->m_nodes[n].m_x);
-        hash.add(soft->m_nodes[n].m_v);
-      }
-      continue;
-    }
-    for (int row = 0; row < 3; ++row) hash.add(object->getWorldTransform().getBasis()[row]);
-    hash.add(object->getWorldTransform().getOrigin());
-    if (const btRigidBody* rigid = btRigidBody::upcast(object)) {
-      hash.add(rigid->getLinearVelocity());
-      hash.add(rigid->getAngularVelocity());
-    }
-  }
-  return hash.value();
+  return facade::stateHash(world);
 }
 
 }  // namespace tetskin::test

@@ -16,6 +16,8 @@ which target uses which, is then what CMake says. In BUILD/changes:
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
   python       only if the Python package, its demos or its tests have changed
+  web          only if the module for JavaScript, the live page or their tests have changed ("page"), or else the library
+               that they are built from ("library")
 """
 import datetime
 import json
@@ -40,6 +42,8 @@ MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|plat
 PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own.
 PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers)/")
+# The module for JavaScript and the page that is made with it: these, too, have tests of their own.
+WEB = re.compile(r"^(plugin/js|demos/live|tests/js|tests/live)/")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 
@@ -169,7 +173,7 @@ def selected(graph, files):
     """The targets that changed, by file; or why everything counts as changed."""
     changed = {}
     for file in files:
-        if PYTHON.search(file):
+        if PYTHON.search(file) or WEB.search(file):
             continue
         if MACHINERY.search(file) or (file.startswith("tests/") and not ORDINARY_TEST.search(file)):
             return {}, f"{file} has changed, on which all tests depend"
@@ -185,11 +189,18 @@ def is_library_source(file):
     return file.startswith("plugin/tetskin/") and file.endswith((".h", ".cpp")) and (REPOSITORY / file).exists()
 
 
-def write(build, everything, folders, sources, page=False, python=False):
+def web_tests(files):
+    """Which tests of JavaScript and the live page a change of these files needs: "page", all; "library", a few."""
+    if any(WEB.search(file) for file in files):
+        return "page"
+    return "library" if any(file.startswith("plugin/tetskin/") and not READ.search(file) for file in files) else ""
+
+
+def write(build, everything, folders, sources, page=False, python=False, web=""):
     out = build / "changes"
     out.mkdir(parents=True, exist_ok=True)
     for name, text in (("everything", everything), ("page", PAGE if page else ""),
-                       ("python", "python" if python else "")):
+                       ("python", "python" if python else ""), ("web", web)):
         (out / name).unlink(missing_ok=True)
         if text:
             (out / name).write_text(text + "\n", encoding="utf-8")
@@ -214,7 +225,7 @@ def select(build):
     folders = graph.test_folders(everyone)
     sources = [file for file in files if is_library_source(file)]
     python = any(PYTHON.search(file) for file in files)
-    write(build, "", folders, sources, PAGE in files, python)
+    write(build, "", folders, sources, PAGE in files, python, web_tests(files))
     print(f"Since {commit[:12]}, at which everything passed, {len(files)} files have changed.")
     if not changed:
         print("None of them is compiled.")

@@ -205,6 +205,27 @@ class Selection(InASmallProject):
         self.result()
         self.assertFalse((self.root / "build/changes/python").exists())
 
+    def test_the_page_selects_its_own_tests_and_nothing_that_is_compiled(self):
+        web = self.root / "build/changes/web"
+        for name in ("plugin/js/src/bodies.cpp", "plugin/js/CMakeLists.txt", "demos/live/page.js", "demos/live/serpent.cpp",
+                     "tests/js/run", "tests/js/test.mjs", "tests/live/run", "tests/live/test_page.py"):
+            with self.subTest(name):
+                self.setUp()
+                self.write(name)
+                self.assertEqual(self.result(), ("", [], ""))
+                self.assertEqual(web.read_text(encoding="utf-8"), "page\n")
+        self.write("plugin/tetskin/io/io.cpp")
+        self.result()
+        self.assertEqual(web.read_text(encoding="utf-8"), "page\n", "the page, and the library too")
+        self.setUp()
+        self.write("plugin/tetskin/io/io.cpp")
+        self.result()
+        self.assertEqual(web.read_text(encoding="utf-8"), "library\n")
+        self.setUp()
+        self.write("demos/drop.cpp", "int main() { return 0; }\n")
+        self.result()
+        self.assertFalse(web.exists())
+
     def test_the_machinery_of_the_tests_selects_everything(self):
         for name in ("CMakeLists.txt", "tests/CMakeLists.txt", "tests/style/layers.cmake", "tests/run", "demos/setup.sh",
                      "tests/tiers/selection.py", ".clang-tidy", "tests/fuzz/corpus/obj/seed",
@@ -332,21 +353,23 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
+                      "live[.]driver)$", self.ctest_call(calls))
         self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
         self.assertIn("consumer.readme: the first page has not changed", done.stdout)
 
     def test_change_leaves_out_what_nothing_has_changed_for_and_says_why(self):
         self.write("plugin/tetskin/io/io.cpp")
         done, calls = self.run_script("--change")
-        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized|consumer[.]readme_changes|python[.]beside_others)$",
+        self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized|consumer[.]readme_changes|python[.]beside_others|"
+                      "live[.]page|live[.]driver)$",
                       self.ctest_call(calls))
         self.assertIn("configuration.thread_sanitized: nothing that is tested on several threads", done.stdout)
         self.setUp()
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
-                      "style[.]alone_changes|python[.]beside_others)$", self.ctest_call(calls))
+                      "style[.]alone_changes|python[.]beside_others|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):
@@ -354,6 +377,19 @@ class Script(InASmallProject):
         done, calls = self.run_script("--change")
         self.assertNotIn("python[.]beside_others", self.ctest_call(calls))
         self.assertIn("style[.]tidy_changes", self.ctest_call(calls))
+
+    def test_change_tests_one_scene_of_the_live_page_with_the_library_and_all_with_the_page(self):
+        self.write("plugin/tetskin/io/io.cpp")
+        done, calls = self.run_script("--change")
+        self.assertNotIn("live[.]one_scene", self.ctest_call(calls))
+        self.assertNotIn("js[.]module", self.ctest_call(calls))
+        self.assertIn("live.page: of the page, only the library below it has changed", done.stdout)
+        self.write("demos/live/page.js")
+        done, calls = self.run_script("--change")
+        self.assertIn("|live[.]one_scene)$", self.ctest_call(calls))
+        for name in ("live[.]page", "live[.]driver", "js[.]module"):
+            self.assertNotIn(name, self.ctest_call(calls))
+        self.assertNotIn("live.page: ", done.stdout)
 
     def test_change_is_all_where_everything_counts_as_changed(self):
         self.note("0" * 40)

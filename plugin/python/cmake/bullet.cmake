@@ -1,4 +1,5 @@
-# Bullet for the wheel, from its sources: in float, static, position-independent, and seen by nothing outside.
+# Bullet for the wheel and for the module of JavaScript, from its sources: in float, static, position-independent, and
+# seen by nothing outside.
 #   BULLET_SOURCE  a variable of CMake or of the environment: the folder of Bullet's sources. Empty: the folder
 #                  `bullet`, which a staged source package has, or else what fetch_bullet fetches, in a checkout
 set(BULLET_SOURCE "$ENV{BULLET_SOURCE}" CACHE PATH "Folder of the sources of Bullet 3.24; empty: they are fetched")
@@ -10,7 +11,7 @@ if(NOT bullet AND EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/bullet/VERSION")
   set(bullet "${CMAKE_CURRENT_SOURCE_DIR}/bullet")
 endif()
 if(NOT bullet)
-  execute_process(COMMAND bash "${CMAKE_CURRENT_SOURCE_DIR}/fetch_bullet" RESULT_VARIABLE failed OUTPUT_VARIABLE bullet
+  execute_process(COMMAND bash "${CMAKE_CURRENT_LIST_DIR}/../fetch_bullet" RESULT_VARIABLE failed OUTPUT_VARIABLE bullet
     ERROR_VARIABLE why OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_STRIP_TRAILING_WHITESPACE)
   if(NOT failed EQUAL 0)
     message(FATAL_ERROR "The sources of Bullet could not be fetched: ${why}\n${cure}")
@@ -21,7 +22,7 @@ if(NOT EXISTS "${bullet}/src/BulletSoftBody/btSoftBody.cpp" OR NOT EXISTS "${bul
 endif()
 file(STRINGS "${bullet}/VERSION" bullet_version LIMIT_COUNT 1)
 if(NOT bullet_version STREQUAL "3.24")
-  message(FATAL_ERROR "The wheel is made with Bullet 3.24, but ${bullet} has ${bullet_version}. ${cure}")
+  message(FATAL_ERROR "The package is made with Bullet 3.24, but ${bullet} has ${bullet_version}. ${cure}")
 endif()
 
 # What neither the library nor the binding uses is not compiled: a third of the sources. Something that is missing after

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "world_model.h"
+#include "handles.h"
 
 #include <nanobind/stl/filesystem.h>
 #include <tetskin/io/animation.h>

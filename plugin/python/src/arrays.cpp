@@ -156,15 +156,6 @@ std::vector<int> indicesOf(const ArrayLike& array, const char* name, std::size_t
   return indices;
 }
 
-const Vec3& finite(const Vec3& vector, const char* name) {
-  for (const double number : vector) {
-    if (!(std::abs(number) <= Limits::kMaxCoordinate)) {
-      fail(StatusCode::NonFinite, std::string(name) + ": a number is not finite, or larger than 1e18");
-    }
-  }
-  return vector;
-}
-
 Column<bool> newMask(const std::vector<char>& mask) {
   const auto owner = std::make_shared<std::vector<char>>(mask);
   return view1<bool>(reinterpret_cast<const bool*>(owner->data()), owner->size(), owner);

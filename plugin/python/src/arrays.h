@@ -4,8 +4,7 @@
 // Arrays in and out.
 #pragma once
 
-#include "errors.h"
-
+#include <facade/models.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -27,8 +26,7 @@ namespace tetskin::python {
 
 namespace nb = nanobind;
 using namespace nb::literals;
-using Vec3 = std::array<double, 3>;
-using Quaternion = std::array<double, 4>;  ///< x, y, z, w
+using namespace facade;
 
 /// Anything that numpy.asarray takes. This type, and those below, have names in the stub from tetskin/typing.py.
 struct ArrayLike {
@@ -99,9 +97,6 @@ std::vector<std::array<int, K>> indexRowsOf(const ArrayLike& array, const char* 
   }
   return rows;
 }
-
-/// Throws unless all numbers are finite, and no larger than what the library supports.
-const Vec3& finite(const Vec3& vector, const char* name);
 
 /// Owns a share of something while an array lives.
 template <class Owner>

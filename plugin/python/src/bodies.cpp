@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "world_model.h"
+#include "handles.h"
 
 namespace tetskin::python {
 namespace {
@@ -92,14 +92,9 @@ void transform(BodyHandle& body, const Vec3& position, const Quaternion& rotatio
 
 ImpulseResult radialImpulse(BodyHandle& body, const Vec3& centre, double radius, double strength) {
   const Locked lock(*body.world);
-  btSoftBody& soft = alive(body).body();
-  checkSurface(body);
   finite({radius, strength, 0}, "radius, strength");
-  const ImpulseResult result = body.world->treeOf(*body.state)
-                                   .applyImpulse(soft, {toBullet(centre, "centre"), static_cast<btScalar>(radius),
-                                                        static_cast<btScalar>(strength)});
-  if (result.status != StatusCode::NoHit) check(result.status, "apply_radial_impulse");
-  return result;
+  return body.world->radialImpulse(
+      *body.state, {toBullet(centre, "centre"), static_cast<btScalar>(radius), static_cast<btScalar>(strength)});
 }
 
 /// A number of the body's, with its lock.
@@ -116,17 +111,6 @@ auto setter(Set set) {
     const Locked lock(*body.world);
     check(set(alive(body), value));
   };
-}
-
-Eigen::Affine3d placementOf(const Vec3& position, const Quaternion& rotation) {
-  finite(position, "position");
-  const Eigen::Quaterniond q(rotation[3], rotation[0], rotation[1], rotation[2]);
-  if (!(q.squaredNorm() > 1e-12 && q.squaredNorm() < 1e12))
-    fail(StatusCode::InvalidOption, "rotation: must be a quaternion x, y, z, w other than 0");
-  Eigen::Affine3d placement = Eigen::Affine3d::Identity();
-  placement.translate(Eigen::Vector3d(position[0], position[1], position[2]));
-  if (q.vec() != Eigen::Vector3d::Zero()) placement.rotate(q.normalized());
-  return placement;
 }
 
 std::vector<double> numbersOf(const std::optional<ArrayLike>& array, const char* name) {

@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Meshes and cages as Python holds them: immutable, so that bodies, skins and threads share them.
+// What binds the library to Python, subject by subject.
 #pragma once
 
 #include "arrays.h"
 
-#include <tetskin/core/cage.h>
-#include <tetskin/core/mesh.h>
-#include <tetskin/core/mesh_skin.h>
+#include <facade/world_model.h>
 
 namespace tetskin::python {
-
-struct MeshModel {
-  std::shared_ptr<const TriangleMesh> mesh;
-};
-struct CageModel {
-  std::shared_ptr<const Cage> cage;
-  std::string report;  ///< of what made it, in words; may be empty
-};
 
 /// A TriangleMesh, or what has `vertices` and `faces`: a mesh of trimesh.
 struct MeshLike {
   nb::object object;
 };
 MeshModel meshOf(const MeshLike& mesh);
-
-BindingOptions bindingOptions(const std::string& interpolation, const std::string& normals, const std::string& outside,
-                              std::optional<double> maxDistance);
-Interpolation interpolationOf(const std::string& name);
-
-class World;
 
 /// Each binds one subject; those that take the class of worlds add methods to it.
 void bindMeshes(nb::module_& module);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The extension module tetskin._core. Each other source binds one subject.
-#include "world_model.h"
+#include "handles.h"
 
 #include <tetskin/tetskin.h>
 

@@ -3,8 +3,8 @@
 //
 // Pages that show worlds: the writer of demos/view, told what a world has. The files that pages are made from, and
 // notebooks, are the business of tetskin/page.py.
+#include "handles.h"
 #include "shape_meshes.h"
-#include "world_model.h"
 
 #include <nanobind/stl/filesystem.h>
 #include <algorithm>

@@ -1,90 +1,19 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "world_model.h"
+#include "handles.h"
 
-#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+#include <facade/shapes.h>
 #include <nanobind/stl/tuple.h>
-#include <algorithm>
-#include <cmath>
 #include <tuple>
 
 namespace tetskin::python {
 namespace {
 
-/// Bullet's hulls are rounded by their margin; this share of their size cannot be seen.
-constexpr btScalar kHullMargin = btScalar(0.01);
-
-double positive(double value, const char* name) {
-  if (!(value > 0.0 && value < 1e9))
-    throw nb::value_error((std::string(name) + ": must be above 0, and finite").c_str());
-  return value;
+ShapeModel convexHull(const ArrayLike& points) {
+  return facade::convexHull(pointsOf(points, "points"));
 }
-
-ShapeModel plane(const Vec3& normal, double offset) {
-  const btVector3 n = toBullet(normal, "normal");
-  if (!(n.length2() > 0)) throw nb::value_error("normal: must not be 0");
-  finite({offset, 0, 0}, "offset");
-  return {std::make_shared<btStaticPlaneShape>(n.normalized(), static_cast<btScalar>(offset)), true};
-}
-ShapeModel box(const Vec3& halfExtents) {
-  for (const double half : halfExtents) positive(half, "half_extents");
-  return {std::make_shared<btBoxShape>(toBullet(halfExtents, "half_extents"))};
-}
-ShapeModel sphere(double radius) {
-  return {std::make_shared<btSphereShape>(static_cast<btScalar>(positive(radius, "radius")))};
-}
-ShapeModel capsule(double radius, double height) {
-  return {std::make_shared<btCapsuleShape>(static_cast<btScalar>(positive(radius, "radius")),
-                                           static_cast<btScalar>(positive(height, "height")))};
-}
-ShapeModel cylinder(double radius, double height) {
-  const auto r = static_cast<btScalar>(positive(radius, "radius"));
-  return {std::make_shared<btCylinderShape>(btVector3(r, static_cast<btScalar>(0.5 * positive(height, "height")), r))};
-}
-
-ShapeModel convexHull(const ArrayLike& array) {
-  const std::vector<Eigen::Vector3d> points = pointsOf(array, "points");
-  if (points.size() < 4) fail(StatusCode::Empty, "points: a hull needs four or more");
-  auto hull = std::make_shared<btConvexHullShape>();
-  for (const Eigen::Vector3d& p : points) hull->addPoint(toBullet(Vec3{p.x(), p.y(), p.z()}, "points"), false);
-  hull->recalcLocalAabb();
-  const Eigen::Vector3d sizes = boundingBox(points).sizes();
-  if (!(sizes.minCoeff() > 1e-9 * sizes.maxCoeff())) fail(StatusCode::Degenerate, "points: they are in one plane");
-  hull->setMargin(std::min(CONVEX_DISTANCE_MARGIN, kHullMargin * static_cast<btScalar>(sizes.maxCoeff())));
-  return {std::move(hull)};
-}
-
-/// A mesh's arrays, as Bullet refers to them.
-struct MeshArrays {
-  std::vector<float> vertices;
-  std::vector<int> indices;
-  std::unique_ptr<btTriangleIndexVertexArray> interface;
-  std::unique_ptr<btBvhTriangleMeshShape> shape;
-};
-
-ShapeModel meshShape(const MeshLike& like) {
-  const MeshModel model = meshOf(like);
-  const TriangleMesh& mesh = *model.mesh;
-  if (mesh.triangles.empty()) fail(StatusCode::Empty, "the mesh has no triangles");
-  auto arrays = std::make_shared<MeshArrays>();
-  for (const Eigen::Vector3d& p : mesh.positions)
-    arrays->vertices.insert(arrays->vertices.end(),
-                            {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
-  for (const auto& triangle : mesh.triangles)
-    arrays->indices.insert(arrays->indices.end(), triangle.begin(), triangle.end());
-  btIndexedMesh part;
-  part.m_numTriangles = static_cast<int>(mesh.triangleCount());
-  part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(arrays->indices.data());
-  part.m_triangleIndexStride = 3 * sizeof(int);
-  part.m_numVertices = static_cast<int>(mesh.vertexCount());
-  part.m_vertexBase = reinterpret_cast<const unsigned char*>(arrays->vertices.data());
-  part.m_vertexStride = 3 * sizeof(float);
-  part.m_vertexType = PHY_FLOAT;
-  arrays->interface = std::make_unique<btTriangleIndexVertexArray>();
-  arrays->interface->addIndexedMesh(part, PHY_INTEGER);
-  arrays->shape = std::make_unique<btBvhTriangleMeshShape>(arrays->interface.get(), true);
-  return {std::shared_ptr<btCollisionShape>(arrays, arrays->shape.get()), true};
+ShapeModel meshShape(const MeshLike& mesh) {
+  return facade::meshShape(*meshOf(mesh).mesh);
 }
 
 /// A compound, with its children.
@@ -109,17 +38,6 @@ Quaternion rotationOf(const btTransform& pose) {
   return {q.x(), q.y(), q.z(), q.w()};
 }
 
-/// Puts a body somewhere: a kinematic one by its motion state, which gives it the velocity of the motion.
-void place(RigidHandle& rigid, const btTransform& pose) {
-  btRigidBody& body = alive(rigid);
-  rigid.state->motion->setWorldTransform(pose);
-  if (body.isKinematicObject()) return;
-  body.setWorldTransform(pose);
-  body.setInterpolationWorldTransform(pose);
-  rigid.world->bullet().updateSingleAabb(&body);
-  body.activate(true);
-}
-
 void setMass(RigidHandle& rigid, double mass) {
   btRigidBody& body = alive(rigid);
   positive(mass, "mass");
@@ -134,6 +52,13 @@ void setMass(RigidHandle& rigid, double mass) {
 }
 
 }  // namespace
+
+std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid) {
+  if (!rigid) return nullptr;
+  (void)alive(*rigid);
+  if (rigid->world != world) fail(StatusCode::NotInWorld, "the rigid body is in another world");
+  return rigid->state;
+}
 
 void bindRigidBodies(nb::module_& module, Class<World>& world) {
   Class<ShapeModel>(module, "Shape",
@@ -167,7 +92,7 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
             btTransform pose = alive(r).getWorldTransform();
             r.state->motion->getWorldTransform(pose);
             pose.setOrigin(toBullet(at, "position"));
-            place(r, pose);
+            r.world->place(*r.state, pose);
           },
           "(3,) float64, world space. Assigned to a kinematic body, it moves there in the next step.")
       .def_prop_rw(
@@ -177,7 +102,7 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
             btTransform pose = alive(r).getWorldTransform();
             r.state->motion->getWorldTransform(pose);
             pose.setRotation(toBullet(Vec3{}, q).getRotation());
-            place(r, pose);
+            r.world->place(*r.state, pose);
           },
           "(4,) float64: a quaternion x, y, z, w.")
       .def_prop_rw(

@@ -112,31 +112,6 @@ Row4<Number> rows4(const std::vector<std::array<Number, 4>>& rows) {
 
 }  // namespace
 
-Interpolation interpolationOf(const std::string& name) {
-  if (name == "linear") return Interpolation::Linear;
-  if (name == "quadratic") return Interpolation::Quadratic;
-  throw nb::value_error("interpolation: 'linear' or 'quadratic'");
-}
-
-BindingOptions bindingOptions(const std::string& interpolation, const std::string& normals, const std::string& outside,
-                              std::optional<double> maxDistance) {
-  BindingOptions options;
-  options.interpolation = interpolationOf(interpolation);
-  if (normals == "none") {
-    options.normals = Normals::None;
-  } else if (normals == "transformed") {
-    options.normals = Normals::Transformed;
-  } else if (normals == "recomputed") {
-    options.normals = Normals::Recomputed;
-  } else {
-    throw nb::value_error("normals: 'none', 'transformed' or 'recomputed'");
-  }
-  if (outside != "nearest" && outside != "barycentric") throw nb::value_error("outside: 'nearest' or 'barycentric'");
-  options.outside = outside == "nearest" ? OutsideRule::Nearest : OutsideRule::Barycentric;
-  if (maxDistance) options.maxDistance = *maxDistance;
-  return options;
-}
-
 void bindSkins(nb::module_& module) {
   Class<Skin>(module, "Skin", "A render mesh carried by the nodes of a cage, however they are moved. Needs no world.")
       .def(

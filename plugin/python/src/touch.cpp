@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "world_model.h"
+#include "handles.h"
 
 namespace tetskin::python {
 namespace {
@@ -22,26 +22,17 @@ const PointHandle& alivePoint(const PointHandle& point) {
   return point;
 }
 
+std::optional<HitHandle> hitOf(const std::shared_ptr<World>& world, const RayHit& found) {
+  if (!found.body) return std::nullopt;
+  return HitHandle{{world, found.body}, found.hit};
+}
 std::optional<HitHandle> raycast(const BodyHandle& body, const Vec3& from, const Vec3& to) {
   const Locked lock(*body.world);
-  (void)alive(body);
-  checkSurface(body);
-  const SurfaceHit hit =
-      body.world->treeOf(*body.state).raycast(body.state->skin, toBullet(from, "start"), toBullet(to, "end"));
-  if (hit) return HitHandle{body, hit};
-  if (hit.status != StatusCode::NoHit) check(hit.status, "raycast");
-  return std::nullopt;
+  return hitOf(body.world, body.world->raycast(body.state, toBullet(from, "start"), toBullet(to, "end")));
 }
-
 std::optional<HitHandle> raycastAll(const std::shared_ptr<World>& world, const Vec3& from, const Vec3& to) {
   const Locked lock(*world);
-  std::optional<HitHandle> nearest;
-  for (const auto& state : world->bodies()) {
-    if (!state->binding) continue;
-    std::optional<HitHandle> hit = raycast({world, state}, from, to);
-    if (hit && (!nearest || hit->hit.distance < nearest->hit.distance)) nearest = std::move(hit);
-  }
-  return nearest;
+  return hitOf(world, world->raycast(toBullet(from, "start"), toBullet(to, "end")));
 }
 
 template <class Find>

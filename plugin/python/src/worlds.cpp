@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "world_model.h"
+#include "handles.h"
 
 #include <vector>
 
 namespace tetskin::python {
 namespace {
+
+std::unique_ptr<ParallelFor> poolOf(int threads) {
+  if (threads < 1 || threads > 256) throw nb::value_error("threads: must be from 1 to 256");
+  if (threads == 1) return nullptr;
+  return std::make_unique<ThreadPool>(static_cast<std::size_t>(threads));
+}
 
 /// Steps may not be called from a replay's own call of on_change: the world's lock lets its thread in.
 int step(const std::shared_ptr<World>& world, double dt, int substeps) {
@@ -17,24 +23,14 @@ int step(const std::shared_ptr<World>& world, double dt, int substeps) {
 }
 
 nb::bytes save(const std::shared_ptr<World>& world) {
-  std::vector<char> bytes;
-  unlocked(*world, [&] {
-    bytes.resize(take(world->bullet().save(nullptr, 0)));
-    (void)take(world->bullet().save(bytes.data(), bytes.size()));
-  });
+  const std::vector<char> bytes = unlocked(*world, [&] { return world->save(); });
   return nb::bytes(bytes.data(), bytes.size());
 }
 
 void restore(const std::shared_ptr<World>& world, const nb::bytes& snapshot) {
   const char* data = snapshot.c_str();
   const std::size_t size = snapshot.size();
-  unlocked(*world, [&] {
-    check(world->bullet().restore(data, size));
-    for (const auto& body : world->bodies()) {
-      if (body->binding) body->skin.markTeleported();
-    }
-    world->updateSkins();
-  });
+  unlocked(*world, [&] { world->restore(data, size); });
 }
 
 }  // namespace
@@ -47,7 +43,7 @@ Class<World> bindWorlds(nb::module_& module) {
       .def(
           "__init__",
           [](World* self, const Vec3& gravity, int threads, bool deterministic, bool recordForces) {
-            new (self) World(gravity, threads, deterministic, recordForces);
+            new (self) World(gravity, poolOf(threads), deterministic, recordForces);
           },
           nb::kw_only(), "gravity"_a = Vec3{0, -9.81, 0}, "threads"_a = 1, "deterministic"_a = false,
           "record_forces"_a = true,

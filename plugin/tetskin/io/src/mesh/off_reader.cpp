@@ -55,8 +55,11 @@ std::string_view OffReader::word() {
 
 template <class Number>
 bool OffReader::number(Number& value) {
-  if constexpr (std::is_floating_point_v<Number>) return parseDouble(word(), value);
-  return parseInteger(word(), value);
+  if constexpr (std::is_floating_point_v<Number>) {
+    return parseDouble(word(), value);
+  } else {
+    return parseInteger(word(), value);
+  }
 }
 
 /// The format's name, behind letters for what vertices have: normals, colours, texture coordinates; other dimensions

@@ -82,13 +82,19 @@ class VtkText {
 
   template <class Number>
   static Number decode(const char* data, const NumberType& type) {
-    if constexpr (std::is_floating_point_v<Number>) return decodeNumber(data, type);
-    return static_cast<Number>(decodeInteger(data, type));
+    if constexpr (std::is_floating_point_v<Number>) {
+      return decodeNumber(data, type);
+    } else {
+      return static_cast<Number>(decodeInteger(data, type));
+    }
   }
   template <class Number>
   bool next(Number& value) {
-    if constexpr (std::is_floating_point_v<Number>) return in_.number(value);
-    return in_.integer(value);
+    if constexpr (std::is_floating_point_v<Number>) {
+      return in_.number(value);
+    } else {
+      return in_.integer(value);
+    }
   }
 
   const std::string& path_;

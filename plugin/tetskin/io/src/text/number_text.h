@@ -10,9 +10,11 @@
 #include <limits>
 #include <string_view>
 #include <system_error>
-#ifndef __cpp_lib_to_chars  // libc++, which has had no std::from_chars of floating-point numbers for long
+#ifndef __cpp_lib_to_chars  // libc++, which has had no such functions of floating-point numbers for long
+#include <stdio.h>
 #include <stdlib.h>
 #include <string>
+#include <type_traits>
 #if __has_include(<xlocale.h>)
 #include <xlocale.h>  // macOS
 #else
@@ -80,11 +82,31 @@ inline bool parseDouble(std::string_view token, double& value) {
 /// Memory that `formatNumber` needs: the longest double is -2.2250738585072014e-308.
 constexpr int kNumberRoom = 25;
 
+#ifndef __cpp_lib_to_chars
+/// With as many digits as it takes, in the plain locale.
+template <class Real>
+char* formatByTrying(char* out, Real value) {
+  double same = 0;
+  int length = 0;
+  for (int digits = 1; digits <= std::numeric_limits<Real>::max_digits10; ++digits) {
+    length = snprintf(out, kNumberRoom, "%.*g", digits, static_cast<double>(value));
+    std::replace(out, out + length, ',', '.');
+    if (parseDouble({out, static_cast<std::size_t>(length)}, same) && static_cast<Real>(same) == value) break;
+  }
+  return out + length;
+}
+#endif
+
 /// Writes the shortest text that reads back as the same number, and returns its end. `out` has room for kNumberRoom
 /// characters.
 template <class Number>
 char* formatNumber(char* out, Number value) {
-  return std::to_chars(out, out + kNumberRoom, value).ptr;
+#ifndef __cpp_lib_to_chars
+  if constexpr (std::is_floating_point_v<Number>)
+    return formatByTrying(out, value);
+  else
+#endif
+    return std::to_chars(out, out + kNumberRoom, value).ptr;
 }
 
 /// Appends the shortest text that reads back as the same number.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What all parts of the binding do with the outcomes of the library.
+// What bindings to other languages do with the outcomes of the library: they throw, and the language's own exception
+// has the code and the message. An argument that no status is for is a std::invalid_argument.
 #pragma once
 
 #include <tetskin/core/types.h>
@@ -10,9 +11,9 @@
 #include <string>
 #include <utility>
 
-namespace tetskin::python {
+namespace tetskin::facade {
 
-/// What Python sees as tetskin.Error.
+/// What programs in another language see as the error of this library.
 struct Failure : std::runtime_error {
   explicit Failure(const Status& status) : std::runtime_error(status.message), code(status.code) {}
   StatusCode code;
@@ -33,4 +34,4 @@ T take(Result<T>&& result) {
   return std::move(result).value();
 }
 
-}  // namespace tetskin::python
+}  // namespace tetskin::facade

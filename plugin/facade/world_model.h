@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world and all that is in it, with one owner. Python holds handles: a share of the world and of a thing in it, so
-// that the order in which it lets go does not matter. What has been removed keeps its memory while a handle or a view
-// of it lives, and refuses to be used.
+// A world and all that is in it, with one owner. Other languages hold handles: a share of the world and of a thing in
+// it, so that the order in which they let go does not matter. What has been removed keeps its memory while a handle or
+// a view of it lives, and refuses to be used.
 #pragma once
 
 #include "models.h"
 
-#include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_world.h>
@@ -16,13 +15,12 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
-#include <tetskin/threads/thread_pool.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 #include <memory>
 #include <mutex>
 
-namespace tetskin::python {
+namespace tetskin::facade {
 
 btVector3 toBullet(const Vec3& vector, const char* name);
 btTransform toBullet(const Vec3& position, const Quaternion& rotation);
@@ -68,6 +66,12 @@ struct TouchState {
   std::unique_ptr<SurfaceWeld> weld;
 };
 
+/// Where a ray has met a surface.
+struct RayHit {
+  std::shared_ptr<BodyState> body;  ///< null: nowhere
+  SurfaceHit hit;
+};
+
 struct BodyOptions {
   SoftBodyOptions material;
   BindingOptions binding;
@@ -77,7 +81,8 @@ struct BodyOptions {
 
 class World : public std::enable_shared_from_this<World> {
  public:
-  World(const Vec3& gravity, int threads, bool deterministic, bool recordForces);
+  /// threads  that work on a step; null: the calling one
+  World(const Vec3& gravity, std::unique_ptr<ParallelFor> threads, bool deterministic, bool recordForces);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -97,10 +102,14 @@ class World : public std::enable_shared_from_this<World> {
     return made;
   }
   void updateSkins();
+  std::vector<char> save() const;
+  void restore(const void* snapshot, std::size_t size);
 
   std::shared_ptr<RigidState> addRigid(const ShapeModel& shape, double mass, const btTransform& pose, double friction,
                                        bool kinematic);
   void remove(RigidState& rigid);
+  /// Puts a body somewhere: a kinematic one by its motion state, which gives it the velocity of the motion.
+  void place(RigidState& rigid, const btTransform& pose);
   std::shared_ptr<JointState> addJoint(std::shared_ptr<RigidState> first, std::shared_ptr<RigidState> second,
                                        std::unique_ptr<btTypedConstraint> joint, bool collide);
   void remove(JointState& joint);
@@ -111,6 +120,10 @@ class World : public std::enable_shared_from_this<World> {
   void remove(TouchState& touch);
 
   const SurfaceTree& treeOf(BodyState& body);
+  /// The first intersection of a segment with a body's surface, or with those of all; null: none.
+  RayHit raycast(const std::shared_ptr<BodyState>& body, const btVector3& from, const btVector3& to);
+  RayHit raycast(const btVector3& from, const btVector3& to);
+  ImpulseResult radialImpulse(BodyState& body, const RadialImpulse& impulse);
   ForceRecord& forces();
   SoftContacts* softContacts() { return soft_.get(); }
   const std::vector<std::shared_ptr<BodyState>>& bodies() const { return bodies_; }
@@ -133,7 +146,7 @@ class World : public std::enable_shared_from_this<World> {
   void bindSurface(BodyState& body, const BodyOptions& options);
 
   std::recursive_mutex mutex_;
-  std::unique_ptr<ThreadPool> threads_;
+  std::unique_ptr<ParallelFor> threads_;
   std::unique_ptr<DeformableWorld> world_;
   std::unique_ptr<ForceRecord> record_;
   std::unique_ptr<SoftContacts> soft_;
@@ -146,65 +159,9 @@ class World : public std::enable_shared_from_this<World> {
   std::vector<StatusCode> statuses_;
 };
 
-/// A world's lock, for a call with the GIL: waits without it. Calls from within the world's own calls pass.
-class Locked {
- public:
-  explicit Locked(World& world) : lock_(world.mutex(), std::try_to_lock) {
-    if (lock_.owns_lock()) return;
-    const nb::gil_scoped_release release;
-    lock_.lock();
-  }
-
- private:
-  std::unique_lock<std::recursive_mutex> lock_;
-};
-/// Runs without the GIL, and with the world's lock.
-template <class Work>
-auto unlocked(World& world, Work&& work) {
-  const nb::gil_scoped_release release;
-  const std::lock_guard<std::recursive_mutex> lock(world.mutex());
-  return work();
-}
-
-/// Arrays that a handle keeps: only those of soft bodies.
-template <class State>
-struct Arrays {};
-template <>
-struct Arrays<BodyState> {
-  Kept<Row3<float>> positions, normals, nodes, velocities;
-};
-
-/// What Python holds: the same thing as another handle of the same state.
-template <class State>
-struct Handle {
-  std::shared_ptr<World> world;
-  std::shared_ptr<State> state;
-  Arrays<State> arrays{};
-};
-using RigidHandle = Handle<RigidState>;
-using JointHandle = Handle<JointState>;
-using BodyHandle = Handle<BodyState>;
-struct SpringHandle : Handle<TouchState> {};
-struct WeldHandle : Handle<TouchState> {};
-
 /// Throw if the thing has been removed from its world.
-btRigidBody& alive(const RigidHandle& rigid);
-DeformableBody& alive(const BodyHandle& body);
-void checkSurface(const BodyHandle& body);
+btRigidBody& alive(const RigidState& rigid);
+DeformableBody& alive(const BodyState& body);
+void checkSurface(const BodyState& body);
 
-/// A rigid body of the same world, or null for None.
-std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid);
-
-/// The equality and hash of handles.
-template <class Of>
-void bindIdentity(Class<Of>& type) {
-  type.def("__eq__",
-           [](const Of& a, nb::handle b) { return nb::isinstance<Of>(b) && nb::cast<const Of&>(b).state == a.state; });
-  type.def("__hash__", [](const Of& a) { return std::hash<const void*>()(a.state.get()); });
-}
-
-/// See models.h; these need the type of a body.
-Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world);
-void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body);
-
-}  // namespace tetskin::python
+}  // namespace tetskin::facade

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tetskin::python {
+namespace tetskin::facade {
 namespace {
 
 template <class State>
@@ -33,9 +33,8 @@ btTransform toBullet(const Vec3& position, const Quaternion& rotation) {
   return btTransform(q.normalized(), toBullet(position, "position"));
 }
 
-World::World(const Vec3& gravity, int threads, bool deterministic, bool recordForces) {
-  if (threads < 1 || threads > 256) throw nb::value_error("threads: must be from 1 to 256");
-  if (threads > 1) threads_ = std::make_unique<ThreadPool>(static_cast<std::size_t>(threads));
+World::World(const Vec3& gravity, std::unique_ptr<ParallelFor> threads, bool deterministic, bool recordForces)
+    : threads_(std::move(threads)) {
   DeformableWorldOptions options;
   options.gravity = toBullet(gravity, "gravity");
   options.threads = threads_.get();
@@ -54,8 +53,8 @@ World::~World() {
 }
 
 void World::checkStep(double dt, int substeps) {
-  if (!(dt >= 1e-6 && dt <= 10.0)) throw nb::value_error("dt: must be from 1e-6 to 10 seconds");
-  if (substeps < 1 || substeps > 10000) throw nb::value_error("substeps: must be from 1 to 10000");
+  if (!(dt >= 1e-6 && dt <= 10.0)) throw std::invalid_argument("dt: must be from 1e-6 to 10 seconds");
+  if (substeps < 1 || substeps > 10000) throw std::invalid_argument("substeps: must be from 1 to 10000");
 }
 
 /// The longest step that is within `dt` as often as it should be: Bullet divides, and rounds down.
@@ -88,13 +87,28 @@ void World::updateSkins() {
   }
 }
 
+std::vector<char> World::save() const {
+  std::vector<char> bytes(take(world_->save(nullptr, 0)));
+  (void)take(world_->save(bytes.data(), bytes.size()));
+  return bytes;
+}
+
+void World::restore(const void* snapshot, std::size_t size) {
+  check(world_->restore(snapshot, size));
+  for (const auto& body : bodies_) {
+    if (body->binding) body->skin.markTeleported();
+  }
+  updateSkins();
+}
+
 std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass, const btTransform& pose,
                                             double friction, bool kinematic) {
-  if (!(mass >= 0.0 && mass < Limits::kMaxCoordinate)) throw nb::value_error("mass: must be 0 or more, and finite");
-  if (!(friction >= 0.0 && friction < 1e6)) throw nb::value_error("friction: must be 0 or more, and finite");
+  if (!(mass >= 0.0 && mass < Limits::kMaxCoordinate))
+    throw std::invalid_argument("mass: must be 0 or more, and finite");
+  if (!(friction >= 0.0 && friction < 1e6)) throw std::invalid_argument("friction: must be 0 or more, and finite");
   if (shape.concave && mass > 0.0)
-    throw nb::value_error("mass: a plane or a mesh does not move by itself; its mass is 0");
-  if (kinematic && mass > 0.0) throw nb::value_error("mass: that of a kinematic body is 0");
+    throw std::invalid_argument("mass: a plane or a mesh does not move by itself; its mass is 0");
+  if (kinematic && mass > 0.0) throw std::invalid_argument("mass: that of a kinematic body is 0");
   auto rigid = std::make_shared<RigidState>();
   rigid->shape = shape;
   btVector3 inertia(0, 0, 0);
@@ -111,6 +125,16 @@ std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass
   rigids_.push_back(rigid);
   world_->addRigidBody(rigid->body.get());
   return rigid;
+}
+
+void World::place(RigidState& rigid, const btTransform& pose) {
+  btRigidBody& body = alive(rigid);
+  rigid.motion->setWorldTransform(pose);
+  if (body.isKinematicObject()) return;
+  body.setWorldTransform(pose);
+  body.setInterpolationWorldTransform(pose);
+  world_->updateSingleAabb(&body);
+  body.activate(true);
 }
 
 void World::remove(RigidState& rigid) {
@@ -240,30 +264,50 @@ const SurfaceTree& World::treeOf(BodyState& body) {
   return *body.tree;
 }
 
+RayHit World::raycast(const std::shared_ptr<BodyState>& body, const btVector3& from, const btVector3& to) {
+  (void)alive(*body);
+  checkSurface(*body);
+  const SurfaceHit hit = treeOf(*body).raycast(body->skin, from, to);
+  if (hit) return {body, hit};
+  if (hit.status != StatusCode::NoHit) check(hit.status, "raycast");
+  return {};
+}
+
+RayHit World::raycast(const btVector3& from, const btVector3& to) {
+  RayHit nearest;
+  for (const auto& body : bodies_) {
+    if (!body->binding) continue;
+    RayHit found = raycast(body, from, to);
+    if (found.body && (!nearest.body || found.hit.distance < nearest.hit.distance)) nearest = std::move(found);
+  }
+  return nearest;
+}
+
+ImpulseResult World::radialImpulse(BodyState& body, const RadialImpulse& impulse) {
+  btSoftBody& soft = alive(body).body();
+  checkSurface(body);
+  const ImpulseResult result = treeOf(body).applyImpulse(soft, impulse);
+  if (result.status != StatusCode::NoHit) check(result.status, "a radial impulse");
+  return result;
+}
+
 ForceRecord& World::forces() {
   if (!record_) fail(StatusCode::NotAdded, "forces are not recorded: the world was made with record_forces=False");
   return *record_;
 }
 
-btRigidBody& alive(const RigidHandle& rigid) {
-  if (rigid.state->removed) fail(StatusCode::BodyDeleted, "the rigid body has been removed from its world");
-  return *rigid.state->body;
+btRigidBody& alive(const RigidState& rigid) {
+  if (rigid.removed) fail(StatusCode::BodyDeleted, "the rigid body has been removed from its world");
+  return *rigid.body;
 }
 
-DeformableBody& alive(const BodyHandle& body) {
-  if (body.state->removed) fail(StatusCode::BodyDeleted, "the body has been removed from its world");
-  return *body.state->body;
+DeformableBody& alive(const BodyState& body) {
+  if (body.removed) fail(StatusCode::BodyDeleted, "the body has been removed from its world");
+  return *body.body;
 }
 
-void checkSurface(const BodyHandle& body) {
-  if (!body.state->binding) fail(StatusCode::Unbound, "the body has no surface: it was added without a mesh");
+void checkSurface(const BodyState& body) {
+  if (!body.binding) fail(StatusCode::Unbound, "the body has no surface: it was added without a mesh");
 }
 
-std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid) {
-  if (!rigid) return nullptr;
-  (void)alive(*rigid);
-  if (rigid->world != world) fail(StatusCode::NotInWorld, "the rigid body is in another world");
-  return rigid->state;
-}
-
-}  // namespace tetskin::python
+}  // namespace tetskin::facade

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+
+class TetskinError extends Error {
+  constructor(code, message) {
+    super(message);
+    this.name = "TetskinError";
+    this.code = code;
+  }
+}
+
+const kOutOfMemory = "there is not enough memory for this: take a smaller mesh or fewer tets, or delete what is not " +
+  "needed any more";
+
+/** Of what the library has thrown. Its messages name options as C++ and Python do. */
+function errorOf(code, message) {
+  if (code === "OutOfMemory") return new TetskinError(code, kOutOfMemory);
+  return new TetskinError(code, message.replace(/^\w+(?=:)/, name => name.replace(/_([a-z])/g, (_, letter) => letter.toUpperCase()))
+    .replaceAll("/file.", "file."));
+}
+
+function invalid(message) {
+  return new TetskinError("InvalidArgument", message);
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What all things of one instance share: its memory.
+
+const kNothing = {at: 0, count: 0};
+
+class Instance {
+  constructor(core) {
+    this.core = core;
+    this.memoryVersion = 0;
+    this.seen = this.buffer;
+  }
+
+  get buffer() {
+    return this.core.HEAPU8.buffer;
+  }
+
+  /** Another array buffer is what has become of a memory that has grown. */
+  countGrowth() {
+    if (this.seen === this.buffer) return;
+    this.seen = this.buffer;
+    ++this.memoryVersion;
+  }
+
+  /** Calls work with a function that copies typed arrays into memory, which is freed afterwards. */
+  withMemory(work) {
+    const taken = [];
+    const put = (Type, values) => {
+      if (values.length === 0) return kNothing;
+      const at = this.core._malloc(values.length * Type.BYTES_PER_ELEMENT);
+      if (at === 0) throw errorOf("OutOfMemory");
+      taken.push(at);
+      new Type(this.buffer, at, values.length).set(values);
+      return {at, count: values.length};
+    };
+    try {
+      return work({
+        doubles: values => put(Float64Array, values),
+        indices: values => put(Int32Array, checkedIndices(values)),
+        bytes: values => put(Uint8Array, values),
+      });
+    } finally {
+      for (const at of taken) this.core._free(at);
+    }
+  }
+
+  view(Type, {at, count}) {
+    return new Type(this.buffer, at, count);
+  }
+  copy(Type, lent) {
+    return this.view(Type, lent).slice();
+  }
+}
+
+function checkedIndices(values) {
+  for (let i = 0; i < values.length; ++i) {
+    if (!(values[i] >= -0x80000000 && values[i] <= 0x7fffffff) || values[i] % 1 !== 0) {
+      throw invalid(`an index is ${values[i]}: it must be a whole number`);
+    }
+  }
+  return values;
+}
+
+/** Something of an instance's, which is freed by `delete()`. */
+class Thing {
+  constructor(instance, handle) {
+    Object.defineProperty(this, "hidden", {value: {instance, handle}});
+  }
+  get deleted() {
+    return this.hidden.handle === null;
+  }
+  delete() {
+    const {handle} = this.hidden;
+    if (handle === null) return;
+    this.hidden.handle = null;
+    this.leave(handle);
+    handle.delete();
+  }
+  /** Before the handle goes. */
+  leave() {}
+}
+Object.defineProperty(Thing.prototype, Symbol.dispose ?? Symbol.for("Symbol.dispose"), {
+  value() {
+    this.delete();
+  },
+});
+
+/** A thing's handle, for a call. */
+function handleOf(thing, Type, name) {
+  if (!(thing instanceof Type)) throw invalid(`${name}: must be a ${Type.name}`);
+  if (thing.deleted) throw new TetskinError("Deleted", `${name}: it has been deleted`);
+  return thing.hidden.handle;
+}
+
+/** The handle of the thing whose method was called. */
+function own(thing) {
+  if (thing.deleted) throw new TetskinError("Deleted", `the ${thing.constructor.name} has been deleted`);
+  return thing.hidden.handle;
+}
+
+/** Handles of other instances are of other memory. */
+function handleIn(instance, thing, Type, name) {
+  const handle = handleOf(thing, Type, name);
+  if (thing.hidden.instance !== instance) {
+    throw invalid(`${name}: is of another instance of the module; hand over its bytes`);
+  }
+  return handle;
+}

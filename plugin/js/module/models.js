@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+
+class Mesh extends Thing {
+  get vertexCount() {
+    return this.core.meshPositions(own(this)).count / 3;
+  }
+  get triangleCount() {
+    return this.core.meshTriangles(own(this)).count / 3;
+  }
+  get positions() {
+    return this.view(Float64Array, this.core.meshPositions(own(this)));
+  }
+  get triangles() {
+    return this.view(Int32Array, this.core.meshTriangles(own(this)));
+  }
+  get normals() {
+    return this.view(Float32Array, this.core.meshNormals(own(this)));
+  }
+  get texcoords() {
+    return this.view(Float32Array, this.core.meshTexcoords(own(this)));
+  }
+  restNormals() {
+    return this.copy(Float32Array, this.core.meshRestNormals(own(this)));
+  }
+  get bounds() {
+    return this.copy(Float64Array, this.core.meshBounds(own(this)));
+  }
+  toBytes() {
+    return this.copy(Uint8Array, this.core.meshToBytes(own(this)));
+  }
+}
+
+class Cage extends Thing {
+  get nodeCount() {
+    return this.core.cageNodes(own(this)).count / 3;
+  }
+  get tetCount() {
+    return this.core.cageTets(own(this)).count / 4;
+  }
+  get nodes() {
+    return this.view(Float64Array, this.core.cageNodes(own(this)));
+  }
+  get tets() {
+    return this.view(Int32Array, this.core.cageTets(own(this)));
+  }
+  get vertexTets() {
+    return this.view(Int32Array, this.core.cageVertexTets(own(this)));
+  }
+  get quadraticTet() {
+    return this.view(Int32Array, this.core.cageQuadraticTet(own(this)));
+  }
+  edges() {
+    return this.copy(Int32Array, this.core.cageEdges(own(this)));
+  }
+  boundaryFaces() {
+    return this.copy(Int32Array, this.core.cageBoundaryFaces(own(this)));
+  }
+  get report() {
+    return this.core.cageReport(own(this));
+  }
+  scaled(scale) {
+    return new Cage(this.hidden.instance, this.core.scaledCage(own(this), numberOf(scale, "scale")));
+  }
+  toBytes() {
+    return this.copy(Uint8Array, this.core.cageToBytes(own(this)));
+  }
+}
+
+class Palette extends Thing {
+  get boneCount() {
+    return this.core.boneCount(own(this));
+  }
+  vertexBones() {
+    return this.copy(Uint16Array, this.core.vertexBones(own(this)));
+  }
+  vertexWeights() {
+    return this.copy(Float32Array, this.core.vertexWeights(own(this)));
+  }
+  get bones() {
+    return this.view(Float32Array, this.core.bones(own(this)));
+  }
+  update(nodes) {
+    if (nodes instanceof Body) {
+      const body = handleIn(this.hidden.instance, nodes, Body, "nodes");
+      return this.view(Float32Array, this.core.updatePaletteByBody(own(this), body));
+    }
+    numbersOf(nodes, "nodes", 3);
+    return this.withMemory(({doubles}) => {
+      return this.view(Float32Array, this.core.updatePaletteByNumbers(own(this), doubles(nodes)));
+    });
+  }
+}
+
+const kCageOptions = {targetTets: 3000, duplicateElements: true, fit: true, progress: undefined};
+const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
+const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
+
+/** What `load` returns. */
+class Tetskin {
+  constructor(core) {
+    Object.defineProperty(this, "hidden", {value: {instance: new Instance(core)}});
+  }
+  get memoryVersion() {
+    this.hidden.instance.countGrowth();
+    return this.hidden.instance.memoryVersion;
+  }
+  get memoryBytes() {
+    return this.hidden.instance.buffer.byteLength;
+  }
+
+  readMesh(bytes, format) {
+    const content = bytesOf(bytes, "bytes");
+    if (typeof format !== "string") throw invalid("format: must be a string, for instance obj");
+    const extension = format.slice(format.lastIndexOf(".") + 1).toLowerCase();
+    if (!/^[a-z0-9]{1,8}$/.test(extension)) {
+      throw new TetskinError("UnsupportedFormat", `format: ${format} names none; read are obj, ply, off, stl, glb, gltf`);
+    }
+    return this.withMemory(memory => {
+      const {at, count} = memory.bytes(content);
+      return new Mesh(this.hidden.instance, this.core.readMesh(at, count, extension));
+    });
+  }
+  createMesh(positions, triangles, options) {
+    const {normals, texcoords} = optionsOf(options, {normals: [], texcoords: []});
+    numbersOf(positions, "positions", 3);
+    numbersOf(triangles, "triangles", 3);
+    for (const [array, name, columns] of [[normals, "normals", 3], [texcoords, "texcoords", 2]]) {
+      if (array.length !== 0 && array.length !== columns * positions.length / 3) {
+        throw new TetskinError("SizeMismatch", `${name}: ${array.length} numbers for ${positions.length / 3} vertices`);
+      }
+    }
+    return this.withMemory(({doubles, indices}) => new Mesh(this.hidden.instance, this.core.createMesh(
+      doubles(positions), indices(triangles), doubles(normals), doubles(texcoords))));
+  }
+  meshFromBytes(bytes) {
+    const content = bytesOf(bytes, "bytes");
+    return this.withMemory(memory => {
+      const {at, count} = memory.bytes(content);
+      return new Mesh(this.hidden.instance, this.core.meshFromBytes(at, count));
+    });
+  }
+
+  createCage(mesh, options) {
+    const {targetTets, duplicateElements, fit, progress} = optionsOf(options, kCageOptions);
+    const handle = this.handle(mesh, Mesh, "mesh");
+    return this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.createCage(
+      handle, targetTets, duplicateElements, fit, tells)));
+  }
+  calibrate(cage, options) {
+    const {poissonRatio, modeCount, progress} = optionsOf(options, kCalibrationOptions);
+    const handle = this.handle(cage, Cage, "cage");
+    return this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.calibrate(
+      handle, poissonRatio, wholeNumberOf(modeCount, "modeCount"), tells)));
+  }
+  refineQuadratic(cage) {
+    return new Cage(this.hidden.instance, this.core.refineQuadratic(this.handle(cage, Cage, "cage")));
+  }
+  cageOfTets(nodes, tets) {
+    numbersOf(nodes, "nodes", 3);
+    numbersOf(tets, "tets", 4);
+    return this.withMemory(({doubles, indices}) => new Cage(this.hidden.instance, this.core.cageOfTets(
+      doubles(nodes), indices(tets))));
+  }
+  cageFromBytes(bytes) {
+    const content = bytesOf(bytes, "bytes");
+    return this.withMemory(memory => {
+      const {at, count} = memory.bytes(content);
+      return new Cage(this.hidden.instance, this.core.cageFromBytes(at, count));
+    });
+  }
+
+  createPalette(cage, mesh, options) {
+    const {interpolation, gradients, layout} = optionsOf(options, kPaletteOptions);
+    if (layout !== "rows" && layout !== "columns") throw invalid("layout: \"rows\" or \"columns\"");
+    return new Palette(this.hidden.instance, this.core.createPalette(
+      this.handle(cage, Cage, "cage"), this.handle(mesh, Mesh, "mesh"), interpolation, gradients, layout === "columns"));
+  }
+  createWorld(options) {
+    const {gravity, deterministic} = optionsOf(options, {gravity: [0, -9.81, 0], deterministic: false});
+    return new World(this.hidden.instance, this.core.createWorld(gravity, deterministic));
+  }
+
+  handle(thing, Type, name) {
+    return handleIn(this.hidden.instance, thing, Type, name);
+  }
+  /** What a progress function throws cancels, and is thrown then. */
+  withProgress(progress, work) {
+    if (progress === undefined) return work(false);
+    if (typeof progress !== "function") throw invalid("progress: must be a function");
+    let thrown;
+    const before = this.core.progress;
+    this.core.progress = fraction => {
+      try {
+        return progress(fraction) !== false;
+      } catch (error) {
+        thrown = {error};
+        return false;
+      }
+    };
+    try {
+      return work(true);
+    } catch (error) {
+      throw thrown ? thrown.error : error;
+    } finally {
+      this.core.progress = before;
+    }
+  }
+}
+
+for (const Type of [Thing, Tetskin]) {
+  Object.defineProperties(Type.prototype, {
+    core: {get() { return this.hidden.instance.core; }},
+    view: {value(Numbers, place) { return this.hidden.instance.view(Numbers, place); }},
+    copy: {value(Numbers, place) { return this.hidden.instance.copy(Numbers, place); }},
+    withMemory: {value(work) { return this.hidden.instance.withMemory(work); }},
+  });
+}

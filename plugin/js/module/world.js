@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+
+const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
+  angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
+const kBodyOptions = {position: [0, 0, 0], rotation: [0, 0, 0, 1], density: 100, mass: NaN, youngsModulus: NaN,
+  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, contactMargin: NaN,
+  interpolation: "linear", normals: "none", visible: true, surfaceContact: true, softContact: false,
+  selfContact: false, pinned: []};
+const kStages = ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces", "total"];
+
+class World extends Thing {
+  constructor(instance, handle) {
+    super(instance, handle);
+    Object.assign(this.hidden, {bodies: [], rigidBodies: [], springs: [], time: 0});
+  }
+  leave() {
+    for (const list of ["springs", "bodies", "rigidBodies"]) {
+      for (const thing of [...this.hidden[list]].reverse()) thing.delete();
+    }
+  }
+
+  get gravity() {
+    return Float64Array.from(this.core.gravity(own(this)));
+  }
+  set gravity(gravity) {
+    this.core.setGravity(own(this), vectorOf(gravity, "gravity", [0, 0, 0]));
+  }
+  step(dt = 1 / 60, substeps = 4) {
+    const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
+    this.hidden.time += dt;
+    return made;
+  }
+  get times() {
+    const numbers = this.view(Float64Array, this.core.times(own(this)));
+    return Object.fromEntries(kStages.map((stage, i) => [stage, numbers[i]]));
+  }
+  get time() {
+    return this.hidden.time;
+  }
+
+  addPlane(options) {
+    const {normal, offset, friction} = optionsOf(options, {normal: [0, 1, 0], offset: 0, friction: 0.5});
+    return this.keepRigid(this.core.addPlane(own(this), normal, offset, friction));
+  }
+  addBox(halfExtents, options) {
+    const sizes = vectorOf(halfExtents, "halfExtents", [0, 0, 0]);
+    return this.keepRigid(this.core.addBox(own(this), sizes, optionsOf(options, kRigidOptions)));
+  }
+  addSphere(radius, options) {
+    return this.keepRigid(this.core.addSphere(own(this), numberOf(radius, "radius"), optionsOf(options, kRigidOptions)));
+  }
+  addCapsule(radius, height, options) {
+    return this.keepRigid(this.core.addCapsule(own(this), numberOf(radius, "radius"), numberOf(height, "height"),
+      optionsOf(options, kRigidOptions)));
+  }
+  addCylinder(radius, height, options) {
+    return this.keepRigid(this.core.addCylinder(own(this), numberOf(radius, "radius"), numberOf(height, "height"),
+      optionsOf(options, kRigidOptions)));
+  }
+  addConvexHull(points, options) {
+    numbersOf(points, "points", 3);
+    const rigid = optionsOf(options, kRigidOptions);
+    return this.withMemory(({doubles}) => this.keepRigid(this.core.addConvexHull(own(this), doubles(points), rigid)));
+  }
+  addMesh(mesh, options) {
+    return this.keepRigid(this.core.addMesh(own(this), handleIn(this.hidden.instance, mesh, Mesh, "mesh"),
+      optionsOf(options, kRigidOptions)));
+  }
+  addBody(cage, mesh, options) {
+    const {pinned, ...soft} = optionsOf(options, kBodyOptions);
+    const cageHandle = handleIn(this.hidden.instance, cage, Cage, "cage");
+    const meshHandle = mesh === null ? null : handleIn(this.hidden.instance, mesh, Mesh, "mesh");
+    return this.withMemory(({indices}) => {
+      const handle = this.core.addBody(own(this), cageHandle, meshHandle, soft, indices(pinned));
+      return this.keep("bodies", new Body(this.hidden.instance, handle, this, {cage, mesh}));
+    });
+  }
+
+  get bodies() {
+    return [...this.hidden.bodies];
+  }
+  get rigidBodies() {
+    return [...this.hidden.rigidBodies];
+  }
+  poses() {
+    return this.view(Float32Array, this.core.poses(own(this)));
+  }
+
+  raycast(start, end) {
+    const hit = this.core.raycast(own(this), vectorOf(start, "start", [0, 0, 0]), vectorOf(end, "end", [0, 0, 0]));
+    return hit.body < 0 ? null : {...hit, body: this.hidden.bodies[hit.body]};
+  }
+  addSpring(hit, options) {
+    const {stiffness, dampingRatio, maxForce} = optionsOf(options, {stiffness: NaN, dampingRatio: 0, maxForce: NaN});
+    const body = this.bodyOf(hit);
+    const handle = this.core.addSpring(body, hit.triangle, hit.weights, stiffness, dampingRatio, maxForce);
+    return this.keep("springs", new Spring(this.hidden.instance, handle, this, {body: hit.body}));
+  }
+  applyImpulse(hit, impulse) {
+    this.core.applyImpulse(this.bodyOf(hit), hit.triangle, hit.weights, vectorOf(impulse, "impulse", [0, 0, 0]));
+  }
+
+  get snapshotSize() {
+    return this.core.snapshotSize(own(this));
+  }
+  save(into) {
+    const memory = into === undefined ? undefined : bytesOf(into, "into");
+    const state = this.view(Uint8Array, this.core.save(own(this)));
+    if (memory === undefined) return state.slice();
+    if (memory.length < state.length) {
+      throw new TetskinError("SizeMismatch", `into: ${memory.length} bytes, but the snapshot has ${state.length}`);
+    }
+    memory.set(state);
+    return memory.subarray(0, state.length);
+  }
+  restore(snapshot) {
+    const content = bytesOf(snapshot, "snapshot");
+    this.withMemory(memory => {
+      const {at, count} = memory.bytes(content);
+      this.core.restore(own(this), at, count);
+    });
+  }
+  get hash() {
+    return this.core.hash(own(this));
+  }
+
+  keep(list, thing) {
+    this.hidden[list].push(thing);
+    return thing;
+  }
+  keepRigid(handle) {
+    return this.keep("rigidBodies", new RigidBody(this.hidden.instance, handle, this, {}));
+  }
+  /** The handle of a hit's body, once the hit is known to be one. */
+  bodyOf(hit) {
+    own(this);
+    if (hit === null || typeof hit !== "object") throw invalid("hit: must be what raycast returns, and not null");
+    const body = handleOf(hit.body, Body, "hit.body");
+    if (hit.body.hidden.world !== this) throw new TetskinError("NotInWorld", "hit: its body is in another world");
+    wholeNumberOf(hit.triangle, "hit.triangle");
+    vectorOf(hit.weights, "hit.weights", [0, 0, 0]);
+    return body;
+  }
+}
+
+/** Something that a world keeps in a list. */
+class Member extends Thing {
+  constructor(instance, handle, world, others) {
+    super(instance, handle);
+    Object.assign(this.hidden, {world}, others);
+  }
+  forget(list) {
+    const all = this.hidden.world.hidden[list];
+    all.splice(all.indexOf(this), 1);
+  }
+}
+
+class Spring extends Member {
+  leave(handle) {
+    this.forget("springs");
+    this.core.releaseSpring(handle);
+  }
+  get body() {
+    return this.hidden.body;
+  }
+  setTarget(target) {
+    this.core.setTarget(own(this), vectorOf(target, "target", [0, 0, 0]));
+  }
+  setStiffness(stiffness) {
+    this.core.setStiffness(own(this), numberOf(stiffness, "stiffness"));
+  }
+  setMaxForce(force) {
+    this.core.setMaxForce(own(this), numberOf(force, "force"));
+  }
+  get position() {
+    return Float64Array.from(this.core.springPosition(own(this)));
+  }
+  get force() {
+    return Float64Array.from(this.core.springForce(own(this)));
+  }
+  get stretch() {
+    return this.core.springStretch(own(this));
+  }
+}
+
+class RigidBody extends Member {
+  leave(handle) {
+    this.forget("rigidBodies");
+    this.core.removeRigidBody(handle);
+  }
+  get position() {
+    return Float64Array.from(this.core.rigidPosition(own(this)));
+  }
+  set position(at) {
+    this.core.setRigidPosition(own(this), vectorOf(at, "position", [0, 0, 0]));
+  }
+  get rotation() {
+    return Float64Array.from(this.core.rigidRotation(own(this)));
+  }
+  set rotation(quaternion) {
+    this.core.setRigidRotation(own(this), vectorOf(quaternion, "rotation", [0, 0, 0, 1]));
+  }
+  get velocity() {
+    return Float64Array.from(this.core.rigidVelocity(own(this)));
+  }
+  set velocity(velocity) {
+    this.core.setRigidVelocity(own(this), vectorOf(velocity, "velocity", [0, 0, 0]));
+  }
+  get angularVelocity() {
+    return Float64Array.from(this.core.rigidAngularVelocity(own(this)));
+  }
+  set angularVelocity(velocity) {
+    this.core.setRigidAngularVelocity(own(this), vectorOf(velocity, "angularVelocity", [0, 0, 0]));
+  }
+  get friction() {
+    return this.core.rigidFriction(own(this));
+  }
+  set friction(friction) {
+    this.core.setRigidFriction(own(this), numberOf(friction, "friction"));
+  }
+  get mass() {
+    return this.core.rigidMass(own(this));
+  }
+  get kinematic() {
+    return this.core.rigidKinematic(own(this));
+  }
+  applyImpulse(impulse, at) {
+    const push = vectorOf(impulse, "impulse", [0, 0, 0]);
+    const centre = this.core.rigidPosition(own(this));
+    this.core.applyRigidImpulse(own(this), push, vectorOf(at, "at", centre).map((x, k) => x - centre[k]));
+  }
+}
+
+class Body extends Member {
+  leave(handle) {
+    for (const spring of [...this.hidden.world.hidden.springs]) {
+      if (spring.body === this) spring.delete();
+    }
+    this.forget("bodies");
+    this.core.removeBody(handle);
+  }
+  get cage() {
+    return this.hidden.cage;
+  }
+  get mesh() {
+    return this.hidden.mesh;
+  }
+  get nodeCount() {
+    return this.core.bodyNodes(own(this)).count / 3;
+  }
+  get nodes() {
+    return this.view(Float32Array, this.core.bodyNodes(own(this)));
+  }
+  get velocities() {
+    return this.view(Float32Array, this.core.bodyVelocities(own(this)));
+  }
+  set velocities(velocities) {
+    numbersOf(velocities, "velocities", 3);
+    this.withMemory(({doubles}) => this.core.setBodyVelocities(own(this), doubles(velocities)));
+  }
+  get positions() {
+    return this.view(Float32Array, this.core.bodyPositions(own(this)));
+  }
+  get normals() {
+    return this.view(Float32Array, this.core.bodyNormals(own(this)));
+  }
+  get bounds() {
+    return this.copy(Float64Array, this.core.bodyBounds(own(this)));
+  }
+  get visible() {
+    return this.core.visible(own(this));
+  }
+  set visible(visible) {
+    this.core.setVisible(own(this), visible === true);
+  }
+  get asleep() {
+    return this.core.asleep(own(this));
+  }
+  get mass() {
+    return this.core.bodyMass(own(this));
+  }
+  get youngsModulus() {
+    return this.core.youngsModulus(own(this));
+  }
+  set youngsModulus(pressure) {
+    this.core.setYoungsModulus(own(this), numberOf(pressure, "youngsModulus"));
+  }
+  get relativeStiffness() {
+    return this.core.relativeStiffness(own(this));
+  }
+  get poissonRatio() {
+    return this.core.poissonRatio(own(this));
+  }
+  set poissonRatio(ratio) {
+    this.core.setPoissonRatio(own(this), numberOf(ratio, "poissonRatio"));
+  }
+  get stiffnessDamping() {
+    return this.core.stiffnessDamping(own(this));
+  }
+  set stiffnessDamping(seconds) {
+    this.core.setStiffnessDamping(own(this), numberOf(seconds, "stiffnessDamping"));
+  }
+  get friction() {
+    return this.core.bodyFriction(own(this));
+  }
+  set friction(friction) {
+    this.core.setBodyFriction(own(this), numberOf(friction, "friction"));
+  }
+  setGravity(gravity) {
+    if (gravity === null) {
+      this.core.followWorldGravity(own(this));
+    } else {
+      this.core.setBodyGravity(own(this), vectorOf(gravity, "gravity", [0, 0, 0]));
+    }
+  }
+  setPinned(nodes, pinned = true) {
+    numbersOf(nodes, "nodes");
+    this.withMemory(({indices}) => this.core.setPinned(own(this), indices(nodes), pinned));
+  }
+  get pinned() {
+    return this.copy(Uint8Array, this.core.pinned(own(this)));
+  }
+  setPinnedPositions(nodes, positions) {
+    numbersOf(nodes, "nodes");
+    numbersOf(positions, "positions", 3);
+    this.withMemory(({doubles, indices}) => {
+      this.core.setPinnedPositions(own(this), indices(nodes), doubles(positions));
+    });
+  }
+  transform(position, rotation) {
+    this.core.transform(own(this), vectorOf(position, "position", [0, 0, 0]),
+      vectorOf(rotation, "rotation", [0, 0, 0, 1]));
+  }
+  applyRadialImpulse(centre, radius, strength) {
+    return this.core.applyRadialImpulse(own(this), vectorOf(centre, "centre", [0, 0, 0]), numberOf(radius, "radius"),
+      numberOf(strength, "strength"));
+  }
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Makes the npm package of what Emscripten has made: the module in one file, its types, licences and pages.
+//   node pack.mjs core.js core.wasm FOLDER   the folder is replaced
+//
+// WebAssembly is deflated, and in base64, in that file: a third of what it would be otherwise, on the disk and in the
+// memory of what reads it. All is in one function, whose names nothing else sees; the last line is the only one of an ES
+// module, so that a page may replace it.
+import {cpSync, mkdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import {dirname, join} from "node:path";
+import {fileURLToPath} from "node:url";
+import {deflateSync} from "node:zlib";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const repository = join(here, "../..");
+const [script, binary, folder] = process.argv.slice(2);
+const read = path => readFileSync(path, "utf8");
+
+const header = read(join(repository, "plugin/tetskin/tetskin.h"));
+const version = ["MAJOR", "MINOR", "PATCH"].map(part => new RegExp(`VERSION_${part} (\\d+)`).exec(header)[1]).join(".");
+const parts = ["errors", "arguments", "instance", "models", "world", "load"];
+// The sources' own headers and comments stay out.
+const sources = parts.map(part => read(join(here, "module", `${part}.js`)).replace(/^\/\/.*\n/gm, ""));
+const packed = deflateSync(readFileSync(binary), {level: 9}).toString("base64");
+
+const module = `// tetskin ${version}, zlib licence. Contains Bullet, Eigen, tinygltf, JSON for Modern C++ and parts of Emscripten's
+// libraries: their licences are in the folder licences of the npm package.
+const tetskin = (() => {
+"use strict";
+${read(script).trim()}
+const kWebAssembly = "${packed}";
+${sources.join("\n")}
+return {version: "${version}", load, TetskinError};
+})();
+export const {version, load, TetskinError} = tetskin;
+`;
+
+rmSync(folder, {recursive: true, force: true});
+mkdirSync(join(folder, "licences"), {recursive: true});
+writeFileSync(join(folder, "tetskin.js"), module);
+const description = JSON.parse(read(join(here, "package.json")));
+writeFileSync(join(folder, "package.json"), JSON.stringify({...description, version}, null, 2) + "\n");
+cpSync(join(here, "tetskin.d.ts"), join(folder, "tetskin.d.ts"));
+cpSync(join(here, "README.md"), join(folder, "README.md"));
+cpSync(join(repository, "LICENSE"), join(folder, "LICENSE"));

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What JavaScript holds: shares of a world and of the things in it.
+#pragma once
+
+#include "guarded.h"
+
+#include <facade/world_model.h>
+
+namespace tetskin::js {
+
+/// A world, with the times of its last step in milliseconds, in the order of StageTimes in tetskin.d.ts.
+struct WorldHandle {
+  std::shared_ptr<World> world;
+  std::array<double, 8> times{};
+  std::vector<float> poses;
+};
+struct BodyHandle {
+  std::shared_ptr<World> world;
+  std::shared_ptr<BodyState> state;
+  std::vector<float> nodes, velocities;  ///< of the last call that asked for them, side by side
+};
+struct RigidHandle {
+  std::shared_ptr<World> world;
+  std::shared_ptr<RigidState> state;
+};
+struct SpringHandle {
+  std::shared_ptr<World> world;
+  std::shared_ptr<TouchState> state;
+  SurfacePoint point;
+};
+
+inline Vec3 vectorOf(const btVector3& v) {
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+/// An option that is not given is no number.
+inline std::optional<double> given(double option) {
+  return option == option ? std::optional(option) : std::nullopt;
+}
+
+}  // namespace tetskin::js

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Meshes and cages.
+#include "byte_arrays.h"
+
+#include <emscripten.h>
+#include <tetskin/cage/create_cage.h>
+#include <tetskin/elastic/calibration.h>
+#include <tetskin/io/files.h>
+
+#include <cstdio>
+#include <memory>
+
+namespace tetskin::js {
+namespace {
+
+// NOLINTNEXTLINE: the macro's own
+EM_JS(int, tellProgress, (double fraction), { return Module["progress"](fraction); });
+
+std::function<bool(double)> progressIf(bool wanted) {
+  if (!wanted) return {};
+  return [](double fraction) { return tellProgress(fraction) != 0; };
+}
+
+std::vector<Eigen::Vector3d> pointsOf(const Doubles& numbers) {
+  std::vector<Eigen::Vector3d> points(numbers.count / 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = Eigen::Map<const Eigen::Vector3d>(numbers.begin() + 3 * i);
+  return points;
+}
+template <class Row>
+std::vector<Row> floatRows(const Doubles& numbers) {
+  constexpr std::size_t kColumns = Row::RowsAtCompileTime;
+  std::vector<Row> rows(numbers.count / kColumns);
+  for (std::size_t i = 0; i < kColumns * rows.size(); ++i)
+    rows[i / kColumns][static_cast<int>(i % kColumns)] = static_cast<float>(numbers.begin()[i]);
+  return rows;
+}
+template <std::size_t K>
+std::vector<std::array<int, K>> indexRows(const Indices& indices) {
+  std::vector<std::array<int, K>> rows(indices.count / K);
+  for (std::size_t i = 0; i < K * rows.size(); ++i) rows[i / K][i % K] = indices.begin()[i];
+  return rows;
+}
+
+/// A file in the module's own file system, in memory, while it is read.
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::string& extension, const unsigned char* bytes, std::size_t count)
+      : path_("/file." + extension) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path_.c_str(), "wb"), std::fclose);
+    if (!file || std::fwrite(bytes, 1, count, file.get()) != count) throw std::bad_alloc();
+  }
+  ~TemporaryFile() { std::remove(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+MeshModel readMesh(std::uintptr_t bytes, std::size_t count, std::string extension) {
+  const TemporaryFile file(extension, reinterpret_cast<const unsigned char*>(bytes), count);
+  return {std::make_shared<const TriangleMesh>(take(loadMesh(file.path())))};
+}
+
+MeshModel createMesh(Doubles positions, Indices triangles, Doubles normals, Doubles texcoords) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->positions = pointsOf(positions);
+  mesh->triangles = indexRows<3>(triangles);
+  mesh->normals = floatRows<Eigen::Vector3f>(normals);
+  mesh->texcoords = floatRows<Eigen::Vector2f>(texcoords);
+  check(validate(*mesh));
+  return {std::move(mesh)};
+}
+
+MeshModel meshFromBytes(std::uintptr_t bytes, std::size_t count) {
+  return meshOfBytes(reinterpret_cast<const unsigned char*>(bytes), count);
+}
+View meshToBytes(const MeshModel& model) {
+  return lent(bytesOf(*model.mesh));
+}
+View meshPositions(const MeshModel& model) {
+  return viewNumbers(model.mesh->positions.front().data(), 3 * model.mesh->vertexCount());
+}
+View meshTriangles(const MeshModel& model) {
+  const auto& triangles = model.mesh->triangles;
+  return viewNumbers(triangles.empty() ? nullptr : triangles[0].data(), 3 * triangles.size());
+}
+View meshNormals(const MeshModel& model) {
+  const auto& normals = model.mesh->normals;
+  return viewNumbers(normals.empty() ? nullptr : normals[0].data(), 3 * normals.size());
+}
+View meshTexcoords(const MeshModel& model) {
+  const auto& texcoords = model.mesh->texcoords;
+  return viewNumbers(texcoords.empty() ? nullptr : texcoords[0].data(), 2 * texcoords.size());
+}
+View meshRestNormals(const MeshModel& model) {
+  std::vector<float> numbers;
+  for (const Eigen::Vector3d& normal : restNormals(*model.mesh))
+    for (const double x : normal) numbers.push_back(static_cast<float>(x));
+  return lent(std::move(numbers));
+}
+View meshBounds(const MeshModel& model) {
+  const Box3 box = boundingBox(model.mesh->positions);
+  return lent(
+      std::vector<double>{box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()});
+}
+
+CageModel modelOf(Cage&& cage, std::string report = {}) {
+  return {std::make_shared<const Cage>(std::move(cage)), std::move(report)};
+}
+
+CageModel createCageOf(const MeshModel& mesh, double targetTets, bool duplicateElements, bool fit, bool tells) {
+  if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
+    fail(StatusCode::InvalidOption, "targetTets: must be from 1 to " + std::to_string(Limits::kMaxTargetTets));
+  CageOptions options;
+  options.targetTets = static_cast<std::size_t>(targetTets);
+  options.duplicateElements = duplicateElements;
+  options.fit = fit;
+  options.progress = progressIf(tells);
+  CageReport report;
+  Cage cage = take(createCage(*mesh.mesh, options, &report));
+  return modelOf(std::move(cage), report.describe());
+}
+
+CageModel calibrateCage(const CageModel& model, double poissonRatio, int modeCount, bool tells) {
+  CalibrationOptions options;
+  options.poissonRatio = poissonRatio;
+  options.modeCount = modeCount;
+  options.progress = progressIf(tells);
+  Cage cage = *model.cage;
+  const CalibrationReport report = take(calibrate(cage, options));
+  return modelOf(std::move(cage), model.report + report.describe());
+}
+
+CageModel quadraticCage(const CageModel& model) {
+  return modelOf(take(refineQuadratic(model.cage->mesh)));
+}
+CageModel scaledCage(const CageModel& model, double scale) {
+  if (!(scale > 0.0 && scale < Limits::kMaxCoordinate))
+    throw std::invalid_argument("scale: must be above 0, and finite");
+  Cage cage = *model.cage;
+  cage.scaleBy(scale);
+  check(validate(cage));
+  return modelOf(std::move(cage), model.report);
+}
+CageModel cageOfTets(Doubles nodes, Indices tets) {
+  TetMesh mesh;
+  mesh.nodes = pointsOf(nodes);
+  mesh.tets = indexRows<4>(tets);
+  check(validate(mesh));
+  (void)repairTetMesh(mesh);
+  return modelOf(Cage(std::move(mesh)));
+}
+
+CageModel cageFromBytes(std::uintptr_t bytes, std::size_t count) {
+  return cageOfBytes(reinterpret_cast<const unsigned char*>(bytes), count);
+}
+View cageToBytes(const CageModel& model) {
+  return lent(bytesOf(model));
+}
+View cageNodes(const CageModel& model) {
+  return viewNumbers(model.cage->mesh.nodes.front().data(), 3 * model.cage->mesh.nodeCount());
+}
+View cageTets(const CageModel& model) {
+  return viewNumbers(model.cage->mesh.tets.front().data(), 4 * model.cage->mesh.tetCount());
+}
+View cageVertexTets(const CageModel& model) {
+  return viewNumbers(model.cage->vertexTets.data(), model.cage->vertexTets.size());
+}
+View cageQuadraticTet(const CageModel& model) {
+  return viewNumbers(model.cage->quadraticTet.data(), model.cage->quadraticTet.size());
+}
+template <std::size_t K>
+View lentRows(const std::vector<std::array<int, K>>& rows) {
+  std::vector<int> numbers;
+  for (const auto& row : rows) numbers.insert(numbers.end(), row.begin(), row.end());
+  return lent(std::move(numbers));
+}
+View cageEdges(const CageModel& model) {
+  return lentRows(uniqueEdges(model.cage->mesh));
+}
+View cageBoundaryFaces(const CageModel& model) {
+  return lentRows(boundaryFaces(model.cage->mesh));
+}
+std::string cageReport(const CageModel& model) {
+  return model.report;
+}
+
+}  // namespace
+
+EMSCRIPTEN_BINDINGS(models) {
+  emscripten::value_object<Doubles>("Doubles").field("at", &Doubles::at).field("count", &Doubles::count);
+  emscripten::value_object<Indices>("Indices").field("at", &Indices::at).field("count", &Indices::count);
+  emscripten::value_object<View>("View").field("at", &View::at).field("count", &View::count);
+  emscripten::class_<MeshModel>("Mesh");
+  expose<&readMesh>("readMesh");
+  expose<&createMesh>("createMesh");
+  expose<&meshFromBytes>("meshFromBytes");
+  expose<&meshToBytes>("meshToBytes");
+  expose<&meshPositions>("meshPositions");
+  expose<&meshTriangles>("meshTriangles");
+  expose<&meshNormals>("meshNormals");
+  expose<&meshTexcoords>("meshTexcoords");
+  expose<&meshRestNormals>("meshRestNormals");
+  expose<&meshBounds>("meshBounds");
+  emscripten::class_<CageModel>("Cage");
+  expose<&createCageOf>("createCage");
+  expose<&calibrateCage>("calibrate");
+  expose<&quadraticCage>("refineQuadratic");
+  expose<&scaledCage>("scaledCage");
+  expose<&cageOfTets>("cageOfTets");
+  expose<&cageFromBytes>("cageFromBytes");
+  expose<&cageToBytes>("cageToBytes");
+  expose<&cageNodes>("cageNodes");
+  expose<&cageTets>("cageTets");
+  expose<&cageVertexTets>("cageVertexTets");
+  expose<&cageQuadraticTet>("cageQuadraticTet");
+  expose<&cageEdges>("cageEdges");
+  expose<&cageBoundaryFaces>("cageBoundaryFaces");
+  expose<&cageReport>("cageReport");
+}
+
+}  // namespace tetskin::js

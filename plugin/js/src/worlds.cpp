@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "handles.h"
+
+#include <emscripten.h>
+#include <facade/state_hash.h>
+
+#include <cstdio>
+
+namespace tetskin::js {
+namespace {
+
+WorldHandle* createWorld(Vec3 gravity, bool deterministic) {
+  return new WorldHandle{std::make_shared<World>(gravity, nullptr, deterministic, false), {}, {}};
+}
+
+int step(WorldHandle& handle, double dt, int substeps) {
+  DeformableWorld& bullet = handle.world->bullet();
+  const StepTimes before = bullet.deformableSolver().stepTimes();
+  const double start = emscripten_get_now();
+  double stepped = start;
+  const int made = handle.world->step(dt, substeps, [&](btScalar whole, int count, btScalar substep) {
+    const int steps = bullet.stepSimulation(whole, count, substep);
+    stepped = emscripten_get_now();
+    return steps;
+  });
+  const double end = emscripten_get_now();
+  const StepTimes& after = bullet.deformableSolver().stepTimes();
+  const double stages[] = {after.prediction - before.prediction, after.rigidSearch - before.rigidSearch,
+                           after.softSearch - before.softSearch, after.rows - before.rows,
+                           after.system - before.system};
+  for (std::size_t i = 0; i < 5; ++i) handle.times[i] = 1000 * stages[i];
+  handle.times[5] = std::max(0.0, stepped - start - 1000 * (after.total() - before.total()));
+  handle.times[6] = end - stepped;
+  handle.times[7] = end - start;
+  return made;
+}
+
+View times(WorldHandle& handle) {
+  return viewNumbers(handle.times.data(), handle.times.size());
+}
+Vec3 gravity(WorldHandle& handle) {
+  return vectorOf(handle.world->bullet().getGravity());
+}
+void setGravity(WorldHandle& handle, Vec3 gravity) {
+  handle.world->bullet().setGravity(toBullet(gravity, "gravity"));
+}
+
+View poses(WorldHandle& handle) {
+  handle.poses.clear();
+  for (const auto& rigid : handle.world->rigids()) {
+    const btTransform& pose = rigid->body->getWorldTransform();
+    const btVector3& at = pose.getOrigin();
+    const btQuaternion q = pose.getRotation();
+    handle.poses.insert(handle.poses.end(), {at.x(), at.y(), at.z(), q.x(), q.y(), q.z(), q.w()});
+  }
+  return viewNumbers(handle.poses.data(), handle.poses.size());
+}
+
+std::size_t snapshotSize(WorldHandle& handle) {
+  return take(handle.world->bullet().save(nullptr, 0));
+}
+View save(WorldHandle& handle) {
+  return lent(handle.world->save());
+}
+void restore(WorldHandle& handle, std::uintptr_t bytes, std::size_t count) {
+  handle.world->restore(reinterpret_cast<const void*>(bytes), count);
+}
+std::string hashOfState(WorldHandle& handle) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(stateHash(handle.world->bullet())));
+  return text;
+}
+
+}  // namespace
+
+EMSCRIPTEN_BINDINGS(worlds) {
+  emscripten::value_array<Vec3>("Vec3")
+      .element(emscripten::index<0>())
+      .element(emscripten::index<1>())
+      .element(emscripten::index<2>());
+  emscripten::value_array<Quaternion>("Quaternion")
+      .element(emscripten::index<0>())
+      .element(emscripten::index<1>())
+      .element(emscripten::index<2>())
+      .element(emscripten::index<3>());
+  emscripten::class_<WorldHandle>("World");
+  expose<&createWorld>("createWorld");
+  expose<&step>("step");
+  expose<&times>("times");
+  expose<&gravity>("gravity");
+  expose<&setGravity>("setGravity");
+  expose<&poses>("poses");
+  expose<&snapshotSize>("snapshotSize");
+  expose<&save>("save");
+  expose<&restore>("restore");
+  expose<&hashOfState>("hash");
+}
+
+}  // namespace tetskin::js

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What Python holds of a world and of the things in it, and how calls wait for each other.
+#pragma once
+
+#include "models.h"
+
+#include <tetskin/threads/thread_pool.h>
+#include <memory>
+#include <mutex>
+
+namespace tetskin::python {
+
+/// A world's lock, for a call with the GIL: waits without it. Calls from within the world's own calls pass.
+class Locked {
+ public:
+  explicit Locked(World& world) : lock_(world.mutex(), std::try_to_lock) {
+    if (lock_.owns_lock()) return;
+    const nb::gil_scoped_release release;
+    lock_.lock();
+  }
+
+ private:
+  std::unique_lock<std::recursive_mutex> lock_;
+};
+/// Runs without the GIL, and with the world's lock.
+template <class Work>
+auto unlocked(World& world, Work&& work) {
+  const nb::gil_scoped_release release;
+  const std::lock_guard<std::recursive_mutex> lock(world.mutex());
+  return work();
+}
+
+/// Arrays that a handle keeps: only those of soft bodies.
+template <class State>
+struct Arrays {};
+template <>
+struct Arrays<BodyState> {
+  Kept<Row3<float>> positions, normals, nodes, velocities;
+};
+
+/// What Python holds: the same thing as another handle of the same state.
+template <class State>
+struct Handle {
+  std::shared_ptr<World> world;
+  std::shared_ptr<State> state;
+  Arrays<State> arrays{};
+};
+using RigidHandle = Handle<RigidState>;
+using JointHandle = Handle<JointState>;
+using BodyHandle = Handle<BodyState>;
+struct SpringHandle : Handle<TouchState> {};
+struct WeldHandle : Handle<TouchState> {};
+
+/// Throw if the thing has been removed from its world.
+inline btRigidBody& alive(const RigidHandle& rigid) {
+  return alive(*rigid.state);
+}
+inline DeformableBody& alive(const BodyHandle& body) {
+  return alive(*body.state);
+}
+inline void checkSurface(const BodyHandle& body) {
+  checkSurface(*body.state);
+}
+
+/// A rigid body of the same world, or null for None.
+std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid);
+
+/// The equality and hash of handles.
+template <class Of>
+void bindIdentity(Class<Of>& type) {
+  type.def("__eq__",
+           [](const Of& a, nb::handle b) { return nb::isinstance<Of>(b) && nb::cast<const Of&>(b).state == a.state; });
+  type.def("__hash__", [](const Of& a) { return std::hash<const void*>()(a.state.get()); });
+}
+
+/// See models.h; these need the type of a body.
+Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world);
+void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body);
+
+}  // namespace tetskin::python

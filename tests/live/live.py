@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""What tests of the live page share: the page, as a person or its hook `tetskinLive` has it; its files; its pictures."""
+import functools
+import http.server
+import json
+import os
+import re
+import threading
+import unittest
+from pathlib import Path
+
+import chromium
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PAGE = Path(os.environ.get("TETSKIN_LIVE_PAGE", REPOSITORY / "out/live/live.html")).resolve()
+NATIVE = os.environ.get("TETSKIN_LIVE_NATIVE")
+PICTURES = REPOSITORY / "build/live/pictures"
+DESKTOP, PHONE = (1280, 800), (390, 844)
+
+
+class Live:
+    """The page, loaded and ready; paused, so that every frame is asked for."""
+
+    def __init__(self, browser, phone=False, address=None, early=""):
+        width, height = PHONE if phone else DESKTOP
+        self.page = browser.open(address or PAGE.as_uri(), width, height, phone, early)
+        self.browser = browser
+        self.trouble = self.page.evaluate("tetskinLive.ready", patience=180)
+        if self.trouble is None:
+            self.call("play", False)
+
+    def call(self, method, *arguments, patience=180):
+        """Calls a method of the hook."""
+        return self.page.evaluate(f"tetskinLive.{method}({', '.join(map(json.dumps, arguments))})", patience)
+
+    def state(self):
+        return self.call("state")
+
+    def open(self, name, **settings):
+        return self.call("open", name, settings)
+
+    def step(self, frames, patience=300):
+        return self.call("step", frames, patience=patience)
+
+    def play_until(self, condition, seconds=60):
+        """Has time go on until a condition on the state holds, and stops it; the state then."""
+        self.call("play", True)
+        try:
+            self.page.until(f"(() => {{ const state = tetskinLive.state(); return {condition}; }})()", seconds)
+        finally:
+            self.call("play", False)
+        return self.step(0)
+
+    def notice(self, seconds=60):
+        """The sentence that is shown, once there is one."""
+        return self.page.until("tetskinLive.notice()", seconds)
+
+    def text(self, selector):
+        return self.page.evaluate(f"document.querySelector({json.dumps(selector)}).textContent")
+
+    def choose(self, identifier, value):
+        """Chooses from a list. A headless browser opens none: this is what it would send."""
+        self.page.evaluate(f"(() => {{ const list = document.getElementById({json.dumps(identifier)}); "
+                           f"list.value = {json.dumps(value)}; list.dispatchEvent(new Event('input', {{bubbles: true}})); "
+                           "list.dispatchEvent(new Event('change', {bubbles: true})); })()")
+
+    def worker(self):
+        """The session of the worker that simulates: the first one."""
+        return next(iter(self.page.workers))
+
+    def picture(self, name):
+        return self.page.screenshot(PICTURES / f"{name}.png")
+
+    def close(self):
+        self.page.close()
+
+
+class WithBrowser(unittest.TestCase):
+    """Tests that share a browser. When a page is closed, its console must have been without an error."""
+    flags = ()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = chromium.Chromium(cls.flags)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def live(self, **more):
+        live = Live(self.browser, **more)
+        self.addCleanup(self.finish, live)
+        return live
+
+    def finish(self, live):
+        faults = list(live.page.faults)
+        errors = live.page.evaluate("tetskinLive.errors") if not faults else []
+        live.close()
+        self.assertEqual(faults, [], "in the console")
+        self.assertEqual(errors, [], "in the page's own list")
+
+
+def colours(png):
+    """Of a picture, how many pixels have each colour, of 16 shades a channel; every fourth row."""
+    width, _, channels, rows = chromium.pixels(png)
+    counts = {}
+    for row in rows[::4]:
+        for x in range(0, width, 4):
+            colour = tuple(value >> 4 for value in row[x * channels:x * channels + 3])
+            counts[colour] = counts.get(colour, 0) + 1
+    return counts
+
+
+def script_of(page, name):
+    """The text of an element of the page's source, by its id."""
+    found = re.search(rf'id="{name}"[^>]*>(.*?)</(script|pre)>', page, re.S)
+    return found[1] if found else ""
+
+
+class Server:
+    """The page's folder, served on this machine alone. Records what was asked for."""
+
+    def __init__(self, folder):
+        asked = self.asked = []
+
+        class Handler(http.server.SimpleHTTPRequestHandler):
+            def log_message(self, *_):
+                asked.append(self.path)
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(folder)))
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def address(self, name):
+        return f"http://127.0.0.1:{self.server.server_address[1]}/{name}"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.server.shutdown()
+        self.server.server_close()

@@ -1,0 +1,350 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""What a hand does on the live page: hold and drag by mouse and finger, push, throw, turn the view, and every control."""
+import math
+import unittest
+
+from live import WithBrowser
+
+CLOSE = 0.02  # of the body's size
+
+
+def distance(a, b):
+    return math.dist(a, b)
+
+
+class Dragging(WithBrowser):
+    def drag_the_horn(self, phone):
+        """Takes the serpent by its horn, and moves the pointer up and aside; the state, with the horn still held."""
+        live = self.live(phone=phone)
+        live.open("serpent")
+        live.step(90)  # it lies on the ramp and the dome
+        live.page.frame()
+        horn = live.call("horn")
+        x, y = self.point_on_body(live, horn["screen"])
+        live.page.press(x, y)
+        live.page.until("live.hands.held !== null", 30)
+        to = (x - 60, y - 90) if phone else (x - 120, y - 160)
+        live.call("play", True)
+        live.page.move(*to, steps=15)
+        frame = live.state()["frame"]
+        live.page.until(f"tetskinLive.state().frame > {frame} + 240", 120)
+        live.call("play", False)
+        live.step(0)
+        live.page.frame()
+        live.picture("phone_drag" if phone else "drag")
+        return live, horn, (x, y), to
+
+    def point_on_body(self, live, screen):
+        """The horn's tip is on the outline: the nearest pixel at which a ray meets the serpent."""
+        x, y = screen
+        for ring in range(0, 12):
+            for k in range(max(1, 8 * ring)):
+                at = [x + ring * math.cos(2 * math.pi * k / (8 * ring or 1)), y + ring * math.sin(2 * math.pi * k / (8 * ring or 1))]
+                found = live.page.evaluate(f"live.port.ask('pick', live.stage.rayThrough({at[0]}, {at[1]}))"
+                                           ".then(hit => live.port.ask('letGo').then(() => hit))")
+                if found:
+                    return at
+        self.fail("no ray within 12 pixels of the horn meets the serpent")
+
+    def check_drag(self, phone):
+        live, before, start, to = self.drag_the_horn(phone)
+        held = live.state()["held"]
+        self.assertIsNotNone(held, "it is still held")
+        after = live.call("horn")
+        pixels_per_size = self.pixels_per_length(live, held) * after["size"]
+        # The held point of the surface is where the pointer is; and the horn's tip as near to it as it was.
+        self.assertLess(distance(live.call("onScreen", held), to), CLOSE * pixels_per_size)
+        self.assertLess(distance(after["screen"], to), CLOSE * pixels_per_size + distance(before["screen"], start))
+        self.assertGreater(distance(after["world"], before["world"]), 0.1 * after["size"], "it was dragged")
+        live.page.release()
+        live.page.until("tetskinLive.state().held === null || live.hands.held === null", 10)
+        fallen = live.step(90)
+        self.assertIsNone(fallen["held"])
+        self.assertLess(live.call("horn")["world"][1], after["world"][1] - 0.05 * after["size"], "and it falls again")
+
+    def pixels_per_length(self, live, point):
+        """Of a length across the view, at a point in the world."""
+        return max(distance(live.call("onScreen", [x + (0.01 if i == k else 0) for i, x in enumerate(point)]),
+                            live.call("onScreen", point)) for k in range(3)) / 0.01
+
+    def test_the_mouse_brings_the_horn_to_the_pointer(self):
+        self.check_drag(phone=False)
+
+    def test_a_finger_brings_the_horn_to_the_pointer(self):
+        self.check_drag(phone=True)
+
+    def test_beside_the_body_the_view_turns_and_nothing_else(self):
+        for phone in (False, True):
+            with self.subTest(phone=phone):
+                live = self.live(phone=phone)
+                live.open("stack")
+                before = live.state()["hash"]
+                eye = live.page.evaluate("live.stage.camera.position.toArray()")
+                live.page.press(30, 300)
+                live.page.move(150, 320)
+                live.page.release()
+                live.page.frame()
+                self.assertGreater(distance(live.page.evaluate("live.stage.camera.position.toArray()"), eye), 0.1)
+                self.assertEqual(live.step(0)["hash"], before)
+
+    def test_while_a_body_is_dragged_the_view_does_not_turn(self):
+        live = self.live()
+        live.open("stack")
+        x, y = live.call("onScreen", [0, 0.37, 0.3])
+        live.page.press(x, y)
+        live.page.until("live.hands.held !== null", 30)
+        eye = live.page.evaluate("live.stage.camera.position.toArray()")
+        live.page.move(x + 80, y - 40)
+        live.page.frame()
+        self.assertEqual(live.page.evaluate("live.stage.camera.position.toArray()"), eye)
+        live.page.release()
+
+    def test_a_second_finger_lets_go_and_zooms(self):
+        live = self.live(phone=True)
+        live.open("stack")
+        x, y = live.call("onScreen", [0, 0.37, 0.3])
+        live.page.press(x, y)
+        live.page.until("live.hands.held !== null", 30)
+        eye = live.page.evaluate("live.stage.camera.position.length()")
+        live.page.touch("touchStart", (x, y), (x + 40, y))
+        for step in range(1, 8):
+            live.page.touch("touchMove", (x - 10 * step, y), (x + 40 + 10 * step, y))
+            self.browser.listen(0.03)
+        live.page.touch("touchEnd")
+        live.page.frame()
+        self.assertIsNone(live.page.evaluate("live.hands.held"))
+        self.assertNotAlmostEqual(live.page.evaluate("live.stage.camera.position.length()"), eye, 3)
+
+
+class Tools(WithBrowser):
+    def test_a_push_moves_what_it_meets(self):
+        for phone in (False, True):
+            with self.subTest(phone=phone):
+                live = self.live(phone=phone)
+                live.open("stack")
+                still = live.step(0)
+                live.page.click_on("#tools button[data-tool=push]")
+                live.page.click(*live.call("onScreen", [0, 1.11, 0.3]))
+                live.page.until(f"tetskinLive.state().hash !== '{still['hash']}'", 20)
+
+    def test_balls_are_thrown_and_the_oldest_come_back(self):
+        live = self.live()
+        live.open("stack")
+        live.page.click_on("#tools button[data-tool=ball]")
+        for count in range(1, 15):
+            live.page.click(640, 400)
+            live.page.until(f"tetskinLive.state().balls === {min(count, 12)}", 20)
+            live.step(2)
+        live.page.frame()
+        live.picture("balls")
+        self.assertEqual(live.call("reset")["balls"], 0)
+
+    def test_a_thrown_ball_hits_the_stack(self):
+        live = self.live()
+        live.open("stack")
+        alone = live.step(60)["hash"]
+        nodes = "simulation.parts.map(({body}) => [...body.nodes])"
+        before = live.page.evaluate(nodes, session=live.worker())
+        live.call("reset")
+        live.page.click_on("#tools button[data-tool=ball]")
+        live.page.click(*live.call("onScreen", [0, 1.8, 0.3]))
+        live.page.until("tetskinLive.state().balls === 1", 20)
+        self.assertNotEqual(live.step(60)["hash"], alone)
+        after = live.page.evaluate(nodes, session=live.worker())
+        self.assertGreater(max(abs(a - b) for one, other in zip(before, after) for a, b in zip(one, other)), 0.05)
+
+    def test_comes_back_with_balls_in_the_air(self):
+        live = self.live()
+        live.open("stack")
+        live.page.click_on("#tools button[data-tool=ball]")
+        live.page.click(640, 400)
+        live.page.until("tetskinLive.state().balls === 1", 20)
+        first = live.step(30)
+        live.page.click(600, 380)
+        live.page.until("tetskinLive.state().balls === 2", 20)
+        live.step(30)
+        back = live.call("rewind", 60)
+        self.assertIn(back["balls"], (0, 1))
+        self.assertEqual(live.step(0)["bodies"], first["bodies"])
+
+
+class Controls(WithBrowser):
+    """Every control does what it says, and says what it does."""
+
+    def setUp(self):
+        self.one = self.live()
+        self.one.open("serpent", tets=300)
+
+    def said(self, identifier):
+        return self.one.text(f"#{identifier} + output")
+
+    def slide(self, identifier, share):
+        """Presses a slider at a share of its width."""
+        page = self.one.page
+        page.middle(f"#{identifier}")
+        box = page.evaluate(f"(({{x, y, width, height}}) => [x, y, width, height])"
+                            f"(document.getElementById('{identifier}').getBoundingClientRect())")
+        page.click(box[0] + share * box[2], box[1] + box[3] / 2)
+        page.frame()
+
+    def worker(self, expression):
+        return self.one.page.evaluate(expression, session=self.one.worker())
+
+    def test_pause_and_play(self):
+        page = self.one.page
+        page.click_on("#play")
+        page.until("tetskinLive.state().playing && tetskinLive.state().frame > 3", 60)
+        page.click_on("#play")
+        page.until("!tetskinLive.state().playing", 10)
+        frame = self.one.step(0)["frame"]
+        self.browser.listen(0.3)
+        self.assertEqual(self.one.state()["frame"], frame)
+        page.key(" ")
+        page.until(f"tetskinLive.state().frame > {frame}", 60)
+        page.key(" ")
+        page.until("!tetskinLive.state().playing", 10)
+
+    def test_one_step(self):
+        page = self.one.page
+        for count in (1, 2, 3):
+            page.click_on("#step")
+            page.until(f"tetskinLive.state().frame === {count}", 20)
+        page.key("ArrowRight")
+        page.until("tetskinLive.state().frame === 4", 20)
+        self.assertFalse(self.one.state()["playing"])
+
+    def test_from_the_start(self):
+        first = self.one.state()["hash"]
+        self.one.step(25)
+        self.one.page.click_on("#restart")
+        self.one.page.until("tetskinLive.state().frame === 0", 20)
+        self.assertEqual(self.one.state()["hash"], first)
+
+    def test_ten_seconds_back(self):
+        self.one.step(700)
+        self.one.page.click_on("#back")
+        self.one.page.until("tetskinLive.state().frame === 100", 60)
+        self.one.page.click_on("#back")
+        self.one.page.until("tetskinLive.state().frame === tetskinLive.state().first", 60)
+
+    def test_the_slider_of_time(self):
+        self.one.step(200)
+        self.slide("slider", 0.5)
+        self.one.page.until("Math.abs(tetskinLive.state().frame - 100) < 15", 60)
+        self.assertFalse(self.one.state()["playing"])
+
+    def test_stiffness_damping_and_gravity(self):
+        for identifier, get in (("stiffness", "simulation.parts[0].body.youngsModulus"),
+                                ("damping", "simulation.parts[0].body.stiffnessDamping"),
+                                ("gravity", "-simulation.world.gravity[1]")):
+            with self.subTest(identifier):
+                seen = []
+                for share in (0.15, 0.85):
+                    self.slide(identifier, share)
+                    self.one.step(1)
+                    seen.append((self.said(identifier), self.worker(get)))
+                self.assertNotEqual(seen[0][0], seen[1][0], "what is said")
+                self.assertGreater(seen[1][1], 1.5 * seen[0][1])
+        self.slide("gravity", 0.5)
+        self.one.step(1)
+        self.assertAlmostEqual(float(self.said("gravity")), self.worker("-simulation.world.gravity[1]"), delta=0.06)
+
+    def test_tets_and_elements(self):
+        for tets in ("100", "1000", "0"):
+            with self.subTest(tets):
+                self.one.choose("tets", tets)
+                self.one.page.until(f"simulation_tets = tetskinLive.state().tets, live.settings.tets === {tets} && "
+                                    f"live.description.settings.tets === {tets}", 60)
+                wanted = int(tets) or 1000
+                self.assertTrue(0.5 * wanted < self.one.state()["tets"] < 1.7 * wanted, self.one.state()["tets"])
+                self.assertIn(f"{self.one.state()['tets']:,}", self.one.text("#facts"))
+        self.one.choose("elements", "quadratic")
+        self.one.page.until("live.description.settings.elements === 'quadratic'", 60)
+        self.assertEqual(self.worker("simulation.parts[0].body.cage.quadraticTet.length"), self.one.state()["tets"])
+        self.assertEqual(self.one.step(60)["frame"], 60)
+
+    def test_skin_surface_and_cage(self):
+        pictures = {}
+
+        def look(name):
+            self.one.step(0)
+            self.one.page.frame()
+            pictures[name] = self.one.picture(f"look_{name}")
+
+        self.one.step(60)
+        look("surface")
+        self.one.choose("skin", "quadratic")
+        self.one.page.until("tetskinLive.step(0).then(() => live.state.skin === 'quadratic')", 20)
+        look("quadratic")
+        for cage in ("outer", "all", "tets"):
+            self.one.choose("cage", cage)
+            look(cage)
+        self.assertFalse(self.one.page.evaluate("document.getElementById('cuts').hidden"))
+        self.slide("cut", 0.8)
+        look("cut")
+        self.one.page.click_on("#surface")
+        look("without_surface")
+        self.assertEqual(len(set(pictures.values())), len(pictures), "each looks different")
+
+    def test_reset_of_the_view(self):
+        page, eye = self.one.page, "live.stage.camera.position.toArray()"
+        first = page.evaluate(eye)
+        page.press(30, 300)
+        page.move(200, 350)
+        page.release()
+        page.frame()
+        self.assertGreater(distance(page.evaluate(eye), first), 0.1)
+        page.click_on("#view")
+        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 1e-3", 10)
+
+    def test_figures_tell_milliseconds_of_each_stage_and_the_hash(self):
+        state = self.one.step(30)
+        figures = self.one.text("#figures")
+        for stage in ("elasticity", "contact rows", "contact solve", "bones"):
+            self.assertIn(stage, figures)
+        self.assertIn(state["hash"], self.one.text("#hash"))
+        self.assertGreater(state["times"]["prediction"], 0)
+
+    def test_the_panel_is_shown_and_hidden(self):
+        hidden = "document.getElementById('panel').hidden"
+        before = self.one.page.evaluate(hidden)
+        self.one.page.click_on("#settings")
+        self.assertEqual(self.one.page.evaluate(hidden), not before)
+        self.one.page.click_on("#settings")
+        self.assertEqual(self.one.page.evaluate(hidden), before)
+
+    def test_numbers_choose_scenes(self):
+        self.one.page.key("3")
+        self.one.page.until("tetskinLive.state().scene === 'pit'", 60)
+
+
+class OnAPhone(WithBrowser):
+    def test_everything_fits_the_screen(self):
+        live = self.live(phone=True)
+        page = live.page
+        self.assertFalse(page.evaluate("document.documentElement.scrollWidth > innerWidth"))
+        for selector in ("#play", "#step", "#back", "#restart", "#settings", "#tools", "#slider"):
+            box = page.evaluate(f"(({{left, right, top, bottom}}) => [left, right, top, bottom])"
+                                f"(document.querySelector('{selector}').getBoundingClientRect())")
+            self.assertTrue(box[0] >= 0 and box[1] <= 390 and box[2] >= 0 and box[3] <= 844, (selector, box))
+        live.picture("phone")
+        page.click_on("#settings")
+        page.frame()
+        live.picture("phone_settings")
+        page.click_on("#gravity")
+        self.assertFalse(page.evaluate("document.documentElement.scrollWidth > innerWidth"))
+
+    def test_turned_it_fits_too(self):
+        live = self.live(phone=True)
+        live.page.resize(844, 390, phone=True)
+        live.page.frame()
+        live.step(1)
+        live.page.frame()
+        live.picture("phone_turned")
+        self.assertFalse(live.page.evaluate("document.documentElement.scrollWidth > innerWidth"))
+
+
+if __name__ == "__main__":
+    unittest.main()

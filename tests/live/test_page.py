@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Zlib
+# SPDX-FileCopyrightText: 2026 the tetskin authors
+"""The live page: its file, its scenes, time that goes back, memory, and the bits of its nodes."""
+import gzip
+import re
+import unittest
+
+from live import DESKTOP, NATIVE, PAGE, Server, WithBrowser, colours
+from native import hash_of, native_hash, nodes_of
+
+SCENES = ["serpent", "heap", "pit", "gripper", "stack", "twist"]
+MEGABYTE = 1e6
+
+
+class File(unittest.TestCase):
+    """The page as it lies on disk."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.text = PAGE.read_text(encoding="utf-8")
+
+    def test_is_below_1_8_megabytes_compressed(self):
+        self.assertLess(len(gzip.compress(self.text.encode(), 9)), 1.8 * MEGABYTE)
+
+    def test_refers_to_nothing_outside(self):
+        for pattern in (r'<(script|link|img|iframe)[^>]*(src|href)="(?!data:)[^"]*"', r"@import", r"url\((?!['\"]?data:)"):
+            head = re.sub(r"<script.*?</script>", "", self.text, flags=re.S)
+            self.assertIsNone(re.search(pattern, head), pattern)
+        self.assertNotIn("importScripts", self.text)
+
+    def test_shows_the_licences_of_all_that_is_inside(self):
+        shown = re.search(r'id="licences".*?<pre>(.*?)</pre>', self.text, re.S)[1]
+        for part, words in {
+            "tetskin": "tetskin", "Bullet": "Bullet", "Eigen": "Mozilla Public License", "three.js": "three.js",
+            "tinygltf": "Syoyo Fujita", "JSON for Modern C++": "Niels Lohmann", "Emscripten": "Emscripten",
+            "musl": "musl", "libc++": "LLVM Exceptions",
+        }.items():
+            with self.subTest(part):
+                self.assertIn(words.lower(), shown.lower())
+
+
+class OneScene(WithBrowser):
+    """What holds for each scene, of the serpent; what holds for the page as a whole."""
+    scene = "serpent"
+
+    def test_runs_300_frames_and_is_seen(self):
+        live = self.live()
+        at_start = live.open(self.scene)
+        self.assertEqual((at_start["scene"], at_start["frame"], at_start["playing"]), (self.scene, 0, False))
+        self.assertGreater(at_start["tets"], 0)
+        after = live.step(300)
+        self.assertEqual(after["frame"], 300)
+        self.assertNotEqual(after["hash"], at_start["hash"])
+        live.page.frame()
+        seen = colours(live.picture(self.scene))
+        self.assertGreater(len(seen), 40, "shaded bodies have many colours")
+
+    def test_goes_on_by_itself_and_stops(self):
+        live = self.live()
+        live.open(self.scene)
+        live.play_until("state.frame > 20")
+        frame = live.state()["frame"]
+        self.browser.listen(0.3)
+        self.assertEqual(live.state()["frame"], frame)
+
+    def test_comes_back_to_the_bit(self):
+        live = self.live()
+        start = live.open(self.scene)
+        hashes = {start["frame"]: start["hash"]}
+        for _ in range(9):
+            state = live.step(15)
+            hashes[state["frame"]] = state["hash"]
+        self.assertEqual(len(set(hashes.values())), 10, "it moves")
+        for back in (15, 45, 30):
+            state = live.call("rewind", back)
+            self.assertEqual(state["hash"], hashes[state["frame"]])
+        last = live.step(135 - state["frame"])
+        self.assertEqual((last["frame"], last["hash"]), (135, hashes[135]), "and goes on as it did")
+        self.assertEqual(live.call("reset")["hash"], start["hash"])
+        self.assertEqual(live.step(60)["hash"], hashes[60])
+
+    def test_the_same_run_in_another_page_has_the_same_bits(self):
+        ends = []
+        for _ in range(2):
+            live = self.live()
+            live.open(self.scene)
+            ends.append(live.step(60)["hash"])
+        self.assertEqual(*ends)
+
+    @unittest.skipUnless(NATIVE, "no live_native: built with the tests of a folder that is configured")
+    def test_nodes_after_120_frames_are_those_of_a_native_run(self):
+        live = self.live()
+        live.open("serpent")
+        live.step(120)
+        self.assertEqual(hash_of(nodes_of(live)), native_hash(live, "serpent", 120))
+
+
+class OtherScenes(WithBrowser):
+    def test_each_runs_300_frames_and_is_seen(self):
+        live = self.live()
+        self.assertEqual(live.page.evaluate("tetskinLive.scenes"), SCENES)
+        for scene in SCENES[1:]:
+            with self.subTest(scene):
+                live.open(scene)
+                self.assertEqual(live.step(300)["frame"], 300)
+                live.page.frame()
+                self.assertGreater(len(colours(live.picture(scene))), 40)
+                self.assertEqual(live.page.faults, [])
+
+    def test_each_comes_back_to_the_bit(self):
+        live = self.live()
+        for scene in SCENES[1:]:
+            with self.subTest(scene):
+                live.open(scene)
+                hashes = [live.step(25)["hash"] for _ in range(4)]
+                self.assertEqual(live.call("rewind", 50)["hash"], hashes[1])
+                self.assertEqual(live.step(50)["hash"], hashes[3])
+
+    @unittest.skipUnless(NATIVE, "no live_native")
+    def test_soft_bodies_alone_have_the_bits_of_a_native_run(self):
+        live = self.live()
+        for scene in ("heap", "stack"):
+            with self.subTest(scene):
+                live.open(scene)
+                live.step(120)
+                self.assertEqual(hash_of(nodes_of(live)), native_hash(live, scene, 120))
+
+    def test_each_is_chosen_by_its_button_on_a_phone_too(self):
+        for phone in (False, True):
+            live = self.live(phone=phone)
+            for scene in reversed(SCENES):
+                with self.subTest(scene, phone=phone):
+                    live.page.click_on(f"#scenes button[data-scene={scene}]")
+                    live.page.until(f"tetskinLive.state().scene === '{scene}'", 60)
+                    if phone:
+                        live.step(60)
+                        live.page.frame()
+                        live.picture(f"phone_{scene}")
+
+    def test_a_scene_is_opened_by_its_name_in_the_address(self):
+        live = self.live(address=PAGE.as_uri() + "#twist")
+        self.assertEqual(live.state()["scene"], "twist")
+
+
+class Memory(WithBrowser):
+    def test_is_flat_over_3000_frames(self):
+        live = self.live()
+        for scene in SCENES:
+            with self.subTest(scene):
+                live.open(scene)
+                live.step(900)  # ten seconds of snapshots, and what grows at first
+                before = live.page.wasm_memory(), live.page.javascript_memory()
+                for _ in range(30):
+                    live.step(100)
+                after = live.page.wasm_memory(), live.page.javascript_memory()
+                self.assertEqual(after[0], before[0], "WebAssembly's memory")
+                self.assertLess(after[1] - before[1], 1.5 * MEGABYTE, "heaps of JavaScript")
+
+    def test_is_flat_over_many_scenes(self):
+        live = self.live()
+
+        def round_trip():
+            for scene in SCENES:
+                live.open(scene)
+                live.step(5)
+
+        for _ in range(2):
+            round_trip()
+        before = live.page.wasm_memory(), live.page.javascript_memory()
+        for _ in range(4):
+            round_trip()
+        after = live.page.wasm_memory(), live.page.javascript_memory()
+        self.assertLess(after[0] - before[0], 4 * MEGABYTE)
+        self.assertLess(after[1] - before[1], 4 * MEGABYTE)
+
+
+class Served(WithBrowser):
+    def test_asks_for_nothing_but_itself_from_a_file(self):
+        live = self.live()
+        live.step(10)
+        own = [one for one in live.page.requests if not one.startswith(("blob:", "data:"))]
+        self.assertEqual(own, [PAGE.as_uri()])
+
+    def test_asks_for_nothing_but_itself_by_http(self):
+        with Server(PAGE.parent) as server:
+            address = server.address(PAGE.name)
+            live = self.live(address=address)
+            live.step(10)
+            own = [one for one in live.page.requests if not one.startswith(("blob:", "data:"))]
+            self.assertEqual(own, [address])
+            self.assertEqual(server.asked, [f"/{PAGE.name}"])
+
+    def test_works_without_a_network(self):
+        page = self.browser.open("", *DESKTOP)
+        page.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+        page.load(PAGE.as_uri())
+        self.assertIsNone(page.evaluate("tetskinLive.ready", patience=180))
+        self.assertEqual(page.faults, [])
+        page.close()
+
+
+if __name__ == "__main__":
+    unittest.main()
