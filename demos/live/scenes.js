@@ -60,7 +60,7 @@ function addHeap(builder) {
     const layer = Math.floor(k / 4), corner = k % 4, away = 0.56;
     const position = [(corner % 2 ? away : -away) + 0.06 * next(), 0.55 + 0.95 * layer, (corner < 2 ? away : -away) + 0.06 * next()];
     const rotation = quaternion([next(), next(), next() + 0.01], 3 * next());
-    builder.addBody(kind, Math.max(20, Math.round(builder.tets(1600) / 8)),
+    builder.addBody(kind, Math.max(20, Math.round(builder.tets(1000) / 8)),
       {position, rotation, mass: 1, softContact: true}, HEAP_COLOURS[k]);
   });
 }
@@ -68,8 +68,8 @@ function addHeap(builder) {
 function addPit(builder) {
   addFloor(builder);
   addWalls(builder, 1.06, 0.62);
-  builder.addBody('mat', builder.tets(1000), {
-    position: [0, 0.205, 0], mass: 20, sampleSpacing: 0.07,
+  builder.addBody('mat', builder.tets(800), {
+    position: [0, 0.205, 0], mass: 20, sampleSpacing: 0.12,
     relativeStiffness: builder.stiffness / 3, pinned: p => p[1] < -0.19,
   });
   const random = scattered(3), next = () => random.next().value;
@@ -145,8 +145,8 @@ function addTwist(builder) {
 /** In the order of the page's row. focus: the box that the first view fits. */
 const SCENES = {
   serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
-  heap: {title: 'Heap of eight', build: addHeap, tets: 1600, focus: [[-1.2, 0, -1.2], [1.2, 1.6, 1.2]]},
-  pit: {title: 'Ball pit on a mat', build: addPit, tets: 1200, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
+  heap: {title: 'Heap of eight', build: addHeap, tets: 1000, focus: [[-1.2, 0, -1.2], [1.2, 1.6, 1.2]]},
+  pit: {title: 'Ball pit on a mat', build: addPit, tets: 800, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
   gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.75, 0, -0.5], [1.75, 2.05, 0.5]]},
   stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
   twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
@@ -154,11 +154,11 @@ const SCENES = {
 
 /** The meshes of scenes by name; the serpent is the page's own. */
 const SHAPES = {
-  ring: () => ringMesh(0.3, 0.09, 0.16, 96, 40),
-  ball: () => ballMesh(0.33, 28),
-  cube: () => roundedBoxMesh([0.31, 0.31, 0.31], 0.1, 24),
-  cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 24),
+  ring: () => ringMesh(0.3, 0.09, 0.16, 72, 28),
+  ball: () => ballMesh(0.33, 20),
+  cube: () => roundedBoxMesh([0.31, 0.31, 0.31], 0.1, 18),
+  cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 18),
   soft_ball: () => ballMesh(BALL_RADIUS, 40),
-  mat: () => matMesh([1, 0.2, 1], 32, 0.25),
+  mat: () => matMesh([1, 0.2, 1], 24, 0.25),
   bar: () => barMesh(BAR.half, BAR.width, 120, 96),
 };
