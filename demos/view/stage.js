@@ -272,9 +272,10 @@ function fadingTexture() {
 }
 
 class Stage {
+  /** data: of a page; with a `renderer`, for a canvas that has one already */
   constructor(canvas, data) {
     this.canvas = canvas;
-    this.renderer = makeRenderer(canvas);
+    this.renderer = data.renderer || makeRenderer(canvas);
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(BACKGROUND);
     const low = new THREE.Vector3(...data.focus.min), high = new THREE.Vector3(...data.focus.max);

@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The page: scenes, controls, time. What is simulated is in the worker; a picture asks for the frames that are due since
+// the last one, and draws what has come.
+
+const element = id => document.getElementById(id);
+const withCommas = number => number.toLocaleString('en');
+
+const TETS = [100, 300, 600, 1000, 2000, 3000, 5000];
+/** What the sliders say where nothing else is asked for. */
+const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, tets: 0, elements: 'linear', skin: 'linear'};
+/** Frames that a picture asks for at most: on slower machines time goes slower. */
+const MOST_FRAMES = 3;
+const REWOUND = 600;
+/** Of a mesh that is dropped: its cage, and the longest file that is read. */
+const DROPPED_TETS = 800, LONGEST_FILE = 400e6;
+const SECONDS_OF_NOTICE = 7;
+
+const STAGES = {
+  prediction: 'elasticity', rigidSearch: 'search, rigid', softSearch: 'search, soft', rows: 'contact rows',
+  system: 'contact solve', other: 'Bullet', bones: 'bones',
+};
+
+/** What a person can do about an error. */
+function sentenceOf(error, what) {
+  if (error.code === 'OutOfMemory') {
+    return `${what} needs more memory than this page has. Try fewer tets or triangles, or close other pages.`;
+  }
+  if (error.code === 'Unsupported') {
+    return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 91, Firefox from ' +
+      '113, Safari from 16.4 have it.';
+  }
+  return `${what}: ${error.message}`;
+}
+
+class Live {
+  constructor() {
+    this.settings = {...USUAL};
+    this.tool = 'hold';
+    this.playing = true;
+    this.due = 0;
+    this.errors = [];
+    this.opened = 0;
+    this.data = JSON.parse(element('model').textContent);
+    this.workerText = element('module').textContent + '\n' + element('worker').textContent;
+    this.renderer = makeRenderer(element('canvas'));
+    this.port = new Port(this.workerText, text => this.fail(`The simulation has stopped: ${text} Load the page again.`));
+    this.hands = new Hands(element('canvas'), this);
+    this.makeScenes();
+    this.listen();
+    this.showSettings();
+  }
+
+  async start() {
+    const zipped = Uint8Array.from(atob(this.data.zipped), c => c.charCodeAt(0));
+    await this.port.ask('start', {model: this.data.serpent, zipped, materials: this.data.materials});
+    await this.open(Object.keys(SCENES).find(name => location.hash === `#${name}`) || 'serpent');
+    this.run();
+  }
+
+  // --- Scenes
+
+  makeScenes() {
+    for (const [name, {title}] of Object.entries(SCENES)) {
+      const button = document.createElement('button');
+      button.textContent = title;
+      button.dataset.scene = name;
+      button.onclick = () => this.change(name);
+      element('scenes').append(button);
+    }
+    for (const tets of [0, ...TETS]) {
+      element('tets').append(new Option(tets ? withCommas(tets) : 'usual', tets));
+    }
+  }
+
+  /** Another scene; what fails leaves the one that there is. */
+  async change(name) {
+    try {
+      await this.open(name);
+    } catch (error) {
+      this.tell(sentenceOf(error, 'This scene'));
+    }
+  }
+
+  async open(name) {
+    const number = ++this.opened;
+    this.work(`${SCENES[name].title} \u2026`);
+    try {
+      const scene = await this.port.ask('open', {name, settings: this.settings});
+      if (number === this.opened) this.show(scene);
+    } finally {
+      if (number === this.opened) this.work(null);
+    }
+  }
+
+  show(scene) {
+    if (this.stage) this.stage.dispose();
+    this.hands.held = null;
+    this.description = scene;
+    this.stage = new LiveStage(element('canvas'), scene, this.data.materials, this.renderer);
+    this.stage.setLook(this.look());
+    for (const button of element('scenes').children) {
+      button.toggleAttribute('aria-current', button.dataset.scene === scene.name);
+      if (button.dataset.scene === scene.name) button.scrollIntoView({block: 'nearest', inline: 'center'});
+    }
+    this.resize();
+    this.take(scene.state);
+    this.showFacts();
+  }
+
+  showFacts() {
+    const {tets, triangles} = this.description;
+    element('facts').textContent = `${withCommas(triangles)} triangles in ${withCommas(tets)} tets`;
+  }
+
+  // --- Time
+
+  run() {
+    let before = performance.now();
+    const loop = now => {
+      this.advance(Math.min(0.1, Math.max(0, now - before) / 1000));
+      before = now;
+      this.hands.update();
+      this.draw();
+      requestAnimationFrame(loop);
+    };
+    requestAnimationFrame(loop);
+  }
+
+  advance(seconds) {
+    if (!this.playing || !this.stage) return;
+    this.due = Math.min(MOST_FRAMES, this.due + seconds * 60);
+    if (this.asking || this.due < 1) return;
+    const frames = Math.floor(this.due);
+    this.due -= frames;
+    this.ask('step', {frames});
+  }
+
+  /** Asks the worker for something that is answered by a frame, and shows it, unless there is another scene by then. */
+  async ask(type, data) {
+    const {stage} = this;
+    this.asking = true;
+    try {
+      const state = await this.port.ask(type, data);
+      if (stage === this.stage) this.take(state);
+      return state;
+    } catch (error) {
+      this.play(false);
+      this.tell(sentenceOf(error, 'The simulation'));
+      this.errors.push(error.message);
+      return null;
+    } finally {
+      this.asking = false;
+    }
+  }
+
+  take(state) {
+    this.state = state;
+    this.stage.show(state);
+    if (state.trouble) this.tell(state.trouble);
+    const {frame, first} = state, slider = element('slider');
+    slider.min = first;
+    slider.max = frame;
+    if (!this.sliding) slider.value = frame;
+    element('clock').textContent = `${(frame / 60).toFixed(1)} s`;
+    this.showFigures(state);
+    this.changed = true;
+  }
+
+  showFigures({times, milliseconds, hash, frame, bodies}) {
+    const now = performance.now();
+    const mean = this.meanTimes || {...times, step: milliseconds};
+    for (const [stage, ms] of Object.entries({...times, step: milliseconds})) mean[stage] += 0.1 * (ms - mean[stage]);
+    this.meanTimes = mean;
+    if (this.playing && now - (this.figuresAt || 0) < 200) return;
+    this.figuresAt = now;
+    const rows = Object.entries(STAGES).map(([stage, text]) => `<tr><td>${text}<td>${mean[stage].toFixed(2)} ms`);
+    const asleep = bodies.filter(body => body.asleep).length;
+    rows.push(`<tr class="sum"><td>a frame, in all<td>${mean.step.toFixed(2)} ms`, `<tr><td>frame<td>${withCommas(frame)}`,
+      `<tr><td>bodies at rest<td>${asleep} of ${bodies.length}`);
+    element('figures').innerHTML = rows.join('');
+    element('hash').textContent = `state ${hash}`;
+  }
+
+  play(playing) {
+    this.playing = playing;
+    this.due = 0;
+    element('play').classList.toggle('playing', playing);
+  }
+
+  step() {
+    this.play(false);
+    return this.ask('step', {frames: 1});
+  }
+
+  rewind(frames) { return this.ask('rewind', {frames}); }
+  reset() {
+    this.meanTimes = null;
+    return this.ask('reset');
+  }
+
+  /** What is seen again, though no time has passed. */
+  refresh() {
+    if (!this.playing) this.ask('step', {frames: 0});
+  }
+
+  // --- Controls
+
+  look() {
+    return {surface: element('surface').checked, cage: element('cage').value, cut: Number(element('cut').value)};
+  }
+
+  showSettings() {
+    const {stiffness, damping, gravity, tets, elements, skin} = this.settings, texts = {
+      stiffness: [Math.log10(stiffness), stiffness.toFixed(0)], damping: [Math.log10(damping), damping.toPrecision(1)],
+      gravity: [gravity, gravity.toFixed(1)],
+    };
+    for (const [id, [value, text]] of Object.entries(texts)) {
+      element(id).value = value;
+      element(id).nextElementSibling.textContent = text;
+    }
+    Object.entries({tets, elements, skin}).forEach(([id, value]) => element(id).value = value);
+    element('play').classList.toggle('playing', this.playing);
+    for (const button of element('tools').children) button.setAttribute('aria-checked', button.dataset.tool === this.tool);
+    element('cuts').hidden = element('cage').value !== 'tets';
+  }
+
+  /** Settings that a running world takes. */
+  set(settings) {
+    Object.assign(this.settings, settings);
+    this.showSettings();
+    this.ask('set', settings);
+  }
+
+  listen() {
+    const tenTo = id => 10 ** Number(element(id).value);
+    element('stiffness').oninput = () => this.set({stiffness: tenTo('stiffness')});
+    element('damping').oninput = () => this.set({damping: tenTo('damping')});
+    element('gravity').oninput = () => this.set({gravity: Number(element('gravity').value)});
+    element('skin').onchange = () => this.set({skin: element('skin').value});
+    for (const id of ['tets', 'elements']) {
+      element(id).onchange = () => {
+        this.settings.tets = Number(element('tets').value);
+        this.settings.elements = element('elements').value;
+        this.change(this.description.name);
+      };
+    }
+    for (const id of ['surface', 'cage', 'cut']) element(id).oninput = () => this.relook();
+    element('play').onclick = () => this.play(!this.playing);
+    element('step').onclick = () => this.step();
+    element('restart').onclick = () => this.reset();
+    element('back').onclick = () => this.rewind(REWOUND);
+    element('view').onclick = () => this.resetView();
+    element('settings').onclick = () => this.showPanel(element('panel').hidden);
+    element('file').onchange = ({target}) => {
+      if (target.files[0]) this.drop(target.files[0]);
+      target.value = '';
+    };
+    for (const button of element('tools').children) button.onclick = () => this.choose(button.dataset.tool);
+    this.listenToSlider();
+    this.listenToFiles();
+    window.addEventListener('resize', () => this.resize());
+    window.addEventListener('keydown', event => this.key(event));
+    for (const what of ['pointerdown', 'wheel', 'keydown']) {
+      window.addEventListener(what, () => element('hint').classList.add('gone'), {passive: true, once: true});
+    }
+    // What the mouse has clicked leaves the space bar to the page.
+    document.addEventListener('click', ({detail, target}) => {
+      if (detail > 0 && target.tagName === 'BUTTON') target.blur();
+    });
+    for (const list of document.querySelectorAll('select')) list.addEventListener('change', () => list.blur());
+    this.showPanel(innerWidth > 720 && innerHeight > 520);
+    window.addEventListener('error', ({message}) => this.errors.push(message));
+    window.addEventListener('unhandledrejection', ({reason}) => this.errors.push(String(reason && reason.message || reason)));
+  }
+
+  /** Back to a frame of the last ten seconds, as the slider is moved; one question at a time. */
+  listenToSlider() {
+    const slider = element('slider');
+    const follow = async () => {
+      if (this.sliding) return;
+      this.sliding = true;
+      this.play(false);
+      while (Number(slider.value) < this.state.frame) {
+        const before = this.state.frame;
+        await this.rewind(before - Number(slider.value));
+        if (this.state.frame === before) break;
+      }
+      this.sliding = false;
+    };
+    slider.oninput = follow;
+  }
+
+  listenToFiles() {
+    const over = event => {
+      event.preventDefault();
+      document.body.classList.add('drop');
+    };
+    const leave = () => document.body.classList.remove('drop');
+    window.addEventListener('dragover', over);
+    window.addEventListener('dragleave', event => event.relatedTarget || leave());
+    window.addEventListener('drop', event => {
+      event.preventDefault();
+      leave();
+      if (event.dataTransfer.files[0]) this.drop(event.dataTransfer.files[0]);
+    });
+  }
+
+  choose(tool) {
+    this.tool = tool;
+    this.showSettings();
+  }
+
+  relook() {
+    this.showSettings();
+    this.stage.setLook(this.look());
+    this.changed = true;
+  }
+
+  showPanel(shown) {
+    element('panel').hidden = !shown;
+    element('settings').setAttribute('aria-expanded', shown);
+    if (this.stage) this.resize();
+  }
+
+  resetView() {
+    this.stage.resetView();
+    this.changed = true;
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+    const next = list => {
+      list.selectedIndex = (list.selectedIndex + 1) % list.options.length;
+      list.dispatchEvent(new Event(list.id === 'skin' ? 'change' : 'input'));
+    };
+    const names = Object.keys(SCENES), actions = {
+      ' ': () => this.play(!this.playing), ArrowRight: () => this.step(), ArrowLeft: () => this.rewind(event.shiftKey ? 60 : 10),
+      Backspace: () => this.rewind(REWOUND), Home: () => this.reset(), v: () => this.resetView(),
+      s: () => element('surface').click(), c: () => next(element('cage')), q: () => next(element('skin')),
+      h: () => this.choose('hold'), p: () => this.hands.act('push'), b: () => this.hands.act('ball'),
+      m: () => this.showPanel(element('panel').hidden),
+    };
+    names.forEach((name, k) => actions[k + 1] = () => this.change(name));
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const pressed = ['BUTTON', 'INPUT', 'SUMMARY'].includes(event.target.tagName);
+    if (!action || !this.stage || (pressed && (event.key === ' ' || event.key.startsWith('Arrow') || event.key === 'Home'))) return;
+    event.preventDefault();
+    action();
+  }
+
+  // --- A mesh that is dropped
+
+  /** Reads it and makes its cage in a worker of its own, whose memory is given back afterwards. */
+  async drop(file) {
+    if (this.cages) return this.tell('Another mesh is being read.');
+    if (file.size > LONGEST_FILE) {
+      return this.tell(`${file.name} has ${Math.round(file.size / 1e6)} MB; this page reads up to ${LONGEST_FILE / 1e6}.`);
+    }
+    const cages = this.cages = new Port(this.workerText, () => {});
+    try {
+      this.work(`${file.name}: reading`, 0, () => cages.end());
+      await cages.ask('start');
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      const made = await cages.ask('makeCage', {bytes, name: file.name, tets: DROPPED_TETS}, {
+        transfer: [bytes.buffer],
+        progress: ({stage, fraction}) => this.work(`${file.name}: ${stage}`, fraction, () => cages.end()),
+      });
+      await this.add(made);
+    } catch (error) {
+      if (error.code !== 'Cancelled') this.tell(sentenceOf(error, file.name));
+    } finally {
+      cages.end();
+      this.cages = null;
+      this.work(null);
+    }
+  }
+
+  async add({mesh, cage, triangles, tets}) {
+    const {stage} = this, {model, body, state} = await this.port.ask('add', {mesh, cage}, {transfer: [mesh.buffer, cage.buffer]});
+    if (stage !== this.stage) return;
+    stage.models[model.number] = model;
+    stage.addBody(body);
+    this.description.triangles += triangles;
+    this.description.tets += tets;
+    this.showFacts();
+    this.take(state);
+  }
+
+  // --- What is told
+
+  /** A sentence, for some seconds. */
+  tell(sentence) {
+    element('notice').textContent = sentence;
+    element('notice').hidden = false;
+    clearTimeout(this.noticed);
+    this.noticed = setTimeout(() => element('notice').hidden = true, 1000 * SECONDS_OF_NOTICE);
+  }
+
+  /** text: what is going on; null: nothing. fraction: done; without it, nobody knows */
+  work(text, fraction, cancel) {
+    const box = element('work'), [label, bar, button] = box.children;
+    box.hidden = text === null;
+    if (text === null) return;
+    label.textContent = text;
+    fraction === undefined ? bar.removeAttribute('value') : bar.value = fraction;
+    button.hidden = !cancel;
+    button.onclick = cancel || null;
+  }
+
+  fail(sentence) {
+    this.errors.push(sentence);
+    this.play(false);
+    showTrouble(sentence);
+  }
+
+  // --- Pictures
+
+  resize() {
+    const {innerWidth: width, innerHeight: height} = window;
+    const top = document.querySelector('header').getBoundingClientRect().bottom;
+    const footer = document.querySelector('footer').getBoundingClientRect();
+    if (this.stage) this.stage.resize(width, height, top, height < 520 ? 0 : height - footer.top);
+    this.changed = true;
+  }
+
+  draw() {
+    if (!this.stage) return;
+    if (this.stage.controls.update()) this.changed = true;
+    if (!this.changed) return;
+    this.changed = false;
+    this.stage.draw();
+  }
+}
+
+/** Where the page cannot go on: what is left is what can be done about it. */
+function showTrouble(sentence) {
+  element('trouble').textContent = sentence;
+  element('trouble').hidden = false;
+  element('work').hidden = true;
+  if (!window.live || !window.live.stage) {
+    for (const part of ['footer', 'aside', 'header']) document.querySelector(part).hidden = true;
+    element('hint').hidden = true;
+  }
+}
+
+/** Why the page cannot start, in a sentence; or null. */
+function whyNot() {
+  const canvas = document.createElement('canvas'), context = canvas.getContext('webgl');
+  const cure = 'Open it in another browser, or turn on hardware acceleration in this one\u2019s settings and load it again.';
+  if (!context) return `This page draws with WebGL, which this browser does not offer. ${cure}`;
+  if (!context.getExtension('OES_texture_float') || context.getParameter(context.MAX_VERTEX_TEXTURE_IMAGE_UNITS) === 0) {
+    return `This page bends surfaces by floating-point textures, which this browser\u2019s WebGL does not offer. ${cure}`;
+  }
+  const lost = context.getExtension('WEBGL_lose_context');
+  if (lost) lost.loseContext();
+  if (typeof WebAssembly !== 'object' || typeof DecompressionStream !== 'function') {
+    return sentenceOf({code: 'Unsupported'});
+  }
+  return null;
+}

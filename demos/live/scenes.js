@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The scenes, in the worker. Each fills a world by a Builder. What its script does in a frame depends on the frame's
+// number alone, so that a world that was taken back goes on as it did.
+
+const FRAME = 1 / 60;
+
+/** From 0 to 1 while t goes from one time to another. */
+function eased(from, to, t) {
+  const x = Math.max(0, Math.min(1, (t - from) / (to - from)));
+  return x * x * (3 - 2 * x);
+}
+
+/** Numbers that look random and are the same in each run. */
+function* scattered(seed) {
+  for (let state = seed;;) {
+    state = (state * 1103515245 + 12345) % 2147483648;
+    yield state / 2147483648 - 0.5;
+  }
+}
+
+function aboutZ(angle) {
+  return [0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];
+}
+
+function quaternion(axis, angle) {
+  const length = Math.hypot(...axis), s = Math.sin(angle / 2) / length;
+  return [...axis.map(x => s * x), Math.cos(angle / 2)];
+}
+
+function addFloor(builder) {
+  builder.addBox([10, 1, 10], {position: [0, -1, 0], friction: 1}, 'floor');
+}
+
+/** Four walls that are seen through. */
+function addWalls(builder, inner, height) {
+  const thick = 0.05, middle = inner + thick;
+  for (const side of [-1, 1]) {
+    builder.addBox([thick, height / 2, inner + 2 * thick], {position: [side * middle, height / 2, 0]}, 'wall');
+    builder.addBox([inner, height / 2, thick], {position: [0, height / 2, side * middle]}, 'wall');
+  }
+}
+
+function addSerpent(builder) {
+  addFloor(builder);
+  builder.addBox([1.2, 0.5, 2], {position: [-1.4, -0.35, 0], rotation: aboutZ(-0.3), friction: 1}, 'ramp');
+  builder.addSphere(1.2, {position: [0.6, -0.9, 0], friction: 1}, 'dome');
+  builder.addBody('serpent', builder.tets(1000), {position: [0, 0.9, 0], mass: 1, selfContact: true});
+}
+
+const HEAP_COLOURS = ['#c8553d', '#3d7ea6', '#e0a030', '#588157', '#8e5572', '#d08c60', '#4a6fa5', '#b5838d'];
+
+function addHeap(builder) {
+  addFloor(builder);
+  addWalls(builder, 1.0, 0.8);
+  const random = scattered(7), next = () => random.next().value;
+  const kinds = ['ring', 'ball', 'ring', 'cube', 'ball', 'ring', 'cube', 'ball'];
+  kinds.forEach((kind, k) => {
+    const layer = Math.floor(k / 4), corner = k % 4, away = 0.48;
+    const position = [(corner % 2 ? away : -away) + 0.06 * next(), 0.55 + 0.95 * layer, (corner < 2 ? away : -away) + 0.06 * next()];
+    const rotation = quaternion([next(), next(), next() + 0.01], 3 * next());
+    builder.addBody(kind, Math.max(20, Math.round(builder.tets(1600) / 8)),
+      {position, rotation, mass: 1, softContact: true}, HEAP_COLOURS[k]);
+  });
+}
+
+function addPit(builder) {
+  addFloor(builder);
+  addWalls(builder, 1.06, 0.62);
+  builder.addBody('mat', builder.tets(1200), {position: [0, 0.205, 0], mass: 20, relativeStiffness: builder.stiffness * 2});
+  const random = scattered(3), next = () => random.next().value;
+  builder.addSphere(0.26, {mass: 8, position: [0.25, 0.85, 0.1], friction: 0.6}, 'heavy_ball');
+  for (let k = 0; k < 32; ++k) {
+    const [i, j, layer] = [k % 4, Math.floor(k / 4) % 4, Math.floor(k / 16)];
+    const position = [0.45 * (i - 1.5) + 0.05 * next(), 1.5 + 0.4 * layer, 0.45 * (j - 1.5) + 0.05 * next()];
+    builder.addSphere(0.1, {mass: 0.4, position, friction: 0.6}, 'ball');
+  }
+}
+
+/** Seconds at which the gripper closes, lifts, carries, lowers and opens, and begins again. */
+const GRIP = {close: 0.6, lift: 1.4, carry: 2.6, lower: 3.8, open: 5.0, end: 6.2};
+const BALL_RADIUS = 0.5, OPEN = 0.75, CLOSED = 0.47, LIFTED = 0.9, CARRIED = 0.9;
+
+/** Where the gripper is after so many seconds: half the width between its fingers, its height, its way to the right. */
+function gripperAt(seconds) {
+  const round = Math.floor(seconds / GRIP.end), t = seconds - round * GRIP.end, back = round % 2 === 1;
+  const half = OPEN + (CLOSED - OPEN) * (eased(GRIP.close, GRIP.lift, t) - eased(GRIP.open, GRIP.end, t));
+  const up = LIFTED * (eased(GRIP.lift, GRIP.carry, t) - eased(GRIP.lower, GRIP.open, t));
+  const way = eased(GRIP.carry, GRIP.lower, t);
+  return {half, up, across: CARRIED * ((back ? 1 - way : way) - 0.5) * 2};
+}
+
+function addGripper(builder) {
+  addFloor(builder);
+  builder.addBody('soft_ball', builder.tets(600), {position: [-CARRIED, BALL_RADIUS + 0.005, 0], mass: 1, friction: 1},
+    '#c8553d');
+  const at = gripperAt(0), options = {kinematic: true, friction: 1};
+  const fingers = [-1, 1].map(side => builder.addBox([0.09, 0.55, 0.3],
+    {...options, position: [at.across + side * (at.half + 0.09), 0.65, 0]}, 'finger'));
+  const carriage = builder.addBox([1.0, 0.07, 0.16], {...options, position: [at.across, 1.3, 0]}, 'carriage');
+  builder.beforeFrame(frame => {
+    const {half, up, across} = gripperAt(frame * FRAME);
+    fingers.forEach((finger, k) => finger.position = [across + (k ? 1 : -1) * (half + 0.09), 0.65 + up, 0]);
+    carriage.position = [across, 1.3 + up, 0];
+  });
+}
+
+function addStack(builder) {
+  addFloor(builder);
+  const colours = ['#3d7ea6', '#e0a030', '#588157', '#c8553d'];
+  colours.forEach((colour, k) => {
+    builder.addBody('cube', Math.max(20, Math.round(builder.tets(1200) / 4)),
+      {position: [0.03 * (k % 2), 0.37 + 0.74 * k, 0.02 * (k % 3)], mass: 1, softContact: true, friction: 1}, colour);
+  });
+}
+
+const BAR = {half: 1.6, width: 0.34, held: 0.16, turn: 2 * Math.PI, period: 8};
+
+function addTwist(builder) {
+  const centre = [0, 1.2, 0];
+  for (const side of [-1, 1]) {
+    builder.addBox([0.06, 0.42, 0.42], {position: [side * (BAR.half + 0.02), centre[1], 0]}, 'pole');
+  }
+  const body = builder.addBody('bar', builder.tets(300), {
+    position: centre, mass: 1, damping: 0.2, gravity: 0,
+    pinned: p => Math.abs(p[0]) > BAR.half - BAR.held,
+  });
+  const rest = builder.restNodes(body), turned = [...builder.pinnedOf(body)].filter(n => rest[3 * n] > 0);
+  builder.beforeFrame(frame => {
+    const t = frame * FRAME % BAR.period, half = BAR.period / 2;
+    const angle = BAR.turn * (eased(0.3, 0.85 * half, t) - eased(half + 0.3, 1.85 * half, t));
+    const c = Math.cos(angle), s = Math.sin(angle), positions = [];
+    for (const n of turned) {
+      const [x, y, z] = rest.subarray(3 * n, 3 * n + 3);
+      positions.push(centre[0] + x, centre[1] + c * y - s * z, centre[2] + s * y + c * z);
+    }
+    body.setPinnedPositions(turned, positions);
+  });
+}
+
+/** In the order of the page's row. focus: the box that the first view fits. */
+const SCENES = {
+  serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
+  heap: {title: 'Heap of eight', build: addHeap, tets: 1600, focus: [[-1.1, 0, -1.1], [1.1, 1.6, 1.1]]},
+  pit: {title: 'Ball pit on a mat', build: addPit, tets: 1200, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
+  gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.9, 0, -0.5], [1.9, 2.2, 0.5]]},
+  stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.9, 0, -0.6], [0.9, 2.8, 0.6]]},
+  twist: {title: 'Twisted bar', build: addTwist, tets: 300, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
+};
+
+/** The meshes of scenes by name; the serpent is the page's own. */
+const SHAPES = {
+  ring: () => ringMesh(0.3, 0.09, 0.16, 96, 40),
+  ball: () => ballMesh(0.33, 28),
+  cube: () => roundedBoxMesh([0.36, 0.36, 0.36], 0.1, 24),
+  soft_ball: () => ballMesh(BALL_RADIUS, 40),
+  mat: () => matMesh([1, 0.2, 1], 40, 0.25),
+  bar: () => barMesh(BAR.half, BAR.width, 120, 96),
+};

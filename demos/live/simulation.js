@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A scene that runs in the worker: its world, what is held and thrown, and snapshots of the last ten seconds.
+
+const SUBSTEPS = 4;
+/** Frames between two snapshots, and how many frames and bytes of them are kept. */
+const KEEP_EVERY = 10, KEPT_FRAMES = 600, KEPT_BYTES = 64e6;
+const MOST_THROWN = 12, THROWN_MASS = 0.5;
+/** Longest side of a body that is dropped on the page. */
+const DROPPED_SIZE = 1.0;
+
+/** What is drawn of a mesh in its cage, and its palettes. Shared by the bodies that have both. */
+class Model {
+  /** groups: with colours, {first, count, colour}; or null */
+  constructor(module, mesh, cage, groups, number) {
+    Object.assign(this, {module, mesh, cage, groups, number, palettes: {}});
+  }
+
+  /** Bones of the surface as it is skinned: 'linear', with gradients, or 'quadratic'. */
+  palette(skin) {
+    if (!this.palettes[skin]) {
+      const options = {interpolation: skin, gradients: skin === 'linear', layout: 'columns'};
+      this.palettes[skin] = this.module.createPalette(this.cage, this.mesh, options);
+    }
+    return this.palettes[skin];
+  }
+
+  /** For the page, once: vertices as often as they have normals; all arrays are new. */
+  description() {
+    const positions = Float32Array.from(this.mesh.positions), triangles = Uint32Array.from(this.mesh.triangles);
+    const drawn = new DrawnMesh(triangles, positions), palette = this.palette('linear');
+    drawn.update(positions);
+    const count = drawn.sources.length, bones = new Uint16Array(4 * count), weights = new Float32Array(4 * count);
+    const ofVertex = {bones: palette.vertexBones(), weights: palette.vertexWeights()};
+    drawn.sources.forEach((v, k) => {
+      bones.set(ofVertex.bones.subarray(4 * v, 4 * v + 4), 4 * k);
+      weights.set(ofVertex.weights.subarray(4 * v, 4 * v + 4), 4 * k);
+    });
+    return {
+      number: this.number, index: drawn.index, positions: drawn.positions, normals: drawn.normals, bones, weights,
+      colours: this.colours(drawn), boneCount: palette.boneCount, triangleCount: this.mesh.triangleCount,
+      vertexCount: this.mesh.vertexCount, restNodes: Float32Array.from(this.cage.nodes),
+      tets: Uint32Array.from(this.cage.tets), edges: Uint32Array.from(this.cage.edges()),
+      boundary: Uint32Array.from(this.cage.boundaryFaces()),
+    };
+  }
+
+  /** Three bytes for each drawn vertex. */
+  colours(drawn) {
+    const colours = new Uint8Array(3 * drawn.sources.length).fill(255);
+    for (const {first, count, colour} of this.groups || []) {
+      for (let corner = 3 * first; corner < 3 * (first + count); ++corner) {
+        colours.set(colour.map(share => Math.round(255 * share)), 3 * drawn.index[corner]);
+      }
+    }
+    return colours;
+  }
+
+  delete() {
+    for (const palette of Object.values(this.palettes)) palette.delete();
+  }
+}
+
+/** Meshes and cages that scenes have asked for: switching back to a scene takes no time. */
+class Shelf {
+  constructor(module, serpent, materials) {
+    Object.assign(this, {module, serpent, materials, meshes: new Map(), cages: new Map()});
+  }
+
+  mesh(name) {
+    if (!this.meshes.has(name)) {
+      const shape = name === 'serpent' ? this.serpent : SHAPES[name]();
+      const mesh = this.module.createMesh(shape.positions, shape.triangles);
+      const groups = shape.groups && shape.groups.map(group => ({...group, colour: this.materials[group.material].colour}));
+      this.meshes.set(name, {mesh, groups});
+    }
+    return this.meshes.get(name);
+  }
+
+  cage(name, tets, quadratic) {
+    const key = `${name} ${tets} ${quadratic}`;
+    if (!this.cages.has(key)) {
+      let cage = this.module.createCage(this.mesh(name).mesh, {targetTets: quadratic ? Math.ceil(tets / 8) : tets});
+      if (quadratic) {
+        const coarse = cage;
+        cage = this.module.refineQuadratic(coarse);
+        coarse.delete();
+      }
+      this.cages.set(key, cage);
+      if (this.cages.size > 12) this.forgetOldest();
+    }
+    return this.cages.get(key);
+  }
+
+  forgetOldest() {
+    const [key] = this.cages.keys();
+    this.cages.get(key).delete();
+    this.cages.delete(key);
+  }
+}
+
+/** What scenes are built with. */
+class Builder {
+  constructor(simulation) {
+    this.simulation = simulation;
+    this.settings = simulation.settings;
+    this.world = simulation.world;
+  }
+
+  get stiffness() { return this.settings.stiffness; }
+
+  /** The number of tets that is wished for, or the scene's own. */
+  tets(usual) { return this.settings.tets || usual; }
+
+  /** options: of the module, and damping, a share of that which is set; gravity: of its own; pinned: by rest position */
+  addBody(name, tets, options, colour = '#ffffff') {
+    const {simulation, settings} = this, {damping = 1, gravity, pinned, ...others} = options;
+    const model = simulation.modelOf(name, tets);
+    const all = {relativeStiffness: settings.stiffness, stiffnessDamping: damping * settings.damping, visible: false, ...others};
+    if (pinned) all.pinned = this.nodesWhere(model.cage, pinned);
+    const body = this.world.addBody(model.cage, model.mesh, all);
+    if (gravity === 0) body.setGravity([0, 0, 0]);
+    const part = {body, model, colour, damping, softer: all.relativeStiffness / settings.stiffness};
+    part.modulusOfOne = body.youngsModulus / all.relativeStiffness;
+    simulation.parts.push(part);
+    return body;
+  }
+
+  nodesWhere(cage, chosen) {
+    const nodes = [], {nodes: rest} = cage;
+    for (let n = 0; n < rest.length / 3; ++n) if (chosen(rest.subarray(3 * n, 3 * n + 3))) nodes.push(n);
+    return nodes;
+  }
+
+  restNodes(body) { return Float64Array.from(body.cage.nodes); }
+
+  pinnedOf(body) {
+    const nodes = [];
+    body.pinned.forEach((pinned, n) => pinned && nodes.push(n));
+    return nodes;
+  }
+
+  addBox(halfExtents, options, material) {
+    return this.addRigid(this.world.addBox(halfExtents, options), {kind: 'box', halfExtents}, options, material);
+  }
+
+  addSphere(radius, options, material) {
+    return this.addRigid(this.world.addSphere(radius, options), {kind: 'ball', radius}, options, material);
+  }
+
+  addRigid(rigid, shape, options, material) {
+    const {position, rotation = [0, 0, 0, 1], mass = 0, kinematic = false} = options;
+    this.simulation.rigids.push({...shape, material, position, rotation, fixed: mass === 0 && !kinematic});
+    return rigid;
+  }
+
+  beforeFrame(script) { this.simulation.script = script; }
+}
+
+class Simulation {
+  /** name: of SCENES; settings: {tets, stiffness, damping, gravity, skin, elements} */
+  constructor(module, shelf, name, settings) {
+    Object.assign(this, {module, shelf, name, settings: {...settings}});
+    this.world = module.createWorld({gravity: [0, -settings.gravity, 0], deterministic: true});
+    this.parts = [];    // soft bodies
+    this.rigids = [];   // descriptions of the scene's, in the world's order
+    this.thrown = [];   // balls, after those
+    this.throws = 0;    // at all
+    this.models = [];
+    this.script = null;
+    this.held = null;   // {hit, spring, target}
+    this.frame = 0;
+    this.kept = [];     // snapshots, the oldest first
+    this.spare = [];    // memory of former ones
+    SCENES[name].build(new Builder(this));
+    this.dropped = this.parts.length;  // from here on, bodies that were dropped on the page
+    this.start = this.snapshot();
+    this.keep();
+  }
+
+  delete() {
+    this.world.delete();
+    for (const model of this.models) model.delete();
+  }
+
+  modelOf(name, tets) {
+    const {mesh, groups} = this.shelf.mesh(name), cage = this.shelf.cage(name, tets, this.settings.elements === 'quadratic');
+    return this.models.find(model => model.cage === cage && model.mesh === mesh) || this.addModel(mesh, cage, groups);
+  }
+
+  addModel(mesh, cage, groups) {
+    const model = new Model(this.module, mesh, cage, groups, this.models.length);
+    this.models.push(model);
+    return model;
+  }
+
+  // --- Time
+
+  step(frames) {
+    const began = performance.now();
+    let simulated = 0;
+    for (let k = 0; k < frames; ++k) {
+      if (this.script) this.script(this.frame + 1);
+      this.world.step(FRAME, SUBSTEPS);
+      simulated += this.world.times.total;
+      ++this.frame;
+      if (this.frame % KEEP_EVERY === 0) this.keep();
+    }
+    this.milliseconds = (performance.now() - began) / Math.max(1, frames);
+  }
+
+  /** Everything that tells whether a snapshot can be restored, beside it. */
+  snapshot() {
+    const size = this.world.snapshotSize, at = this.spare.findIndex(memory => memory.length >= size);
+    const memory = at < 0 ? new Uint8Array(Math.ceil(1.1 * size)) : this.spare.splice(at, 1)[0];
+    return {
+      frame: this.frame, memory, bytes: this.world.save(memory), thrown: this.thrown.length,
+      held: this.held && {hit: this.held.hit, target: this.held.target}, settings: JSON.stringify(this.settings),
+    };
+  }
+
+  keep() {
+    this.kept.push(this.snapshot());
+    const isOld = () => this.frame - this.kept[0].frame > KEPT_FRAMES || this.keptBytes() > KEPT_BYTES;
+    while (this.kept.length > 1 && isOld()) this.forget(this.kept.shift());
+  }
+
+  forget(snapshot) {
+    if (this.spare.length < 4) this.spare.push(snapshot.memory);
+  }
+
+  keptBytes() {
+    return this.kept.reduce((sum, {memory}) => sum + memory.length, 0);
+  }
+
+  /** Back by so many frames, or as far as there are snapshots; to the bit, if nobody has touched anything since. */
+  rewind(frames) {
+    const wanted = Math.max(this.kept[0].frame, this.frame - frames);
+    while (this.kept.length > 1 && this.kept[this.kept.length - 1].frame > wanted) this.forget(this.kept.pop());
+    this.restore(this.kept[this.kept.length - 1]);
+    this.step(wanted - this.frame);
+  }
+
+  reset() {
+    this.letGo();
+    for (const {body} of this.parts.splice(this.dropped)) body.delete();
+    this.restore(this.start);
+    for (const snapshot of this.kept.splice(0)) this.forget(snapshot);
+    this.keep();
+  }
+
+  /** The world gets the balls and the spring that it had then; the spring lets go where it has been taken back. */
+  restore(snapshot) {
+    this.letGo();
+    for (const ball of this.thrown.splice(snapshot.thrown)) ball.delete();
+    const spring = snapshot.held && this.world.addSpring(snapshot.held.hit);
+    this.world.restore(snapshot.bytes);
+    if (spring) spring.delete();
+    this.frame = snapshot.frame;
+    if (snapshot.settings !== JSON.stringify(this.settings)) this.applySettings();
+  }
+
+  // --- Settings
+
+  /** Those that a running world takes. */
+  set(settings) {
+    Object.assign(this.settings, settings);
+    this.applySettings();
+  }
+
+  applySettings() {
+    const {stiffness, damping, gravity} = this.settings;
+    this.world.gravity = [0, -gravity, 0];
+    for (const part of this.parts) {
+      part.body.youngsModulus = part.modulusOfOne * part.softer * stiffness;
+      part.body.stiffnessDamping = part.damping * damping;
+    }
+  }
+
+  // --- Hands
+
+  /** Takes hold of the surface that a ray meets; null where it meets none. */
+  pick({from, to}) {
+    this.letGo();
+    const hit = this.world.raycast(from, to);
+    if (!hit) return null;
+    this.held = {hit, spring: this.world.addSpring(hit), target: [...hit.point]};
+    return {point: [...hit.point], distance: hit.distance};
+  }
+
+  drag(target) {
+    if (!this.held) return;
+    this.held.target = target;
+    this.held.spring.setTarget(target);
+  }
+
+  letGo() {
+    if (this.held) this.held.spring.delete();
+    this.held = null;
+  }
+
+  /** Pushes the surface around where a ray meets it, away from the eye. */
+  push({from, to, strength}) {
+    const hit = this.world.raycast(from, to);
+    if (!hit) return null;
+    const length = Math.hypot(...to.map((x, k) => x - from[k])), along = to.map((x, k) => (x - from[k]) / length);
+    const radius = 0.35, centre = hit.point.map((x, k) => x - 0.4 * radius * along[k]);
+    hit.body.applyRadialImpulse(centre, radius, strength * hit.body.mass);
+    return [...hit.point];
+  }
+
+  /** The oldest is thrown again where there are many. */
+  throwBall({position, velocity, radius}) {
+    const place = this.throws++ % MOST_THROWN;
+    if (this.thrown.length === MOST_THROWN) {
+      Object.assign(this.thrown[place], {position, velocity, angularVelocity: [0, 0, 0]});
+      return;
+    }
+    this.thrown.push(this.world.addSphere(radius, {mass: THROWN_MASS, position, velocity, friction: 0.6}));
+  }
+
+  /** A body that was dropped on the page. The world before it cannot come back but by `reset`. */
+  add({mesh: meshBytes, cage: cageBytes}) {
+    this.letGo();
+    const mesh = this.module.meshFromBytes(meshBytes), cage = this.module.cageFromBytes(cageBytes);
+    const model = this.addModel(mesh, cage, null), {settings} = this;
+    const body = this.world.addBody(cage, mesh, {
+      relativeStiffness: settings.stiffness, stiffnessDamping: settings.damping, visible: false, mass: 1,
+      position: [0, 0.2 + this.top(), 0],
+    });
+    const part = {body, model, colour: '#7089a8', damping: 1, softer: 1, modulusOfOne: body.youngsModulus / settings.stiffness};
+    this.parts.push(part);
+    for (const snapshot of this.kept.splice(0)) this.forget(snapshot);
+    this.keep();
+    return {model: model.description(), body: {model: model.number, colour: part.colour}};
+  }
+
+  /** The highest node of all. */
+  top() {
+    let top = 0;
+    for (const {body} of this.parts) {
+      const {nodes} = body;
+      for (let i = 1; i < nodes.length; i += 3) top = Math.max(top, nodes[i]);
+    }
+    return top;
+  }
+
+  // --- What the page is told
+
+  description() {
+    return {
+      name: this.name, title: SCENES[this.name].title, focus: SCENES[this.name].focus, settings: this.settings,
+      models: this.models.map(model => model.description()),
+      bodies: this.parts.map(({model, colour}) => ({model: model.number, colour})), rigids: this.rigids,
+      tets: this.parts.reduce((sum, {model}) => sum + model.cage.tetCount, 0),
+      triangles: this.parts.reduce((sum, {model}) => sum + model.mesh.triangleCount, 0),
+    };
+  }
+
+  /** What is drawn of this frame; all arrays are new. */
+  state() {
+    const began = performance.now(), {skin} = this.settings;
+    const bodies = this.parts.map(({body, model}) =>
+      ({bones: model.palette(skin).update(body).slice(), nodes: body.nodes.slice(), asleep: body.asleep}));
+    const bones = performance.now() - began;
+    return {
+      frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, skin, bodies, poses: this.world.poses().slice(),
+      balls: this.thrown.length, held: this.held && [...this.held.spring.position],
+      times: {...this.timesOf(), bones}, milliseconds: this.milliseconds || 0,
+    };
+  }
+
+  timesOf() {
+    const {prediction, rigidSearch, softSearch, rows, system, other} = this.world.times;
+    return {prediction, rigidSearch, softSearch, rows, system, other};
+  }
+
+  memory() {
+    return {module: this.module.memoryBytes, snapshots: this.keptBytes() + this.spare.reduce((sum, {length}) => sum + length, 0)};
+  }
+
+  /** The highest vertex at rest of the first body, which is the serpent's horn: where it is now. */
+  horn() {
+    const [{body, model}] = this.parts, {positions} = model.mesh;
+    let top = 0;
+    for (let v = 0; v < positions.length / 3; ++v) if (positions[3 * v + 1] > positions[3 * top + 1]) top = v;
+    body.visible = true;
+    const point = [...body.positions.slice(3 * top, 3 * top + 3)], bounds = body.bounds;
+    body.visible = false;
+    return {point, size: Math.max(...[0, 1, 2].map(k => bounds[3 + k] - bounds[k]))};
+  }
+}
