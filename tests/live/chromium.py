@@ -352,17 +352,6 @@ class Page:
             total += self.browser.call("Runtime.getHeapUsage", session)["usedSize"]
         return total
 
-    def wasm_memory(self):
-        """Bytes of WebAssembly's memories in the page and in its workers together."""
-        total = 0
-        for session in (self.session, *self.workers):
-            found = self.browser.call("Runtime.evaluate", session, expression="WebAssembly.Memory.prototype")["result"]
-            memories = self.browser.call("Runtime.queryObjects", session, prototypeObjectId=found["objectId"])["objects"]
-            total += self.browser.call("Runtime.callFunctionOn", session, objectId=memories["objectId"], returnByValue=True,
-                                       functionDeclaration="function() { return this.reduce("
-                                       "(sum, one) => sum + one.buffer.byteLength, 0); }")["result"]["value"]
-        return total
-
     def close(self):
         self.browser.call("Target.closeTarget", targetId=self.target)
 

@@ -75,11 +75,11 @@ class Dropped(WithBrowser):
         for _ in range(2):
             for name, data in meshes.damaged()[:6]:
                 self.drop(live, name, data)
-        before = live.page.wasm_memory(), live.page.javascript_memory()
+        before = live.call("memory")["module"], live.page.javascript_memory()
         for _ in range(3):
             for name, data in meshes.damaged()[:6]:
                 self.drop(live, name, data)
-        after = live.page.wasm_memory(), live.page.javascript_memory()
+        after = live.call("memory")["module"], live.page.javascript_memory()
         self.assertEqual(after[0], before[0])
         self.assertLess(after[1] - before[1], 1e6)
         self.assertEqual(len(live.page.workers), 1, "workers that make cages have ended")

@@ -150,10 +150,10 @@ class Memory(WithBrowser):
             with self.subTest(scene):
                 live.open(scene)
                 live.step(900)  # ten seconds of snapshots, and what grows at first
-                before = live.page.wasm_memory(), live.page.javascript_memory()
+                before = live.call("memory")["module"], live.page.javascript_memory()
                 for _ in range(30):
                     live.step(100)
-                after = live.page.wasm_memory(), live.page.javascript_memory()
+                after = live.call("memory")["module"], live.page.javascript_memory()
                 self.assertEqual(after[0], before[0], "WebAssembly's memory")
                 self.assertLess(after[1] - before[1], 1.5 * MEGABYTE, "heaps of JavaScript")
 
@@ -167,10 +167,10 @@ class Memory(WithBrowser):
 
         for _ in range(2):
             round_trip()
-        before = live.page.wasm_memory(), live.page.javascript_memory()
+        before = live.call("memory")["module"], live.page.javascript_memory()
         for _ in range(4):
             round_trip()
-        after = live.page.wasm_memory(), live.page.javascript_memory()
+        after = live.call("memory")["module"], live.page.javascript_memory()
         self.assertLess(after[0] - before[0], 4 * MEGABYTE)
         self.assertLess(after[1] - before[1], 4 * MEGABYTE)
 
