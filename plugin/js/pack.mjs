@@ -24,8 +24,8 @@ const parts = ["errors", "arguments", "instance", "models", "world", "load"];
 const sources = parts.map(part => read(join(here, "module", `${part}.js`)).replace(/^\/\/.*\n/gm, ""));
 const packed = deflateSync(readFileSync(binary), {level: 9}).toString("base64");
 
-const module = `// tetskin ${version}, zlib licence. Contains Bullet, Eigen, tinygltf, JSON for Modern C++ and parts of Emscripten's
-// libraries: their licences are in the folder licences of the npm package.
+const module = `// tetskin ${version}, zlib licence. Contains Bullet, Eigen, tinygltf, JSON for Modern C++, and what it uses of the
+// libraries of Emscripten, musl and LLVM: their licences are in the folder licences of the npm package.
 const tetskin = (() => {
 "use strict";
 ${read(script).trim()}
@@ -44,3 +44,8 @@ writeFileSync(join(folder, "package.json"), JSON.stringify({...description, vers
 cpSync(join(here, "tetskin.d.ts"), join(folder, "tetskin.d.ts"));
 cpSync(join(here, "README.md"), join(folder, "README.md"));
 cpSync(join(repository, "LICENSE"), join(folder, "LICENSE"));
+// What the Python package contains, too, has its licence there.
+for (const name of ["bullet", "eigen", "tinygltf", "json"]) {
+  cpSync(join(repository, "plugin/python/licences", `${name}.txt`), join(folder, "licences", `${name}.txt`));
+}
+cpSync(join(here, "licences"), join(folder, "licences"), {recursive: true});

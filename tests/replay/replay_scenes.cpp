@@ -4,7 +4,7 @@
 
 #include "replay_models.h"
 
-#include <facade/state_hash.h>
+#include <tetskin/bullet/src/exported/state_hash.h>
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
@@ -236,7 +236,7 @@ void ReplayScene::step(int frame) {
 }
 
 std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
-  return facade::stateHash(world);
+  return bullet_detail::stateHash(world);
 }
 
 }  // namespace tetskin::test

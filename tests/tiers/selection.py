@@ -40,10 +40,11 @@ MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|plat
                        r"[.]cmake([.]in)?$|"
                        r"^((plugin/|tests/|demos/)?CMakeLists[.]txt|CMakePresets[.]json|[.]clang-tidy|[.]clang-format)$")
 PAGE = "README.md"
-# The Python package and its demos, which are built and tested as a whole, by tests of their own.
-PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers)/")
+# The Python package and its demos, which are built and tested as a whole, by tests of their own; with what it shares
+# with the module for JavaScript.
+PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers|plugin/facade)/")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
-WEB = re.compile(r"^(plugin/js|demos/live|tests/js|tests/live)/")
+WEB = re.compile(r"^(plugin/js|plugin/facade|demos/live|tests/js|tests/live)/")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 

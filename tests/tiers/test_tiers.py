@@ -194,7 +194,8 @@ class Selection(InASmallProject):
 
     def test_the_python_package_selects_nothing_that_is_compiled(self):
         for name in ("plugin/python/src/skins.cpp", "plugin/python/cmake/bullet.cmake", "plugin/python/CMakeLists.txt",
-                     "demos/python/drop.py", "demos/python/drop.ipynb", "tests/python/run", "tests/python/test_drop.py"):
+                     "plugin/facade/shapes.cpp", "demos/python/drop.py", "demos/python/drop.ipynb", "tests/python/run",
+                     "tests/python/test_drop.py"):
             with self.subTest(name):
                 self.setUp()
                 self.write(name)
@@ -207,8 +208,9 @@ class Selection(InASmallProject):
 
     def test_the_page_selects_its_own_tests_and_nothing_that_is_compiled(self):
         web = self.root / "build/changes/web"
-        for name in ("plugin/js/src/bodies.cpp", "plugin/js/CMakeLists.txt", "demos/live/page.js", "demos/live/serpent.cpp",
-                     "tests/js/run", "tests/js/test.mjs", "tests/live/run", "tests/live/test_page.py"):
+        for name in ("plugin/js/src/bodies.cpp", "plugin/facade/shapes.cpp", "plugin/js/CMakeLists.txt",
+                     "demos/live/page.js", "demos/live/serpent.cpp", "tests/js/run", "tests/js/test.mjs", "tests/live/run",
+                     "tests/live/test_page.py"):
             with self.subTest(name):
                 self.setUp()
                 self.write(name)

@@ -3,7 +3,7 @@
 #include "handles.h"
 
 #include <emscripten.h>
-#include <facade/state_hash.h>
+#include <tetskin/bullet/src/exported/state_hash.h>
 
 #include <cstdio>
 
@@ -68,7 +68,8 @@ void restore(WorldHandle& handle, std::uintptr_t bytes, std::size_t count) {
 }
 std::string hashOfState(WorldHandle& handle) {
   char text[20];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(stateHash(handle.world->bullet())));
+  std::snprintf(text, sizeof text, "%016llx",
+                static_cast<unsigned long long>(bullet_detail::stateHash(handle.world->bullet())));
   return text;
 }
 

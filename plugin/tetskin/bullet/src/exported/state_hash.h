@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <cstring>
 
-namespace tetskin::facade {
+namespace tetskin::bullet_detail {
 
 /// FNV-1a.
-class Hash {
+class StateHash {
  public:
   void add(const btVector3& v) {
     for (int k = 0; k < 3; ++k) {
@@ -29,7 +29,7 @@ class Hash {
 /// Hash of positions and velocities of all nodes, and of transforms and velocities of all rigid bodies, to the last
 /// bit, in the order of the world's objects.
 inline std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
-  Hash hash;
+  StateHash hash;
   for (int i = 0; i < world.getNumCollisionObjects(); ++i) {
     const btCollisionObject* object = world.getCollisionObjectArray()[i];
     if (const btSoftBody* soft = btSoftBody::upcast(object)) {
@@ -49,4 +49,4 @@ inline std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) 
   return hash.value();
 }
 
-}  // namespace tetskin::facade
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Meshes and cages: read, made, handed over, refused.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {failure, load} from "./module.mjs";
+import {files, tube} from "./shapes.mjs";
+
+const tetskin = await load();
+const shape = tube();
+const mesh = tetskin.createMesh(shape.positions, shape.triangles);
+
+test("a mesh of arrays has what was given", () => {
+  assert.equal(mesh.vertexCount, shape.positions.length / 3);
+  assert.equal(mesh.triangleCount, shape.triangles.length / 3);
+  assert.deepEqual(mesh.positions, shape.positions);
+  assert.deepEqual(mesh.triangles, shape.triangles);
+  assert.deepEqual(mesh.normals, new Float32Array(0));
+  assert.deepEqual([...mesh.bounds].map(x => Math.round(1e6 * x) / 1e6), [0, -0.3, -0.3, 2, 0.3, 0.3]);
+});
+
+test("normals at rest look outwards", () => {
+  const normals = mesh.restNormals(), {positions} = mesh;
+  for (let v = 24; v < mesh.vertexCount - 26; ++v) {  // not the caps
+    assert.ok(normals[3 * v + 1] * positions[3 * v + 1] + normals[3 * v + 2] * positions[3 * v + 2] > 0.29, `vertex ${v}`);
+  }
+});
+
+test("given normals and texture coordinates are kept", () => {
+  const one = tetskin.createMesh([0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2],
+    {normals: [0, 0, 1, 0, 0, 1, 0, 0, 1], texcoords: new Float32Array([0, 0, 1, 0, 0, 1])});
+  assert.deepEqual([...one.normals], [0, 0, 1, 0, 0, 1, 0, 0, 1]);
+  assert.deepEqual([...one.texcoords], [0, 0, 1, 0, 0, 1]);
+  const copy = tetskin.meshFromBytes(one.toBytes());
+  assert.deepEqual([...copy.texcoords], [0, 0, 1, 0, 0, 1]);
+  assert.deepEqual([...copy.normals], [0, 0, 1, 0, 0, 1, 0, 0, 1]);
+});
+
+for (const format of Object.keys(files)) {
+  test(`a ${format} file is read from its bytes`, () => {
+    const read = tetskin.readMesh(files[format](shape), `Tube.${format.toUpperCase()}`);
+    assert.equal(read.triangleCount, mesh.triangleCount);
+    if (format !== "stl") assert.deepEqual(read.triangles, shape.triangles);  // which has three vertices per triangle
+    const corner = 3 * read.triangles[100], expected = 3 * shape.triangles[100];
+    for (let k = 0; k < 3; ++k) {
+      const difference = Math.abs(read.positions[corner + k] - shape.positions[expected + k]);
+      assert.ok(format === "stl" || format === "glb" ? difference < 1e-7 : difference === 0);
+    }
+  });
+
+  test(`a damaged ${format} file is refused, and the next one is read`, () => {
+    const whole = files[format](shape);
+    assert.throws(() => tetskin.readMesh(whole.subarray(0, whole.length >> 1), format),
+      error => ["Malformed", "IndexOutOfRange", "Empty"].includes(error.code) && error.message.includes(`file.${format}`));
+    assert.equal(tetskin.readMesh(whole, format).triangleCount, mesh.triangleCount);
+  });
+}
+
+test("formats that are not read are named", () => {
+  assert.throws(() => tetskin.readMesh(new Uint8Array(100), "dragon.fbx"), failure("UnsupportedFormat", /fbx/));
+  assert.throws(() => tetskin.readMesh(new Uint8Array(100), "../x/y"), failure("UnsupportedFormat"));
+  assert.throws(() => tetskin.readMesh("v 0 0 0", "obj"), failure("InvalidArgument", /Uint8Array/));
+});
+
+test("a cage holds its mesh, and is the same each time", () => {
+  const fractions = [];
+  const cage = tetskin.createCage(mesh, {targetTets: 500, progress: fraction => { fractions.push(fraction); }});
+  assert.ok(cage.tetCount > 450 && cage.tetCount < 550);
+  assert.equal(cage.tets.length, 4 * cage.tetCount);
+  assert.equal(cage.vertexTets.length, mesh.vertexCount);
+  assert.match(cage.report, /tets/);
+  assert.ok(fractions.length > 2 && fractions.every((f, i) => f >= 0 && f <= 1 && (i === 0 || f >= fractions[i - 1])));
+  assert.deepEqual(tetskin.createCage(mesh, {targetTets: 500}).toBytes(), cage.toBytes());
+  assert.equal(cage.edges().length % 2, 0);
+  assert.ok(cage.boundaryFaces().every(node => node >= 0 && node < cage.nodeCount));
+});
+
+test("progress cancels by false, and what it throws is thrown", () => {
+  assert.throws(() => tetskin.createCage(mesh, {progress: () => false}), failure("Cancelled"));
+  assert.throws(() => tetskin.createCage(mesh, {progress() { throw new RangeError("mine"); }}), RangeError);
+  assert.ok(tetskin.createCage(mesh, {targetTets: 100, progress() {}}).tetCount > 50);
+});
+
+test("a cage is handed over to another instance by its bytes", async () => {
+  const cage = tetskin.createCage(mesh, {targetTets: 300});
+  const other = await load();
+  const copy = other.cageFromBytes(cage.toBytes());
+  assert.deepEqual([...copy.nodes], [...cage.nodes]);
+  assert.deepEqual(copy.toBytes(), cage.toBytes());
+  assert.equal(copy.report, cage.report);
+  assert.throws(() => tetskin.createWorld().addBody(copy, null), failure("InvalidArgument", /another instance/));
+});
+
+test("bytes that are damaged, cut short or of something else are refused", () => {
+  const bytes = tetskin.createCage(mesh, {targetTets: 100}).toBytes();
+  for (const broken of [bytes.slice(0, 100), new Uint8Array(0), mesh.toBytes()]) {
+    assert.throws(() => tetskin.cageFromBytes(broken), failure("Malformed"));
+  }
+  for (let at = 0; at < bytes.length; at += 997) {
+    const changed = bytes.slice();
+    changed[at] ^= 4;
+    assert.throws(() => tetskin.cageFromBytes(changed), failure("Malformed"));
+  }
+  assert.throws(() => tetskin.meshFromBytes(bytes), failure("Malformed"));
+});
+
+test("cages are calibrated, scaled, made quadratic, or made of tets", () => {
+  const cage = tetskin.createCage(mesh, {targetTets: 60});
+  assert.notDeepEqual(tetskin.calibrate(cage, {modeCount: 3}).toBytes(), cage.toBytes());
+  assert.throws(() => tetskin.calibrate(cage, {progress: () => false}), failure("Cancelled"));
+  assert.equal(cage.scaled(2).nodes[5], 2 * cage.nodes[5]);
+  assert.equal(tetskin.refineQuadratic(cage).quadraticTet.length, 8 * cage.tetCount);
+  assert.equal(tetskin.cageOfTets(cage.nodes, cage.tets).tetCount, cage.tetCount);
+});
+
+test("bones at rest leave the mesh where it is", () => {
+  const cage = tetskin.createCage(mesh, {targetTets: 100});
+  for (const interpolation of ["linear", "quadratic"]) {
+    const palette = tetskin.createPalette(cage, mesh, {interpolation});
+    assert.equal(palette.boneCount, cage.nodeCount);
+    const bones = palette.update(cage.nodes), which = palette.vertexBones(), weights = palette.vertexWeights();
+    for (let v = 0; v < mesh.vertexCount; v += 7) {
+      for (let row = 0; row < 3; ++row) {
+        let sum = 0;
+        for (let i = 0; i < 4; ++i) {
+          const at = 12 * which[4 * v + i] + 4 * row;
+          for (let k = 0; k < 4; ++k) sum += weights[4 * v + i] * bones[at + k] * (k < 3 ? mesh.positions[3 * v + k] : 1);
+        }
+        assert.ok(Math.abs(sum - mesh.positions[3 * v + row]) < 1e-5);
+      }
+    }
+  }
+});
+
+test("bad arguments are named, and nothing is made", () => {
+  const cage = tetskin.createCage(mesh, {targetTets: 100});
+  const refused = [
+    [() => tetskin.createMesh([0, 0], [0, 1, 2]), "InvalidArgument", /positions/],
+    [() => tetskin.createMesh("abc", []), "InvalidArgument", /positions/],
+    [() => tetskin.createMesh([0, 0, 0], [0, 1, 2]), "IndexOutOfRange", /vertex 1/],
+    [() => tetskin.createMesh([0, 0, 0], [0, 1.5, 0]), "InvalidArgument", /whole/],
+    [() => tetskin.createMesh([0, NaN, 0], [0, 0, 0]), "NonFinite", /./],
+    [() => tetskin.createMesh([], []), "Empty", /./],
+    [() => tetskin.createMesh([0, 0, 0], [0, 0, 0], {normals: [1]}), "SizeMismatch", /normals/],
+    [() => tetskin.createCage({}), "InvalidArgument", /mesh/],
+    [() => tetskin.createCage(cage), "InvalidArgument", /mesh/],
+    [() => tetskin.createCage(mesh, {tets: 5}), "InvalidArgument", /targetTets/],
+    [() => tetskin.createCage(mesh, {targetTets: 0}), "InvalidOption", /targetTets/],
+    [() => tetskin.createCage(mesh, {targetTets: "many"}), "InvalidArgument", /targetTets/],
+    [() => tetskin.createPalette(cage, mesh, {interpolation: "cubic"}), "InvalidArgument", /interpolation/],
+    [() => tetskin.createPalette(cage, mesh).update([1, 2, 3]), "SizeMismatch", /nodes/],
+    [() => tetskin.calibrate(cage, {poissonRatio: 0.6}), "InvalidOption", /./],
+    [() => cage.scaled(-1), "InvalidArgument", /scale/],
+    [() => tetskin.cageOfTets([0, 0, 0], [0, 0, 0, 1]), "IndexOutOfRange", /./],
+  ];
+  for (const [call, code, words] of refused) assert.throws(call, failure(code, words), call.toString());
+});
+
+test("what is made of a mesh outlives it", () => {
+  const own = tetskin.createMesh(shape.positions, shape.triangles);
+  const cage = tetskin.createCage(own, {targetTets: 100}), bytes = cage.toBytes();
+  own.delete();
+  own.delete();
+  assert.ok(own.deleted);
+  assert.throws(() => own.positions, failure("Deleted"));
+  assert.throws(() => tetskin.createCage(own), failure("Deleted"));
+  assert.deepEqual(cage.toBytes(), bytes);
+});
+
+test("where memory ends, it is said, and the instance goes on", async () => {
+  const {grow} = WebAssembly.Memory.prototype;
+  const small = await load();
+  const one = small.createMesh(shape.positions, shape.triangles);
+  const large = Buffer.alloc(30_000_000, "v 0 0 0\n");
+  WebAssembly.Memory.prototype.grow = () => { throw new RangeError("as on a small phone"); };
+  try {
+    assert.throws(() => small.createCage(one, {targetTets: 100_000}), failure("OutOfMemory", /fewer tets/));
+    assert.throws(() => small.readMesh(large, "obj"), failure("OutOfMemory"));
+    const cage = small.createCage(one, {targetTets: 100});
+    const world = small.createWorld();
+    world.addBody(cage, one);
+    world.step();
+    assert.equal(small.memoryVersion, 0);
+  } finally {
+    WebAssembly.Memory.prototype.grow = grow;
+  }
+  assert.ok(small.createCage(one, {targetTets: 20_000}).tetCount > 18_000);
+});

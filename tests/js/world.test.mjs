@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A world: what falls, is held, thrown, picked, saved and deleted.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {failure, load} from "./module.mjs";
+import {tube} from "./shapes.mjs";
+
+const tetskin = await load();
+const shape = tube();
+const mesh = tetskin.createMesh(shape.positions, shape.triangles);
+const cage = tetskin.createCage(mesh, {targetTets: 300});
+
+const lowest = numbers => numbers.reduce((least, x, i) => i % 3 === 1 ? Math.min(least, x) : least, Infinity);
+const steps = (world, count) => { for (let i = 0; i < count; ++i) world.step(); };
+
+function drop(options = {}) {
+  const world = tetskin.createWorld({deterministic: true});
+  world.addPlane();
+  return {world, body: world.addBody(cage, mesh, {position: [0, 0.8, 0], ...options})};
+}
+
+test("a body falls, and lies on its surface", () => {
+  const {world, body} = drop({normals: "recomputed"});
+  assert.equal(world.step(1 / 60, 4), 4);
+  steps(world, 239);
+  assert.ok(Math.abs(lowest(body.positions)) < 0.01);
+  assert.equal(body.normals.length, body.positions.length);
+  assert.deepEqual(body.bounds.map(Math.fround)[1], lowest(body.positions));
+  assert.ok(Math.abs(world.time - 4) < 1e-9);
+  assert.ok(body.mass > 0 && body.nodeCount === cage.nodeCount);
+});
+
+test("a hidden surface is not computed until it is shown, and the body moves alike", () => {
+  const {world, body} = drop({visible: false}), seen = drop();
+  const before = body.positions.slice();
+  steps(world, 60);
+  steps(seen.world, 60);
+  assert.equal(world.hash, seen.world.hash);
+  assert.deepEqual(body.positions, before);
+  body.visible = true;
+  assert.deepEqual(body.positions, seen.body.positions);
+});
+
+test("bones of a body draw its surface", () => {
+  const {world, body} = drop();
+  steps(world, 60);
+  const palette = tetskin.createPalette(cage, mesh), bones = palette.update(body);
+  assert.deepEqual(palette.update(body.nodes), bones);
+  const which = palette.vertexBones(), weights = palette.vertexWeights();
+  for (let v = 0; v < mesh.vertexCount; v += 11) {
+    for (let row = 0; row < 3; ++row) {
+      let sum = mesh.positions[3 * v + row];
+      for (let i = 0; i < 4; ++i) sum += weights[4 * v + i] * bones[12 * which[4 * v + i] + 4 * row + 3];
+      assert.ok(Math.abs(sum - body.positions[3 * v + row]) < 1e-5);
+    }
+  }
+});
+
+test("rigid bodies of all shapes fall, fly, and rest", () => {
+  const world = tetskin.createWorld();
+  world.addPlane({offset: -1, friction: 1});
+  const hull = [1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1];
+  const thrown = world.addSphere(0.2, {mass: 2, position: [0, 5, 10], velocity: [3, 0, 0], angularVelocity: [0, 1, 0]});
+  world.addBox([0.2, 0.3, 0.4], {mass: 1, position: [0, 1, 0]});
+  world.addCapsule(0.2, 0.5, {mass: 1, position: [3, 1, 0]});
+  world.addCylinder(0.2, 0.5, {mass: 1, position: [6, 1, 0]});
+  world.addConvexHull(hull, {mass: 1, position: [9, 1, 0], rotation: [0, 0, 2, 0]});
+  world.addMesh(mesh, {position: [0, -3, 0]});
+  assert.equal(thrown.mass, 2);
+  world.step();
+  assert.ok(Math.abs(thrown.velocity[0] - 3) < 1e-6 && Math.abs(thrown.angularVelocity[1] - 1) < 1e-3);
+  steps(world, 239);
+  assert.ok(thrown.position[0] > 2);
+  const poses = world.poses();
+  assert.equal(poses.length, 7 * world.rigidBodies.length);
+  assert.deepEqual([...poses.subarray(7, 10)], [...thrown.position]);
+  for (const rigid of world.rigidBodies.slice(1, 6)) assert.ok(rigid.position[1] > -1 && rigid.position[1] < 0.5);
+  thrown.position = [0, 2, 0];
+  thrown.rotation = [0, 1, 0, 1];
+  thrown.velocity = [0, 0, 1];
+  thrown.angularVelocity = [0, 0, 0];
+  thrown.friction = 0.1;
+  thrown.applyImpulse([0, 0, 2]);
+  assert.deepEqual([...thrown.position], [0, 2, 0]);
+  assert.ok(Math.abs(thrown.rotation[1] - Math.SQRT1_2) < 1e-6 && Math.abs(thrown.friction - 0.1) < 1e-6);
+  assert.ok(Math.abs(thrown.velocity[2] - 2) < 1e-6);
+  thrown.applyImpulse([0, 0, 1], [0, 2.2, 0]);
+  assert.ok(thrown.angularVelocity[0] > 0.1);
+});
+
+test("kinematic bodies grip a body, and lift it", () => {
+  const {world, body} = drop();
+  steps(world, 60);
+  const fingers = [-1, 1].map(side => ({side, rigid: world.addBox([0.2, 0.3, 0.1],
+    {position: [1, 0.3, 0.6 * side], kinematic: true, friction: 1})}));
+  assert.ok(fingers.every(({rigid}) => rigid.kinematic));
+  for (let frame = 0; frame < 180; ++frame) {
+    for (const {side, rigid} of fingers) {
+      rigid.position = [1, 0.3 + Math.max(0, frame - 60) / 100, side * Math.max(0.33, 0.6 - frame / 100)];
+    }
+    world.step();
+  }
+  assert.ok(lowest(body.positions) > 0.3);
+});
+
+test("pinned nodes stay, and are wrung by hand", () => {
+  const left = [...Array(cage.nodeCount).keys()].filter(node => cage.nodes[3 * node] < 0.2);
+  const world = tetskin.createWorld();
+  const body = world.addBody(cage, mesh, {pinned: left, relativeStiffness: 100});
+  assert.equal(body.pinned.reduce((sum, one) => sum + one, 0), left.length);
+  const rest = body.nodes.slice();
+  steps(world, 60);
+  for (const node of left) assert.equal(body.nodes[3 * node + 1], rest[3 * node + 1]);
+  assert.ok(lowest(body.positions) < -0.31);
+  const targets = left.flatMap(node => [rest[3 * node], -rest[3 * node + 2], rest[3 * node + 1]]);
+  for (let frame = 0; frame < 30; ++frame) {
+    body.setPinnedPositions(left, targets);
+    world.step();
+  }
+  assert.ok(Math.abs(body.nodes[3 * left[0] + 1] + rest[3 * left[0] + 2]) < 1e-5);
+  body.setPinned(left, false);
+  assert.equal(body.pinned.reduce((sum, one) => sum + one, 0), 0);
+  steps(world, 60);
+  assert.ok(body.bounds[4] < -1);
+  assert.throws(() => body.setPinnedPositions(left, targets), failure("InvalidOption", /not pinned/));
+  assert.throws(() => body.setPinned([cage.nodeCount]), failure("IndexOutOfRange"));
+});
+
+test("a ray picks the surface, and a spring draws it to the pointer", () => {
+  const {world, body} = drop();
+  steps(world, 120);
+  assert.equal(world.raycast([9, 5, 0], [9, -5, 0]), null);
+  const hit = world.raycast([1.5, 5, 0], [1.5, -5, 0]);
+  assert.equal(hit.body, body);
+  assert.ok(Math.abs(hit.point[0] - 1.5) < 1e-5 && Math.abs(hit.distance - (5 - hit.point[1])) < 1e-5);
+  assert.ok(hit.normal[1] > 0.9 && Math.abs(hit.weights[0] + hit.weights[1] + hit.weights[2] - 1) < 1e-5);
+  const spring = world.addSpring(hit);
+  spring.setStiffness(20);
+  spring.setMaxForce(1e6);
+  for (let frame = 1; frame <= 120; ++frame) {
+    spring.setTarget([1.5, hit.point[1] + Math.min(1, frame / 60), 0]);
+    world.step();
+  }
+  assert.ok(spring.stretch < 0.02 * 2 && Math.abs(spring.position[1] - hit.point[1] - 1) < 0.04);
+  assert.ok(spring.force[1] > 0 && spring.body === body);
+  spring.delete();
+  steps(world, 120);
+  assert.ok(Math.abs(lowest(body.positions)) < 0.02);
+  assert.throws(() => spring.setTarget([0, 0, 0]), failure("Deleted"));
+});
+
+test("impulses push", () => {
+  const {world, body} = drop();
+  world.gravity = [0, 0, 0];
+  assert.deepEqual([...world.gravity], [0, 0, 0]);
+  const hit = world.raycast([1, 5, 0], [1, -5, 0]);
+  world.applyImpulse(hit, [0, 0, 2 * body.mass]);
+  assert.ok(body.applyRadialImpulse([1, 0.2, 0], 1, body.mass) > 0);
+  assert.equal(body.applyRadialImpulse([1, 50, 0], 1, 1), 0);
+  steps(world, 10);
+  assert.ok(body.bounds[2] > -0.2 && body.bounds[4] > 1.15);
+  body.velocities = new Float32Array(3 * body.nodeCount);
+  assert.ok(body.velocities.every(x => x === 0));
+  body.transform([0, 10, 0]);
+  assert.ok(body.bounds[1] > 10);
+});
+
+test("materials change while it runs", () => {
+  const {world, body} = drop({youngsModulus: 1e4, mass: 5});
+  assert.ok(Math.abs(body.mass - 5) < 1e-3 && Math.abs(body.youngsModulus - 1e4) < 1e-6);
+  Object.assign(body, {youngsModulus: 2e4, poissonRatio: 0.4, stiffnessDamping: 0.1, friction: 0.25});
+  assert.deepEqual([body.youngsModulus, body.poissonRatio, body.stiffnessDamping, body.friction], [2e4, 0.4, 0.1, 0.25]);
+  body.setGravity([0, 1, 0]);
+  steps(world, 30);
+  assert.ok(body.bounds[1] > 0.5);
+  body.setGravity(null);
+  steps(world, 30);
+  assert.ok(body.relativeStiffness > 0);
+  for (const [name, value] of [["youngsModulus", -1], ["poissonRatio", 0.5], ["stiffnessDamping", -1], ["friction", 2]]) {
+    const before = body[name];
+    assert.throws(() => { body[name] = value; }, failure("InvalidOption"));
+    assert.equal(body[name], before);
+  }
+});
+
+test("bodies with soft contact meet each other", () => {
+  const world = tetskin.createWorld();
+  world.addPlane();
+  for (const height of [0.35, 1.1]) world.addBody(cage, mesh, {position: [0, height, 0], softContact: true});
+  steps(world, 120);
+  const [below, above] = world.bodies;
+  assert.ok(above.bounds[4] > below.bounds[4] + 0.2 || above.bounds[1] > 0.1 || Math.abs(above.bounds[2] - below.bounds[2]) > 0.3);
+  assert.ok(world.times.softSearch > 0);
+});
+
+test("a snapshot goes on to the last bit, here and in another instance", async () => {
+  const {world, body} = drop();
+  world.addSphere(0.2, {mass: 3, position: [1, 2, 0]});
+  steps(world, 50);
+  const memory = new Uint8Array(2 * world.snapshotSize), snapshot = world.save(memory);
+  assert.equal(snapshot.length, world.snapshotSize);
+  assert.equal(snapshot.buffer, memory.buffer);
+  assert.deepEqual(world.save(), snapshot);
+  steps(world, 50);
+  const end = world.hash, nodes = body.nodes.slice();
+  world.restore(snapshot);
+  steps(world, 50);
+  assert.equal(world.hash, end);
+  assert.deepEqual(body.nodes, nodes);
+  const other = await load(), again = other.createWorld({deterministic: true});
+  again.addPlane();
+  again.addBody(other.cageFromBytes(cage.toBytes()), other.meshFromBytes(mesh.toBytes()), {position: [0, 0.8, 0]});
+  assert.throws(() => again.restore(snapshot), failure("SnapshotMismatch"));
+  again.addSphere(0.2, {mass: 3, position: [1, 2, 0]});
+  again.restore(snapshot);
+  steps(again, 50);
+  assert.equal(again.hash, end);
+  assert.throws(() => world.restore(snapshot.slice(0, 99)), failure("Malformed"));
+  assert.throws(() => world.save(new Uint8Array(10)), failure("SizeMismatch"));
+  assert.equal(world.hash, end);
+});
+
+test("milliseconds of the stages add up", () => {
+  const {world} = drop();
+  steps(world, 100);
+  const {total, ...stages} = world.times;
+  assert.deepEqual(Object.keys(stages),
+    ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces"]);
+  const sum = Object.values(stages).reduce((a, b) => a + b, 0);
+  assert.ok(total > 0 && Math.abs(sum - total) <= 0.02 * total + 1e-6);
+});
+
+test("views are of the module's memory, and a version tells when it has grown", async () => {
+  const own = await load();
+  const first = own.createMesh(shape.positions, shape.triangles), view = first.positions, version = own.memoryVersion;
+  assert.equal(view.buffer.byteLength, own.memoryBytes);
+  own.createCage(first, {targetTets: 60000});
+  assert.ok(own.memoryVersion > version && own.memoryBytes > 2 ** 24);
+  assert.equal(view.length, 0);
+  assert.deepEqual(first.positions, shape.positions);
+  const now = own.memoryVersion;
+  assert.equal(own.memoryVersion, now);
+});
+
+test("3,000 steps and snapshots take no more memory", () => {
+  const {world} = drop();
+  const snapshot = world.save();
+  steps(world, 60);
+  const before = tetskin.memoryBytes;
+  for (let i = 0; i < 3000; ++i) {
+    world.step(1 / 60, 1);
+    if (i % 30 === 0) world.restore(snapshot);
+    world.raycast([1, 5, 0], [1, -5, 0]);
+  }
+  assert.equal(tetskin.memoryBytes, before);
+});
+
+test("what is deleted is gone, with what hangs on it", () => {
+  const {world, body} = drop();
+  const rigid = world.addSphere(0.1, {mass: 1});
+  const spring = world.addSpring(world.raycast([1, 5, 0], [1, -5, 0]));
+  rigid.delete();
+  assert.equal(world.rigidBodies.length, 1);
+  body.delete();
+  assert.ok(spring.deleted && body.deleted && world.bodies.length === 0);
+  assert.throws(() => body.nodes, failure("Deleted"));
+  const second = world.addBody(cage, mesh, {position: [0, 1, 0]});
+  world[Symbol.dispose ?? Symbol.for("Symbol.dispose")]();
+  assert.ok(world.deleted && second.deleted);
+  assert.throws(() => world.step(), failure("Deleted", /World/));
+  world.delete();
+});
+
+test("worlds that come and go leave no memory behind", () => {
+  const once = () => {
+    const {world} = drop();
+    world.addSphere(0.1, {mass: 1});
+    world.step();
+    world.delete();
+  };
+  for (let i = 0; i < 10; ++i) once();
+  const before = tetskin.memoryBytes;
+  for (let i = 0; i < 100; ++i) once();
+  assert.equal(tetskin.memoryBytes, before);
+});
+
+test("a body without a mesh has no surface", () => {
+  const world = tetskin.createWorld();
+  world.addPlane();
+  const body = world.addBody(cage, null, {position: [0, 1, 0]});
+  assert.equal(body.mesh, null);
+  assert.throws(() => body.positions, failure("Unbound"));
+  assert.throws(() => world.addBody(cage, null, {softContact: true}), failure("Unbound"));
+  steps(world, 60);
+  assert.ok(lowest(body.nodes) < 0.4);
+});
+
+test("bad arguments are named, and the world stays as it was", () => {
+  const {world, body} = drop();
+  const other = drop();
+  const hit = world.raycast([1, 5, 0], [1, -5, 0]), before = world.hash;
+  const refused = [
+    [() => world.step(0), "InvalidArgument", /dt/],
+    [() => world.step(NaN), "InvalidArgument", /dt/],
+    [() => world.step(1 / 60, 0), "InvalidArgument", /substeps/],
+    [() => world.step(1 / 60, 1.5), "InvalidArgument", /substeps/],
+    [() => world.addBox([1, 1]), "InvalidArgument", /halfExtents/],
+    [() => world.addBox([1, -1, 1]), "InvalidArgument", /^halfExtents/],
+    [() => world.addSphere(Infinity), "InvalidArgument", /radius/],
+    [() => world.addSphere(1, {weight: 5}), "InvalidArgument", /weight/],
+    [() => world.addSphere(1, {mass: -1}), "InvalidArgument", /mass/],
+    [() => world.addSphere(1, {position: [0, 0, Infinity]}), "NonFinite", /position/],
+    [() => world.addSphere(1, {rotation: [0, 0, 0, 0]}), "InvalidOption", /rotation/],
+    [() => world.addMesh(mesh, {mass: 1}), "InvalidArgument", /mass/],
+    [() => world.addConvexHull([0, 0, 0, 1, 1, 1]), "Empty", /points/],
+    [() => world.addPlane({normal: [0, 0, 0]}), "InvalidArgument", /normal/],
+    [() => world.addBody(cage), "InvalidArgument", /mesh/],
+    [() => world.addBody(mesh, mesh), "InvalidArgument", /cage/],
+    [() => world.addBody(cage, mesh, {poissonRatio: 0.7}), "InvalidOption", /./],
+    [() => world.addBody(cage, mesh, {interpolation: 3}), "InvalidArgument", /interpolation/],
+    [() => world.addBody(cage, mesh, {pinned: [-1]}), "IndexOutOfRange", /node -1/],
+    [() => { body.velocities = [1, 2, 3]; }, "SizeMismatch", /velocities/],
+    [() => { world.gravity = [0, 0]; }, "InvalidArgument", /gravity/],
+    [() => world.addSpring(null), "InvalidArgument", /hit/],
+    [() => world.addSpring({...hit, triangle: -5}), "IndexOutOfRange", /triangle/],
+    [() => world.addSpring({...hit, weights: [5, 5, 5]}), "InvalidOption", /./],
+    [() => world.addSpring(hit, {stiffness: -1}), "InvalidOption", /./],
+    [() => other.world.addSpring(hit), "NotInWorld", /./],
+    [() => world.raycast([0, 0, 0]), "InvalidArgument", /end/],
+    [() => world.restore("snapshot"), "InvalidArgument", /snapshot/],
+    [() => body.applyRadialImpulse([0, 0, 0], -1, 1), "InvalidOption", /./],
+  ];
+  for (const [call, code, words] of refused) assert.throws(call, failure(code, words), call.toString());
+  assert.equal(world.hash, before);
+  assert.equal(world.bodies.length, 1);
+  assert.equal(world.rigidBodies.length, 1);
+});
