@@ -22,10 +22,9 @@ function numbersOf(value, name, columns = 1) {
   return value;
 }
 
-/** As many numbers as `fallback` has, as an array. */
-function vectorOf(value, name, fallback) {
-  if (value === undefined) return fallback;
-  if (numbersOf(value, name).length !== fallback.length) throw invalid(`${name}: must be ${fallback.length} numbers`);
+/** So many numbers, as an array. */
+function vectorOf(value, name, length = 3) {
+  if (numbersOf(value, name).length !== length) throw invalid(`${name}: must be ${length} numbers`);
   return Array.from(value, number => numberOf(number, name));
 }
 
@@ -51,7 +50,7 @@ function optionsOf(given, known) {
     if (value === undefined) {
       options[name] = fallback;
     } else if (Array.isArray(fallback)) {
-      options[name] = fallback.length > 0 ? vectorOf(value, name, fallback) : numbersOf(value, name);
+      options[name] = fallback.length > 0 ? vectorOf(value, name, fallback.length) : numbersOf(value, name);
     } else if (typeof fallback === "number") {
       options[name] = numberOf(value, name);
     } else if (fallback !== undefined && typeof value !== typeof fallback) {

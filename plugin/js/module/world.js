@@ -24,7 +24,7 @@ class World extends Thing {
     return Float64Array.from(this.core.gravity(own(this)));
   }
   set gravity(gravity) {
-    this.core.setGravity(own(this), vectorOf(gravity, "gravity", [0, 0, 0]));
+    this.core.setGravity(own(this), vectorOf(gravity, "gravity"));
   }
   step(dt = 1 / 60, substeps = 4) {
     const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
@@ -44,7 +44,7 @@ class World extends Thing {
     return this.keepRigid(this.core.addPlane(own(this), normal, offset, friction));
   }
   addBox(halfExtents, options) {
-    const sizes = vectorOf(halfExtents, "halfExtents", [0, 0, 0]);
+    const sizes = vectorOf(halfExtents, "halfExtents");
     return this.keepRigid(this.core.addBox(own(this), sizes, optionsOf(options, kRigidOptions)));
   }
   addSphere(radius, options) {
@@ -88,7 +88,7 @@ class World extends Thing {
   }
 
   raycast(start, end) {
-    const hit = this.core.raycast(own(this), vectorOf(start, "start", [0, 0, 0]), vectorOf(end, "end", [0, 0, 0]));
+    const hit = this.core.raycast(own(this), vectorOf(start, "start"), vectorOf(end, "end"));
     return hit.body < 0 ? null : {...hit, body: this.hidden.bodies[hit.body]};
   }
   addSpring(hit, options) {
@@ -98,7 +98,7 @@ class World extends Thing {
     return this.keep("springs", new Spring(this.hidden.instance, handle, this, {body: hit.body}));
   }
   applyImpulse(hit, impulse) {
-    this.core.applyImpulse(this.bodyOf(hit), hit.triangle, hit.weights, vectorOf(impulse, "impulse", [0, 0, 0]));
+    this.core.applyImpulse(this.bodyOf(hit), hit.triangle, hit.weights, vectorOf(impulse, "impulse"));
   }
 
   get snapshotSize() {
@@ -139,7 +139,7 @@ class World extends Thing {
     const body = handleOf(hit.body, Body, "hit.body");
     if (hit.body.hidden.world !== this) throw new TetskinError("NotInWorld", "hit: its body is in another world");
     wholeNumberOf(hit.triangle, "hit.triangle");
-    vectorOf(hit.weights, "hit.weights", [0, 0, 0]);
+    vectorOf(hit.weights, "hit.weights");
     return body;
   }
 }
@@ -165,7 +165,7 @@ class Spring extends Member {
     return this.hidden.body;
   }
   setTarget(target) {
-    this.core.setTarget(own(this), vectorOf(target, "target", [0, 0, 0]));
+    this.core.setTarget(own(this), vectorOf(target, "target"));
   }
   setStiffness(stiffness) {
     this.core.setStiffness(own(this), numberOf(stiffness, "stiffness"));
@@ -193,25 +193,25 @@ class RigidBody extends Member {
     return Float64Array.from(this.core.rigidPosition(own(this)));
   }
   set position(at) {
-    this.core.setRigidPosition(own(this), vectorOf(at, "position", [0, 0, 0]));
+    this.core.setRigidPosition(own(this), vectorOf(at, "position"));
   }
   get rotation() {
     return Float64Array.from(this.core.rigidRotation(own(this)));
   }
   set rotation(quaternion) {
-    this.core.setRigidRotation(own(this), vectorOf(quaternion, "rotation", [0, 0, 0, 1]));
+    this.core.setRigidRotation(own(this), vectorOf(quaternion, "rotation", 4));
   }
   get velocity() {
     return Float64Array.from(this.core.rigidVelocity(own(this)));
   }
   set velocity(velocity) {
-    this.core.setRigidVelocity(own(this), vectorOf(velocity, "velocity", [0, 0, 0]));
+    this.core.setRigidVelocity(own(this), vectorOf(velocity, "velocity"));
   }
   get angularVelocity() {
     return Float64Array.from(this.core.rigidAngularVelocity(own(this)));
   }
   set angularVelocity(velocity) {
-    this.core.setRigidAngularVelocity(own(this), vectorOf(velocity, "angularVelocity", [0, 0, 0]));
+    this.core.setRigidAngularVelocity(own(this), vectorOf(velocity, "angularVelocity"));
   }
   get friction() {
     return this.core.rigidFriction(own(this));
@@ -226,9 +226,9 @@ class RigidBody extends Member {
     return this.core.rigidKinematic(own(this));
   }
   applyImpulse(impulse, at) {
-    const push = vectorOf(impulse, "impulse", [0, 0, 0]);
+    const push = vectorOf(impulse, "impulse");
     const centre = this.core.rigidPosition(own(this));
-    this.core.applyRigidImpulse(own(this), push, vectorOf(at, "at", centre).map((x, k) => x - centre[k]));
+    this.core.applyRigidImpulse(own(this), push, vectorOf(at ?? centre, "at").map((x, k) => x - centre[k]));
   }
 }
 
@@ -311,7 +311,7 @@ class Body extends Member {
     if (gravity === null) {
       this.core.followWorldGravity(own(this));
     } else {
-      this.core.setBodyGravity(own(this), vectorOf(gravity, "gravity", [0, 0, 0]));
+      this.core.setBodyGravity(own(this), vectorOf(gravity, "gravity"));
     }
   }
   setPinned(nodes, pinned = true) {
@@ -328,12 +328,11 @@ class Body extends Member {
       this.core.setPinnedPositions(own(this), indices(nodes), doubles(positions));
     });
   }
-  transform(position, rotation) {
-    this.core.transform(own(this), vectorOf(position, "position", [0, 0, 0]),
-      vectorOf(rotation, "rotation", [0, 0, 0, 1]));
+  transform(position, rotation = [0, 0, 0, 1]) {
+    this.core.transform(own(this), vectorOf(position, "position"), vectorOf(rotation, "rotation", 4));
   }
   applyRadialImpulse(centre, radius, strength) {
-    return this.core.applyRadialImpulse(own(this), vectorOf(centre, "centre", [0, 0, 0]), numberOf(radius, "radius"),
+    return this.core.applyRadialImpulse(own(this), vectorOf(centre, "centre"), numberOf(radius, "radius"),
       numberOf(strength, "strength"));
   }
 }
