@@ -6,6 +6,8 @@
 library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libtinygltf-dev)
 drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
 demo_packages=(libbenchmark-dev python3-matplotlib)
+# What the page needs that is run in browsers; it needs none of the libraries, but their headers.
+live_packages=(emscripten nodejs cmake ninja-build libeigen3-dev libtinygltf-dev nlohmann-json3-dev libjs-three python3)
 test_packages=(libgtest-dev)
 check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen libegl-dev libgl1-mesa-dri
   qemu-user-static python3-venv python3-dev debootstrap)

@@ -421,7 +421,8 @@ class Live {
     const {innerWidth: width, innerHeight: height} = window;
     const top = document.querySelector('header').getBoundingClientRect().bottom;
     const footer = document.querySelector('footer').getBoundingClientRect();
-    if (this.stage) this.stage.resize(width, height, top, height < 520 ? 0 : height - footer.top);
+    const panel = element('panel').getBoundingClientRect(), beside = panel.width > 0 && panel.width < 0.5 * width;
+    if (this.stage) this.stage.resize(width, height, top, height < 520 ? 0 : height - footer.top, beside ? width - panel.left : 0);
     this.changed = true;
   }
 

@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Joins the page from its parts:
-//   node make_page.mjs OUTPUT MODULE SERPENT THREE ORBIT_CONTROLS LICENCES...
-// MODULE: the ES module of plugin/js; SERPENT: what serpent.cpp writes; LICENCES: texts, which the page shows.
-import {readFileSync, writeFileSync} from 'node:fs';
+//   node make_page.mjs OUTPUT MODULE SERPENT THREE ORBIT_CONTROLS PACKAGE
+// MODULE: the ES module of plugin/js; SERPENT: what serpent.cpp writes; PACKAGE: the folder with its licences, which the
+// page shows.
+import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {gzipSync} from 'node:zlib';
@@ -75,15 +76,22 @@ function filled(template, words) {
   return result + rest;
 }
 
-const [output, module, serpent, three, orbitControls, ...licences] = process.argv.slice(2);
-if (licences.length === 0) {
-  console.error('usage: node make_page.mjs OUTPUT MODULE SERPENT THREE ORBIT_CONTROLS LICENCES...');
+/** tetskin's licence, and those of all that its module has inside, each under its name. */
+function licencesIn(folder) {
+  const names = readdirSync(join(folder, 'licences')).sort();
+  const others = names.map(name => `${name.replace(/\.txt$/, '')}\n\n${text(join(folder, 'licences'), name)}`);
+  return [text(folder, 'LICENSE'), ...others];
+}
+
+const [output, module, serpent, three, orbitControls, folder] = process.argv.slice(2);
+if (!folder) {
+  console.error('usage: node make_page.mjs OUTPUT MODULE SERPENT THREE ORBIT_CONTROLS PACKAGE');
   process.exit(2);
 }
 const notice = text(VIEW, 'three_notice.txt');
 const page = filled(text(HERE, 'live.html'), {
   '@STYLE@': text(VIEW, 'view.css') + text(HERE, 'live.css'),
-  '@LICENCES@': asText([...licences.map(path => readFileSync(path, 'utf8')), notice].join('\n\n')),
+  '@LICENCES@': asText([...licencesIn(folder), notice].join('\n\n')),
   '@NOTICE@': notice,
   '@MODULE@': escaped(plainScript(readFileSync(module, 'utf8'))),
   '@WORKER@': escaped(joined(WORKER)),

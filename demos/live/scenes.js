@@ -68,19 +68,21 @@ function addHeap(builder) {
 function addPit(builder) {
   addFloor(builder);
   addWalls(builder, 1.06, 0.62);
-  builder.addBody('mat', builder.tets(1200), {position: [0, 0.205, 0], mass: 20, relativeStiffness: builder.stiffness * 2});
+  builder.addBody('mat', builder.tets(1000), {
+    position: [0, 0.205, 0], mass: 20, relativeStiffness: builder.stiffness / 2, pinned: p => p[1] < -0.19,
+  });
   const random = scattered(3), next = () => random.next().value;
   builder.addSphere(0.26, {mass: 8, position: [0.25, 0.85, 0.1], friction: 0.6}, 'heavy_ball');
-  for (let k = 0; k < 32; ++k) {
-    const [i, j, layer] = [k % 4, Math.floor(k / 4) % 4, Math.floor(k / 16)];
-    const position = [0.45 * (i - 1.5) + 0.05 * next(), 1.5 + 0.4 * layer, 0.45 * (j - 1.5) + 0.05 * next()];
+  for (let k = 0; k < 24; ++k) {
+    const [i, j, layer] = [k % 4, Math.floor(k / 4) % 3, Math.floor(k / 12)];
+    const position = [0.45 * (i - 1.5) + 0.05 * next(), 1.5 + 0.4 * layer, 0.6 * (j - 1) + 0.05 * next()];
     builder.addSphere(0.1, {mass: 0.4, position, friction: 0.6}, 'ball');
   }
 }
 
 /** Seconds at which the gripper closes, lifts, carries, lowers and opens, and begins again. */
 const GRIP = {close: 0.6, lift: 1.4, carry: 2.6, lower: 3.8, open: 5.0, end: 6.2};
-const BALL_RADIUS = 0.5, OPEN = 0.75, CLOSED = 0.47, LIFTED = 0.9, CARRIED = 0.9;
+const BALL_RADIUS = 0.5, OPEN = 0.75, CLOSED = 0.47, LIFTED = 0.7, CARRIED = 0.7;
 
 /** Where the gripper is after so many seconds: half the width between its fingers, its height, its way to the right. */
 function gripperAt(seconds) {
@@ -98,7 +100,7 @@ function addGripper(builder) {
   const at = gripperAt(0), options = {kinematic: true, friction: 1};
   const fingers = [-1, 1].map(side => builder.addBox([0.09, 0.55, 0.3],
     {...options, position: [at.across + side * (at.half + 0.09), 0.65, 0]}, 'finger'));
-  const carriage = builder.addBox([1.0, 0.07, 0.16], {...options, position: [at.across, 1.3, 0]}, 'carriage');
+  const carriage = builder.addBox([0.95, 0.07, 0.16], {...options, position: [at.across, 1.3, 0]}, 'carriage');
   builder.beforeFrame(frame => {
     const {half, up, across} = gripperAt(frame * FRAME);
     fingers.forEach((finger, k) => finger.position = [across + (k ? 1 : -1) * (half + 0.09), 0.65 + up, 0]);
@@ -110,8 +112,8 @@ function addStack(builder) {
   addFloor(builder);
   const colours = ['#3d7ea6', '#e0a030', '#588157', '#c8553d'];
   colours.forEach((colour, k) => {
-    builder.addBody('cube', Math.max(20, Math.round(builder.tets(1200) / 4)),
-      {position: [0.03 * (k % 2), 0.37 + 0.74 * k, 0.02 * (k % 3)], mass: 1, softContact: true, friction: 1}, colour);
+    builder.addBody('cushion', Math.max(20, Math.round(builder.tets(1200) / 4)),
+      {position: [0.02 * (k % 2), 0.265 + 0.525 * k, 0.01 * (k % 3)], mass: 1, softContact: true, friction: 1}, colour);
   });
 }
 
@@ -120,7 +122,7 @@ const BAR = {half: 1.6, width: 0.34, held: 0.16, turn: 2 * Math.PI, period: 8};
 function addTwist(builder) {
   const centre = [0, 1.2, 0];
   for (const side of [-1, 1]) {
-    builder.addBox([0.06, 0.42, 0.42], {position: [side * (BAR.half + 0.02), centre[1], 0]}, 'pole');
+    builder.addBox([0.06, 0.42, 0.42], {position: [side * (BAR.half + 0.08), centre[1], 0]}, 'pole');
   }
   const body = builder.addBody('bar', builder.tets(300), {
     position: centre, mass: 1, damping: 0.2, gravity: 0,
@@ -144,8 +146,8 @@ const SCENES = {
   serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
   heap: {title: 'Heap of eight', build: addHeap, tets: 1600, focus: [[-1.1, 0, -1.1], [1.1, 1.6, 1.1]]},
   pit: {title: 'Ball pit on a mat', build: addPit, tets: 1200, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
-  gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.9, 0, -0.5], [1.9, 2.2, 0.5]]},
-  stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.9, 0, -0.6], [0.9, 2.8, 0.6]]},
+  gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.75, 0, -0.5], [1.75, 2.05, 0.5]]},
+  stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
   twist: {title: 'Twisted bar', build: addTwist, tets: 300, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
 };
 
@@ -154,7 +156,8 @@ const SHAPES = {
   ring: () => ringMesh(0.3, 0.09, 0.16, 96, 40),
   ball: () => ballMesh(0.33, 28),
   cube: () => roundedBoxMesh([0.36, 0.36, 0.36], 0.1, 24),
+  cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 24),
   soft_ball: () => ballMesh(BALL_RADIUS, 40),
-  mat: () => matMesh([1, 0.2, 1], 40, 0.25),
+  mat: () => matMesh([1, 0.2, 1], 32, 0.25),
   bar: () => barMesh(BAR.half, BAR.width, 120, 96),
 };

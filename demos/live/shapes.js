@@ -99,9 +99,9 @@ function barMesh(halfLength, halfWidth, rings, columns) {
   return {positions: Float64Array.from(positions), triangles: Int32Array.from(triangles)};
 }
 
-/** A flat box, of which the surface has chequers. */
+/** A flat box, of which the surface has chequers: two groups, each with vertices of its own where they meet. */
 function matMesh(half, steps, chequer) {
-  const mesh = gridCube(steps, point => point.map((x, k) => x * half[k])), {positions, triangles} = mesh;
+  const {positions, triangles} = gridCube(steps, point => point.map((x, k) => x * half[k])), count = positions.length / 3;
   const light = [], dark = [];
   for (let t = 0; t < triangles.length; t += 3) {
     const square = [0, 2].map(k => {
@@ -111,7 +111,8 @@ function matMesh(half, steps, chequer) {
     ((square[0] + square[1]) % 2 ? dark : light).push(...triangles.subarray(t, t + 3));
   }
   return {
-    positions, triangles: Int32Array.from([...light, ...dark]),
+    positions: Float64Array.from([...positions, ...positions]),
+    triangles: Int32Array.from([...light, ...dark.map(v => v + count)]),
     groups: [{first: 0, count: light.length / 3, material: 'mat'},
              {first: light.length / 3, count: dark.length / 3, material: 'mat_chequer'}],
   };

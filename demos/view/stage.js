@@ -283,7 +283,7 @@ class Stage {
     this.centre = this.focus.getCenter(new THREE.Vector3());
     this.radius = 0.5 * this.focus.getSize(new THREE.Vector3()).length();
     this.lastMoment = data.moments - 1;
-    this.freeHeight = 1;  // as a share
+    this.freeWidth = this.freeHeight = 1;  // as shares
     const materials = new Materials(data.materials);
     this.bodies = data.bodies.map(body => new Body(body, data.models[body.model], materials));
     this.props = data.props.map(prop => new Prop(prop, materials));
@@ -398,17 +398,18 @@ class Stage {
       }
       return {middle: (most + least) / 2, away: (most - least) / (2 * slope)};
     };
-    const across = fit(right, high * this.camera.aspect), along = fit(up, high * this.freeHeight);
+    const across = fit(right, high * this.freeWidth * this.camera.aspect), along = fit(up, high * this.freeHeight);
     return [across.middle, along.middle, Math.max(across.away, along.away)];
   }
 
-  /** top, bottom: pixels that are covered there. */
-  resize(width, height, top, bottom) {
+  /** top, bottom, right: pixels that are covered there. */
+  resize(width, height, top, bottom, right = 0) {
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.freeHeight = Math.max(0.3, (height - top - bottom) / height);
-    this.camera.setViewOffset(width, height, 0, Math.round((bottom - top) / 2), width, height);
+    this.freeWidth = Math.max(0.3, (width - right) / width);
+    this.camera.setViewOffset(width, height, Math.round(right / 2), Math.round((bottom - top) / 2), width, height);
     if (this.untouched) this.resetView();
   }
 

@@ -276,6 +276,8 @@ export interface BodyOptions {
   selfContact?: boolean;
   /** The distance kept, world length; without it, 0.2 % of the size */
   contactMargin?: number;
+  /** Triangles with longer edges get points in between that collide, too, rest length; without it, by the tets' size */
+  sampleSpacing?: number;
 }
 
 /** A world of soft and rigid bodies, which it keeps: deleting it deletes them. */

@@ -4,7 +4,7 @@
 const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
   angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
 const kBodyOptions = {position: [0, 0, 0], rotation: [0, 0, 0, 1], density: 100, mass: NaN, youngsModulus: NaN,
-  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, contactMargin: NaN,
+  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, contactMargin: NaN, sampleSpacing: NaN,
   interpolation: "linear", normals: "none", visible: true, surfaceContact: true, softContact: false,
   selfContact: false, pinned: []};
 const kStages = ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces", "total"];

@@ -10,7 +10,7 @@ struct SoftOptions {
   Vec3 position{};
   Quaternion rotation{0, 0, 0, 1};
   double density = 0, mass = 0, youngsModulus = 0, relativeStiffness = 0, poissonRatio = 0, stiffnessDamping = 0,
-         friction = 0, contactMargin = 0;
+         friction = 0, contactMargin = 0, sampleSpacing = 0;
   std::string interpolation, normals;
   bool visible = true, surfaceContact = true, softContact = false, selfContact = false;
 };
@@ -31,6 +31,7 @@ BodyOptions optionsOf(const SoftOptions& soft) {
   options.softContact = soft.softContact;
   options.selfContact = soft.selfContact;
   options.contactMargin = given(soft.contactMargin);
+  options.sampleSpacing = given(soft.sampleSpacing);
   return options;
 }
 
@@ -223,6 +224,7 @@ EMSCRIPTEN_BINDINGS(bodies) {
       .field("stiffnessDamping", &SoftOptions::stiffnessDamping)
       .field("friction", &SoftOptions::friction)
       .field("contactMargin", &SoftOptions::contactMargin)
+      .field("sampleSpacing", &SoftOptions::sampleSpacing)
       .field("interpolation", &SoftOptions::interpolation)
       .field("normals", &SoftOptions::normals)
       .field("visible", &SoftOptions::visible)
