@@ -53,14 +53,14 @@ const HEAP_COLOURS = ['#c8553d', '#3d7ea6', '#e0a030', '#588157', '#8e5572', '#d
 
 function addHeap(builder) {
   addFloor(builder);
-  addWalls(builder, 1.0, 0.8);
+  addWalls(builder, 1.1, 0.8);
   const random = scattered(7), next = () => random.next().value;
   const kinds = ['ring', 'ball', 'ring', 'cube', 'ball', 'ring', 'cube', 'ball'];
   kinds.forEach((kind, k) => {
-    const layer = Math.floor(k / 4), corner = k % 4, away = 0.48;
+    const layer = Math.floor(k / 4), corner = k % 4, away = 0.56;
     const position = [(corner % 2 ? away : -away) + 0.06 * next(), 0.55 + 0.95 * layer, (corner < 2 ? away : -away) + 0.06 * next()];
     const rotation = quaternion([next(), next(), next() + 0.01], 3 * next());
-    builder.addBody(kind, Math.max(20, Math.round(builder.tets(1600) / 8)),
+    builder.addBody(kind, Math.max(20, Math.round(builder.tets(1000) / 8)),
       {position, rotation, mass: 1, softContact: true}, HEAP_COLOURS[k]);
   });
 }
@@ -68,11 +68,12 @@ function addHeap(builder) {
 function addPit(builder) {
   addFloor(builder);
   addWalls(builder, 1.06, 0.62);
-  builder.addBody('mat', builder.tets(1000), {
-    position: [0, 0.205, 0], mass: 20, relativeStiffness: builder.stiffness / 2, pinned: p => p[1] < -0.19,
+  builder.addBody('mat', builder.tets(800), {
+    position: [0, 0.205, 0], mass: 20, sampleSpacing: 0.12,
+    relativeStiffness: builder.stiffness / 3, pinned: p => p[1] < -0.19,
   });
   const random = scattered(3), next = () => random.next().value;
-  builder.addSphere(0.26, {mass: 8, position: [0.25, 0.85, 0.1], friction: 0.6}, 'heavy_ball');
+  builder.addSphere(0.26, {mass: 30, position: [0.25, 0.85, 0.1], friction: 0.6}, 'heavy_ball');
   for (let k = 0; k < 24; ++k) {
     const [i, j, layer] = [k % 4, Math.floor(k / 4) % 3, Math.floor(k / 12)];
     const position = [0.45 * (i - 1.5) + 0.05 * next(), 1.5 + 0.4 * layer, 0.6 * (j - 1) + 0.05 * next()];
@@ -121,13 +122,12 @@ const BAR = {half: 1.6, width: 0.34, held: 0.16, turn: 2 * Math.PI, period: 8};
 
 function addTwist(builder) {
   const centre = [0, 1.2, 0];
-  for (const side of [-1, 1]) {
-    builder.addBox([0.06, 0.42, 0.42], {position: [side * (BAR.half + 0.08), centre[1], 0]}, 'pole');
-  }
-  const body = builder.addBody('bar', builder.tets(300), {
+  const [, plate] = [-1, 1].map(side => builder.addBox([0.06, 0.42, 0.42],
+    {kinematic: true, position: [side * (BAR.half + 0.08), centre[1], 0]}, 'pole'));
+  const body = builder.addBody('bar', builder.tets(600), {
     position: centre, mass: 1, damping: 0.2, gravity: 0,
     pinned: p => Math.abs(p[0]) > BAR.half - BAR.held,
-  });
+  }, '#3f6fae');
   const rest = builder.restNodes(body), turned = [...builder.pinnedOf(body)].filter(n => rest[3 * n] > 0);
   builder.beforeFrame(frame => {
     const t = frame * FRAME % BAR.period, half = BAR.period / 2;
@@ -138,26 +138,27 @@ function addTwist(builder) {
       positions.push(centre[0] + x, centre[1] + c * y - s * z, centre[2] + s * y + c * z);
     }
     body.setPinnedPositions(turned, positions);
+    plate.rotation = quaternion([1, 0, 0], angle);
   });
 }
 
 /** In the order of the page's row. focus: the box that the first view fits. */
 const SCENES = {
   serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
-  heap: {title: 'Heap of eight', build: addHeap, tets: 1600, focus: [[-1.1, 0, -1.1], [1.1, 1.6, 1.1]]},
-  pit: {title: 'Ball pit on a mat', build: addPit, tets: 1200, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
+  heap: {title: 'Heap of eight', build: addHeap, tets: 1000, focus: [[-1.2, 0, -1.2], [1.2, 1.6, 1.2]]},
+  pit: {title: 'Ball pit on a mat', build: addPit, tets: 800, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
   gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.75, 0, -0.5], [1.75, 2.05, 0.5]]},
   stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
-  twist: {title: 'Twisted bar', build: addTwist, tets: 300, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
+  twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
 };
 
 /** The meshes of scenes by name; the serpent is the page's own. */
 const SHAPES = {
-  ring: () => ringMesh(0.3, 0.09, 0.16, 96, 40),
-  ball: () => ballMesh(0.33, 28),
-  cube: () => roundedBoxMesh([0.36, 0.36, 0.36], 0.1, 24),
-  cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 24),
+  ring: () => ringMesh(0.3, 0.09, 0.16, 72, 28),
+  ball: () => ballMesh(0.33, 20),
+  cube: () => roundedBoxMesh([0.31, 0.31, 0.31], 0.1, 18),
+  cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 18),
   soft_ball: () => ballMesh(BALL_RADIUS, 40),
-  mat: () => matMesh([1, 0.2, 1], 32, 0.25),
+  mat: () => matMesh([1, 0.2, 1], 24, 0.25),
   bar: () => barMesh(BAR.half, BAR.width, 120, 96),
 };

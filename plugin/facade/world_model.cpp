@@ -222,7 +222,10 @@ std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel
   body->cage = cage;
   body->mesh = mesh;
   Cage placed = *cage.cage;
-  for (Eigen::Vector3d& node : placed.mesh.nodes) node = placement * node;
+  // From one array into another: in place, Emscripten 3.1.6 turns the last of an odd number while it is still read.
+  const std::vector<Eigen::Vector3d>& rest = cage.cage->mesh.nodes;
+  std::transform(rest.begin(), rest.end(), placed.mesh.nodes.begin(),
+                 [&](const Eigen::Vector3d& node) -> Eigen::Vector3d { return placement * node; });
   body->body = take(DeformableBody::add(*world_, placed, options.material));
   try {
     if (mesh.mesh) bindSurface(*body, options);
