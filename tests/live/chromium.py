@@ -346,6 +346,7 @@ class Page:
 
     def javascript_memory(self):
         """Bytes of JavaScript's heaps in use after a collection, in the page and in its workers together."""
+        self.browser.listen(0.2)  # workers that have ended are told
         total = 0
         for session in (self.session, *self.workers):
             self.browser.call("HeapProfiler.collectGarbage", session)

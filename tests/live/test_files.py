@@ -85,7 +85,7 @@ class Dropped(WithBrowser):
     def test_a_large_mesh_shows_its_progress_and_can_be_cancelled(self):
         live = self.live()
         bodies = live.state()["bodies"]
-        shape = meshes.ball(240, 320)
+        shape = meshes.ball(500, 600)
         live.page.drop_files([self.stored("large.ply", meshes.ply(*shape))], 480, 300)
         live.page.until("!document.getElementById('work').hidden", 60)
         frame = live.state()["frame"]
