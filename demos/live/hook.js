@@ -20,7 +20,7 @@
 //   look({surface, cage, cut})  as the panel: cage is 'none', 'outer', 'all' or 'tets'
 //   drop(name, bytes) as if a file was dropped; resolves when it is a body, or refused with a sentence (`notice`)
 //   notice()          the sentence that is shown, or ''
-//   throwBall(x, y), push(x, y)  at pixels of the page
+//   throwBall(x, y), push(x, y)  at pixels of the page; time stops
 //   memory()          bytes: {module, snapshots, heap}; heap: of the page's scripts, where the browser tells
 //   time(frames)      milliseconds of each of so many frames in the worker, which makes them one after the other, with the
 //                     bones and the hash
@@ -104,13 +104,13 @@ window.tetskinLive = {
   },
   async drop(name, bytes) { await window.live.drop(new File([bytes], name)); },
   notice() { return element('notice').hidden ? '' : element('notice').textContent; },
-  async throwBall(x, y) {
+  async throwBall(x, y) { return this.act('ball', x, y); },
+  async push(x, y) { return this.act('push', x, y); },
+  async act(tool, x, y) {
+    await quietly(window.live);
     window.live.hands.at = [x, y];
-    await window.live.hands.act('ball');
-  },
-  async push(x, y) {
-    window.live.hands.at = [x, y];
-    await window.live.hands.act('push');
+    await window.live.hands.act(tool);
+    return this.state();
   },
   async memory() {
     const {module, snapshots} = await window.live.port.ask('memory');

@@ -202,7 +202,7 @@ class Live {
 
   /** What is seen again, though no time has passed. */
   refresh() {
-    if (!this.playing) this.ask('step', {frames: 0});
+    return this.playing ? null : this.ask('step', {frames: 0});
   }
 
   // --- Controls

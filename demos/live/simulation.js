@@ -280,10 +280,10 @@ class Simulation {
 
   // --- Hands
 
-  /** Takes hold of the surface that a ray meets; null where it meets none. */
-  pick({from, to}) {
+  /** Takes hold of the surface that the first of some rays meets; null where none meets any. */
+  pick({rays}) {
     this.letGo();
-    const hit = this.world.raycast(from, to);
+    const hit = rays.reduce((found, {from, to}) => found || this.world.raycast(from, to), null);
     if (!hit) return null;
     this.held = {hit, spring: this.world.addSpring(hit), target: [...hit.point]};
     return {point: [...hit.point], distance: hit.distance};
