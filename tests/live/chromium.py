@@ -346,21 +346,11 @@ class Page:
 
     def javascript_memory(self):
         """Bytes of JavaScript's heaps in use after a collection, in the page and in its workers together."""
+        self.browser.listen(0.2)  # workers that have ended are told
         total = 0
         for session in (self.session, *self.workers):
             self.browser.call("HeapProfiler.collectGarbage", session)
             total += self.browser.call("Runtime.getHeapUsage", session)["usedSize"]
-        return total
-
-    def wasm_memory(self):
-        """Bytes of WebAssembly's memories in the page and in its workers together."""
-        total = 0
-        for session in (self.session, *self.workers):
-            found = self.browser.call("Runtime.evaluate", session, expression="WebAssembly.Memory.prototype")["result"]
-            memories = self.browser.call("Runtime.queryObjects", session, prototypeObjectId=found["objectId"])["objects"]
-            total += self.browser.call("Runtime.callFunctionOn", session, objectId=memories["objectId"], returnByValue=True,
-                                       functionDeclaration="function() { return this.reduce("
-                                       "(sum, one) => sum + one.buffer.byteLength, 0); }")["result"]["value"]
         return total
 
     def close(self):

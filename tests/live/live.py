@@ -16,7 +16,8 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = Path(os.environ.get("TETSKIN_LIVE_PAGE", REPOSITORY / "out/live/live.html")).resolve()
 NATIVE = os.environ.get("TETSKIN_LIVE_NATIVE")
 PICTURES = REPOSITORY / "build/live/pictures"
-DESKTOP, PHONE = (1280, 800), (390, 844)
+DESKTOP, PHONE = (960, 640), (390, 844)
+USUAL = {"stiffness": 50, "damping": 0.02, "gravity": 9.81, "tets": 0, "elements": "linear", "skin": "linear"}
 
 
 class Live:
@@ -77,26 +78,41 @@ class Live:
 
 
 class WithBrowser(unittest.TestCase):
-    """Tests that share a browser. When a page is closed, its console must have been without an error."""
-    flags = ()
+    """Tests that share a browser, and the page in it: to load it takes longer than most of them. After each test, the
+    console must be without an error."""
 
     @classmethod
     def setUpClass(cls):
-        cls.browser = chromium.Chromium(cls.flags)
+        cls.browser = chromium.Chromium()
+        cls.pages = {}
 
     @classmethod
     def tearDownClass(cls):
         cls.browser.close()
 
-    def live(self, **more):
-        live = Live(self.browser, **more)
-        self.addCleanup(self.finish, live)
+    def live(self, phone=False, scene="twist", **settings):
+        """The page, as if it was just loaded, with a scene: paused, at its first frame."""
+        if phone not in self.pages:
+            self.pages[phone] = Live(self.browser, phone)
+        live = self.pages[phone]
+        live.page.call("Page.bringToFront")
+        live.page.evaluate("live.choose('hold'), live.tell(''), document.getElementById('notice').hidden = true, "
+                           "tetskinLive.look({}).then(() => 0)")
+        live.call("open", scene, {**USUAL, **settings})
+        live.page.evaluate("live.resetView()")
+        self.addCleanup(self.check_console, live)
         return live
 
-    def finish(self, live):
-        faults = list(live.page.faults)
-        errors = live.page.evaluate("tetskinLive.errors") if not faults else []
-        live.close()
+    def new_page(self, **more):
+        """A page of its own."""
+        live = Live(self.browser, **more)
+        self.addCleanup(live.close)
+        self.addCleanup(self.check_console, live)
+        return live
+
+    def check_console(self, live):
+        faults, live.page.faults = live.page.faults, []
+        errors = live.page.evaluate("tetskinLive.errors.splice(0)")
         self.assertEqual(faults, [], "in the console")
         self.assertEqual(errors, [], "in the page's own list")
 

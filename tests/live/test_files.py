@@ -29,11 +29,11 @@ class Dropped(WithBrowser):
                            "c => c.charCodeAt(0)))", patience=120)
 
     def test_each_format_becomes_a_body_that_is_simulated(self):
-        live = self.live()
-        before = live.open("serpent", tets=300)
+        live = self.live(False, "serpent", tets=300)
+        before = live.state()
         for count, (name, data) in enumerate(meshes.good(), start=1):
             with self.subTest(name):
-                live.page.drop_files([self.stored(name, data)], 640, 300)
+                live.page.drop_files([self.stored(name, data)], 480, 300)
                 live.page.until(f"tetskinLive.state().bodies === {before['bodies'] + count}", 120)
                 state = live.step(60)
                 self.assertGreater(state["triangles"], before["triangles"] + 1000 * count)
@@ -44,7 +44,6 @@ class Dropped(WithBrowser):
 
     def test_a_dropped_body_can_be_held_and_comes_back_to_the_bit(self):
         live = self.live()
-        live.open("twist")
         self.drop(live, *meshes.good()[0])
         state = live.step(0)
         self.assertEqual(state["bodies"], 2)
@@ -54,7 +53,7 @@ class Dropped(WithBrowser):
 
     def test_damaged_files_get_a_sentence_and_the_scene_goes_on(self):
         live = self.live()
-        bodies = live.open("twist")["bodies"]
+        bodies = live.state()["bodies"]
         for name, data in meshes.damaged():
             with self.subTest(name):
                 live.page.evaluate("document.getElementById('notice').hidden = true")
@@ -71,24 +70,23 @@ class Dropped(WithBrowser):
 
     def test_damaged_and_good_files_leave_no_memory_behind(self):
         live = self.live()
-        live.open("twist")
         for _ in range(2):
             for name, data in meshes.damaged()[:6]:
                 self.drop(live, name, data)
-        before = live.page.wasm_memory(), live.page.javascript_memory()
+        before = live.call("memory")["module"], live.page.javascript_memory()
         for _ in range(3):
             for name, data in meshes.damaged()[:6]:
                 self.drop(live, name, data)
-        after = live.page.wasm_memory(), live.page.javascript_memory()
+        after = live.call("memory")["module"], live.page.javascript_memory()
         self.assertEqual(after[0], before[0])
         self.assertLess(after[1] - before[1], 1e6)
         self.assertEqual(len(live.page.workers), 1, "workers that make cages have ended")
 
     def test_a_large_mesh_shows_its_progress_and_can_be_cancelled(self):
         live = self.live()
-        bodies = live.open("twist")["bodies"]
-        shape = meshes.ball(240, 320)
-        live.page.drop_files([self.stored("large.ply", meshes.ply(*shape))], 640, 300)
+        bodies = live.state()["bodies"]
+        shape = meshes.ball(500, 600)
+        live.page.drop_files([self.stored("large.ply", meshes.ply(*shape))], 480, 300)
         live.page.until("!document.getElementById('work').hidden", 60)
         frame = live.state()["frame"]
         self.assertEqual(live.step(5)["frame"], frame + 5, "the scene goes on meanwhile")
@@ -101,7 +99,6 @@ class Dropped(WithBrowser):
 
     def test_a_file_that_is_chosen_is_read_as_a_dropped_one(self):
         live = self.live()
-        live.open("twist")
         name, data = meshes.good()[0]
         path = self.stored(name, data)
         document = live.page.call("DOM.getDocument")["root"]["nodeId"]

@@ -5,7 +5,7 @@
 import math
 import unittest
 
-from live import WithBrowser
+from live import PHONE, WithBrowser
 
 CLOSE = 0.02  # of the body's size
 
@@ -17,21 +17,19 @@ def distance(a, b):
 class Dragging(WithBrowser):
     def drag_the_horn(self, phone):
         """Takes the serpent by its horn, and moves the pointer up and aside; the state, with the horn still held."""
-        live = self.live(phone=phone)
-        live.open("serpent")
+        live = self.live(phone, "serpent")
         live.step(90)  # it lies on the ramp and the dome
         live.page.frame()
         horn = live.call("horn")
         x, y = self.point_on_body(live, horn["screen"])
         live.page.press(x, y)
         live.page.until("live.hands.held !== null", 30)
-        to = (x - 60, y - 90) if phone else (x - 120, y - 160)
-        live.call("play", True)
-        live.page.move(*to, steps=15)
-        frame = live.state()["frame"]
-        live.page.until(f"tetskinLive.state().frame > {frame} + 240", 120)
-        live.call("play", False)
-        live.step(0)
+        to = (x - 60, y - 90) if phone else (x - 90, y - 120)
+        for step in range(1, 7):  # time goes on while the hand moves, and then
+            live.page.move(*(a + (b - a) * step / 6 for a, b in zip((x, y), to)), steps=2)
+            live.page.frame()
+            live.step(10)
+        live.step(240)
         live.page.frame()
         live.picture("phone_drag" if phone else "drag")
         return live, horn, (x, y), to
@@ -78,8 +76,7 @@ class Dragging(WithBrowser):
     def test_beside_the_body_the_view_turns_and_nothing_else(self):
         for phone in (False, True):
             with self.subTest(phone=phone):
-                live = self.live(phone=phone)
-                live.open("stack")
+                live = self.live(phone, "stack")
                 before = live.state()["hash"]
                 eye = live.page.evaluate("live.stage.camera.position.toArray()")
                 live.page.press(30, 300)
@@ -90,8 +87,7 @@ class Dragging(WithBrowser):
                 self.assertEqual(live.step(0)["hash"], before)
 
     def test_while_a_body_is_dragged_the_view_does_not_turn(self):
-        live = self.live()
-        live.open("stack")
+        live = self.live(False, "stack")
         x, y = live.call("onScreen", [0, 0.37, 0.3])
         live.page.press(x, y)
         live.page.until("live.hands.held !== null", 30)
@@ -102,8 +98,7 @@ class Dragging(WithBrowser):
         live.page.release()
 
     def test_a_second_finger_lets_go_and_zooms(self):
-        live = self.live(phone=True)
-        live.open("stack")
+        live = self.live(True, "stack")
         x, y = live.call("onScreen", [0, 0.37, 0.3])
         live.page.press(x, y)
         live.page.until("live.hands.held !== null", 30)
@@ -122,19 +117,17 @@ class Tools(WithBrowser):
     def test_a_push_moves_what_it_meets(self):
         for phone in (False, True):
             with self.subTest(phone=phone):
-                live = self.live(phone=phone)
-                live.open("stack")
+                live = self.live(phone, "stack")
                 still = live.step(0)
                 live.page.click_on("#tools button[data-tool=push]")
                 live.page.click(*live.call("onScreen", [0, 1.11, 0.3]))
                 live.page.until(f"tetskinLive.state().hash !== '{still['hash']}'", 20)
 
     def test_balls_are_thrown_and_the_oldest_come_back(self):
-        live = self.live()
-        live.open("stack")
+        live = self.live(False, "stack")
         live.page.click_on("#tools button[data-tool=ball]")
         for count in range(1, 15):
-            live.page.click(640, 400)
+            live.page.click(480, 300)
             live.page.until(f"tetskinLive.state().balls === {min(count, 12)}", 20)
             live.step(2)
         live.page.frame()
@@ -142,8 +135,7 @@ class Tools(WithBrowser):
         self.assertEqual(live.call("reset")["balls"], 0)
 
     def test_a_thrown_ball_hits_the_stack(self):
-        live = self.live()
-        live.open("stack")
+        live = self.live(False, "stack")
         alone = live.step(60)["hash"]
         nodes = "simulation.parts.map(({body}) => [...body.nodes])"
         before = live.page.evaluate(nodes, session=live.worker())
@@ -156,13 +148,12 @@ class Tools(WithBrowser):
         self.assertGreater(max(abs(a - b) for one, other in zip(before, after) for a, b in zip(one, other)), 0.05)
 
     def test_comes_back_with_balls_in_the_air(self):
-        live = self.live()
-        live.open("stack")
+        live = self.live(False, "stack")
         live.page.click_on("#tools button[data-tool=ball]")
-        live.page.click(640, 400)
+        live.page.click(480, 300)
         live.page.until("tetskinLive.state().balls === 1", 20)
         first = live.step(30)
-        live.page.click(600, 380)
+        live.page.click(450, 280)
         live.page.until("tetskinLive.state().balls === 2", 20)
         live.step(30)
         back = live.call("rewind", 60)
@@ -174,8 +165,7 @@ class Controls(WithBrowser):
     """Every control does what it says, and says what it does."""
 
     def setUp(self):
-        self.one = self.live()
-        self.one.open("serpent", tets=300)
+        self.one = self.live(False, "serpent", tets=300)
 
     def said(self, identifier):
         return self.one.text(f"#{identifier} + output")
@@ -322,7 +312,7 @@ class Controls(WithBrowser):
 
 class OnAPhone(WithBrowser):
     def test_everything_fits_the_screen(self):
-        live = self.live(phone=True)
+        live = self.live(True)
         page = live.page
         self.assertFalse(page.evaluate("document.documentElement.scrollWidth > innerWidth"))
         for selector in ("#play", "#step", "#back", "#restart", "#settings", "#tools", "#slider"):
@@ -337,7 +327,8 @@ class OnAPhone(WithBrowser):
         self.assertFalse(page.evaluate("document.documentElement.scrollWidth > innerWidth"))
 
     def test_turned_it_fits_too(self):
-        live = self.live(phone=True)
+        live = self.live(True)
+        self.addCleanup(live.page.resize, *PHONE, phone=True)
         live.page.resize(844, 390, phone=True)
         live.page.frame()
         live.step(1)

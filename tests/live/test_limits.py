@@ -47,7 +47,7 @@ class LittleMemory(unittest.TestCase):
         with chromium.Chromium() as browser:
             live = Live(browser)
             live.open("twist")
-            needed = live.page.wasm_memory()
+            needed = live.call("memory")["module"]
         pages = int(1.3 * needed / 65536)
         with chromium.Chromium([f"--js-flags=--wasm-max-mem-pages={pages}"]) as browser:
             live = Live(browser, address=PAGE.as_uri() + "#twist")

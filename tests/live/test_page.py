@@ -45,8 +45,8 @@ class OneScene(WithBrowser):
     scene = "serpent"
 
     def test_runs_300_frames_and_is_seen(self):
-        live = self.live()
-        at_start = live.open(self.scene)
+        live = self.live(scene=self.scene)
+        at_start = live.state()
         self.assertEqual((at_start["scene"], at_start["frame"], at_start["playing"]), (self.scene, 0, False))
         self.assertGreater(at_start["tets"], 0)
         after = live.step(300)
@@ -57,16 +57,15 @@ class OneScene(WithBrowser):
         self.assertGreater(len(seen), 40, "shaded bodies have many colours")
 
     def test_goes_on_by_itself_and_stops(self):
-        live = self.live()
-        live.open(self.scene)
+        live = self.live(scene=self.scene)
         live.play_until("state.frame > 20")
         frame = live.state()["frame"]
         self.browser.listen(0.3)
         self.assertEqual(live.state()["frame"], frame)
 
     def test_comes_back_to_the_bit(self):
-        live = self.live()
-        start = live.open(self.scene)
+        live = self.live(scene=self.scene)
+        start = live.state()
         hashes = {start["frame"]: start["hash"]}
         for _ in range(9):
             state = live.step(15)
@@ -81,17 +80,14 @@ class OneScene(WithBrowser):
         self.assertEqual(live.step(60)["hash"], hashes[60])
 
     def test_the_same_run_in_another_page_has_the_same_bits(self):
-        ends = []
-        for _ in range(2):
-            live = self.live()
-            live.open(self.scene)
-            ends.append(live.step(60)["hash"])
-        self.assertEqual(*ends)
+        first = self.live(scene=self.scene).step(60)["hash"]
+        other = self.new_page()
+        other.open(self.scene)
+        self.assertEqual(other.step(60)["hash"], first)
 
     @unittest.skipUnless(NATIVE, "no live_native: built with the tests of a folder that is configured")
     def test_nodes_after_120_frames_are_those_of_a_native_run(self):
-        live = self.live()
-        live.open("serpent")
+        live = self.live(scene="serpent")
         live.step(120)
         self.assertEqual(hash_of(nodes_of(live)), native_hash(live, "serpent", 120))
 
@@ -128,7 +124,7 @@ class OtherScenes(WithBrowser):
 
     def test_each_is_chosen_by_its_button_on_a_phone_too(self):
         for phone in (False, True):
-            live = self.live(phone=phone)
+            live = self.live(phone)
             for scene in reversed(SCENES):
                 with self.subTest(scene, phone=phone):
                     live.page.click_on(f"#scenes button[data-scene={scene}]")
@@ -139,7 +135,7 @@ class OtherScenes(WithBrowser):
                         live.picture(f"phone_{scene}")
 
     def test_a_scene_is_opened_by_its_name_in_the_address(self):
-        live = self.live(address=PAGE.as_uri() + "#twist")
+        live = self.new_page(address=PAGE.as_uri() + "#twist")
         self.assertEqual(live.state()["scene"], "twist")
 
 
@@ -150,10 +146,10 @@ class Memory(WithBrowser):
             with self.subTest(scene):
                 live.open(scene)
                 live.step(900)  # ten seconds of snapshots, and what grows at first
-                before = live.page.wasm_memory(), live.page.javascript_memory()
+                before = live.call("memory")["module"], live.page.javascript_memory()
                 for _ in range(30):
                     live.step(100)
-                after = live.page.wasm_memory(), live.page.javascript_memory()
+                after = live.call("memory")["module"], live.page.javascript_memory()
                 self.assertEqual(after[0], before[0], "WebAssembly's memory")
                 self.assertLess(after[1] - before[1], 1.5 * MEGABYTE, "heaps of JavaScript")
 
@@ -167,17 +163,17 @@ class Memory(WithBrowser):
 
         for _ in range(2):
             round_trip()
-        before = live.page.wasm_memory(), live.page.javascript_memory()
+        before = live.call("memory")["module"], live.page.javascript_memory()
         for _ in range(4):
             round_trip()
-        after = live.page.wasm_memory(), live.page.javascript_memory()
+        after = live.call("memory")["module"], live.page.javascript_memory()
         self.assertLess(after[0] - before[0], 4 * MEGABYTE)
         self.assertLess(after[1] - before[1], 4 * MEGABYTE)
 
 
 class Served(WithBrowser):
     def test_asks_for_nothing_but_itself_from_a_file(self):
-        live = self.live()
+        live = self.new_page()
         live.step(10)
         own = [one for one in live.page.requests if not one.startswith(("blob:", "data:"))]
         self.assertEqual(own, [PAGE.as_uri()])
@@ -185,7 +181,7 @@ class Served(WithBrowser):
     def test_asks_for_nothing_but_itself_by_http(self):
         with Server(PAGE.parent) as server:
             address = server.address(PAGE.name)
-            live = self.live(address=address)
+            live = self.new_page(address=address)
             live.step(10)
             own = [one for one in live.page.requests if not one.startswith(("blob:", "data:"))]
             self.assertEqual(own, [address])

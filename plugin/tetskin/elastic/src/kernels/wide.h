@@ -7,6 +7,9 @@
 
 #include <tetskin/core/src/base/kernels/lanes.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
+#if defined(__wasm_simd128__)
+#include <wasm_simd128.h>
+#endif
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
@@ -70,8 +73,31 @@ TETSKIN_INLINE Lanes<S, W> absolute(const Lanes<S, W>& v) {
   return v < S(0) ? -v : v;
 }
 
+#if defined(TETSKIN_VECTOR_TYPES) && defined(TETSKIN_SHUFFLE) && defined(__wasm_simd128__)
+// WebAssembly has registers of four floats. Eight are two of them: what is written lane by lane below would be done so.
+#define TETSKIN_HALVES 1
+template <class S>
+TETSKIN_INLINE Lanes<S, 8> joined(const Lanes<S, 4>& low, const Lanes<S, 4>& high) {
+  return TETSKIN_SHUFFLE(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+template <class S>
+TETSKIN_INLINE Lanes<S, 4> lowHalf(const Lanes<S, 8>& v) {
+  return TETSKIN_SHUFFLE(v, v, 0, 1, 2, 3);
+}
+template <class S>
+TETSKIN_INLINE Lanes<S, 4> highHalf(const Lanes<S, 8>& v) {
+  return TETSKIN_SHUFFLE(v, v, 4, 5, 6, 7);
+}
+#endif
+
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> squareRoots(const Lanes<S, W>& v) {
+#ifdef TETSKIN_HALVES
+  if constexpr (W == 4 && sizeof(S) == sizeof(float)) {
+    return reinterpret_cast<Lanes<S, W>>(wasm_f32x4_sqrt(reinterpret_cast<v128_t>(v)));
+  }
+  if constexpr (W == 8) return joined<S>(squareRoots<S, 4>(lowHalf<S>(v)), squareRoots<S, 4>(highHalf<S>(v)));
+#endif
 #if defined(TETSKIN_VECTOR_TYPES)
 #if defined(__AVX2__)
   if constexpr (W == 8 && sizeof(S) == sizeof(float)) return _mm256_sqrt_ps(v);
@@ -167,6 +193,12 @@ TETSKIN_INLINE WidePoints<S, W> pointsAt(const S* points, const std::uint32_t* i
             TETSKIN_SHUFFLE(ab1, cd1, 0, 1, 4, 5), TETSKIN_SHUFFLE(ab1, cd1, 2, 3, 6, 7)};
   }
 #endif
+#ifdef TETSKIN_HALVES
+  if constexpr (W == 8) {
+    const WidePoints<S, 4> low = pointsAt<S, 4>(points, indices), high = pointsAt<S, 4>(points, indices + 4);
+    return {joined<S>(low.x, high.x), joined<S>(low.y, high.y), joined<S>(low.z, high.z), joined<S>(low.w, high.w)};
+  }
+#endif
   if constexpr (W == 1) {
     return {at(0)[0], at(0)[1], at(0)[2], at(0)[3]};
   } else {
@@ -229,6 +261,14 @@ TETSKIN_INLINE void putPoints(const WidePoints<S, W>& v, S* to, std::size_t apar
     put<S, W>(TETSKIN_SHUFFLE(a, c, 2, 3, 6, 7), to + apart);
     put<S, W>(TETSKIN_SHUFFLE(b, d, 0, 1, 4, 5), to + 2 * apart);
     put<S, W>(TETSKIN_SHUFFLE(b, d, 2, 3, 6, 7), to + 3 * apart);
+    return;
+  }
+#endif
+#ifdef TETSKIN_HALVES
+  if constexpr (W == 8) {
+    putPoints<S, 4>(WidePoints<S, 4>{lowHalf<S>(v.x), lowHalf<S>(v.y), lowHalf<S>(v.z), lowHalf<S>(v.w)}, to, apart);
+    putPoints<S, 4>(WidePoints<S, 4>{highHalf<S>(v.x), highHalf<S>(v.y), highHalf<S>(v.z), highHalf<S>(v.w)},
+                    to + 4 * apart, apart);
     return;
   }
 #endif
