@@ -285,9 +285,9 @@ class Controls(WithBrowser):
         page.move(200, 350)
         page.release()
         page.frame()
-        self.assertGreater(distance(page.evaluate(eye), first), 0.1)
+        self.assertGreater(distance(page.evaluate(eye), first), 1)
         page.click_on("#view")
-        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 1e-3", 10)
+        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 0.3", 10)  # the turn's last swing may follow
 
     def test_figures_tell_milliseconds_of_each_stage_and_the_hash(self):
         state = self.one.step(30)
