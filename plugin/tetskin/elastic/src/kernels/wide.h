@@ -7,6 +7,9 @@
 
 #include <tetskin/core/src/base/kernels/lanes.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
+#if defined(__wasm_simd128__)
+#include <wasm_simd128.h>
+#endif
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
@@ -70,27 +73,29 @@ TETSKIN_INLINE Lanes<S, W> absolute(const Lanes<S, W>& v) {
   return v < S(0) ? -v : v;
 }
 
-#if defined(TETSKIN_VECTOR_TYPES) && defined(__wasm_simd128__)
+#if defined(TETSKIN_VECTOR_TYPES) && defined(TETSKIN_SHUFFLE) && defined(__wasm_simd128__)
 // WebAssembly has registers of four floats. Eight are two of them: what is written lane by lane below would be done so.
 #define TETSKIN_HALVES 1
 template <class S>
 TETSKIN_INLINE Lanes<S, 8> joined(const Lanes<S, 4>& low, const Lanes<S, 4>& high) {
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+  return TETSKIN_SHUFFLE(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 template <class S>
 TETSKIN_INLINE Lanes<S, 4> lowHalf(const Lanes<S, 8>& v) {
-  return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+  return TETSKIN_SHUFFLE(v, v, 0, 1, 2, 3);
 }
 template <class S>
 TETSKIN_INLINE Lanes<S, 4> highHalf(const Lanes<S, 8>& v) {
-  return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+  return TETSKIN_SHUFFLE(v, v, 4, 5, 6, 7);
 }
 #endif
 
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> squareRoots(const Lanes<S, W>& v) {
 #ifdef TETSKIN_HALVES
-  if constexpr (W == 4 && sizeof(S) == sizeof(float)) return __builtin_wasm_sqrt_f32x4(v);
+  if constexpr (W == 4 && sizeof(S) == sizeof(float)) {
+    return reinterpret_cast<Lanes<S, W>>(wasm_f32x4_sqrt(reinterpret_cast<v128_t>(v)));
+  }
   if constexpr (W == 8) return joined<S>(squareRoots<S, 4>(lowHalf<S>(v)), squareRoots<S, 4>(highHalf<S>(v)));
 #endif
 #if defined(TETSKIN_VECTOR_TYPES)
