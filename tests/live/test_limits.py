@@ -21,7 +21,8 @@ class Lacking(unittest.TestCase):
             shown = live.page.evaluate("(one => one && !one.hidden && one.getBoundingClientRect().height > 10 && "
                                        "one.textContent)(document.getElementById('trouble'))")
             self.assertEqual(shown, live.trouble)
-            live.picture(f"lacking_{words[0].lower()}")
+            width, _, channels, rows = chromium.pixels(live.picture(f"lacking_{words[0].lower()}"))
+            self.assertGreater(min(rows[len(rows) // 8][channels * width // 8:][:3]), 200, "dark words on a light page")
             crashes = [fault for fault in live.page.faults if "WebGL" not in fault]
             self.assertEqual(crashes, [])
 
