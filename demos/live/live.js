@@ -443,6 +443,7 @@ function showTrouble(sentence) {
   if (!window.live || !window.live.stage) {
     for (const part of ['footer', 'aside', 'header']) document.querySelector(part).hidden = true;
     element('hint').hidden = true;
+    element('canvas').style.visibility = 'hidden';  // black, where nothing has been drawn
   }
 }
 

@@ -9,6 +9,8 @@ const KEEP_EVERY = 10, KEPT_FRAMES = 600, KEPT_BYTES = 64e6;
 const MOST_THROWN = 12, THROWN_MASS = 0.5;
 /** Longest side of a body that is dropped on the page. */
 const DROPPED_SIZE = 1.0;
+/** Up to so many triangles, it touches other soft bodies: to prepare this takes a second for 20,000, while time stands. */
+const MOST_SOFT_TRIANGLES = 40000;
 
 /** What is drawn of a mesh in its cage, and its palettes. Shared by the bodies that have both. */
 class Model {
@@ -327,7 +329,7 @@ class Simulation {
     const model = this.addModel(mesh, cage, null), {settings} = this;
     const body = this.world.addBody(cage, mesh, {
       relativeStiffness: settings.stiffness, stiffnessDamping: settings.damping, visible: false, mass: 1,
-      position: [0, 0.2 + this.top(), 0],
+      position: [0, 0.2 + this.top(), 0], softContact: mesh.triangleCount <= MOST_SOFT_TRIANGLES,
     });
     const part = {body, model, colour: '#7089a8', damping: 1, softer: 1, modulusOfOne: body.youngsModulus / settings.stiffness};
     this.parts.push(part);
