@@ -28,7 +28,7 @@ function sentenceOf(error, what) {
     return `${what} needs more memory than this page has. Try fewer tets or triangles, or close other pages.`;
   }
   if (error.code === 'Unsupported') {
-    return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 91, Firefox from ' +
+    return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 95, Firefox from ' +
       '113, Safari from 16.4 have it.';
   }
   return `${what}: ${error.message}`;
@@ -421,8 +421,10 @@ class Live {
     const {innerWidth: width, innerHeight: height} = window;
     const top = document.querySelector('header').getBoundingClientRect().bottom;
     const footer = document.querySelector('footer').getBoundingClientRect();
-    const panel = element('panel').getBoundingClientRect(), beside = panel.width > 0 && panel.width < 0.5 * width;
-    if (this.stage) this.stage.resize(width, height, top, height < 520 ? 0 : height - footer.top, beside ? width - panel.left : 0);
+    const panel = element('panel').getBoundingClientRect(), isShown = panel.width > 0;
+    const isBeside = isShown && panel.width < 0.5 * width, isBelow = isShown && !isBeside;
+    const bottom = height - (isBelow ? panel.top : footer.top), right = isBeside ? width - panel.left : 0;
+    if (this.stage) this.stage.resize(width, height, top, bottom, right);
     this.changed = true;
   }
 
