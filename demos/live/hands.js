@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What pointers do on the canvas: hold a body and drag it, push it, throw a ball at it. Beside bodies they turn the view:
-// the controls start with every pointer, and are stopped when the worker answers that a body was met.
+// What pointers do on the canvas: hold a body and drag it, push it, throw a ball at it. Beside bodies they turn the
+// view: the controls start with every pointer, and are stopped when the worker answers that a body was met.
 
 const PUSH = 1.5;             // mass times velocity, of a body's mass and sizes per second
 const THROW_SPEED = 7;        // sizes per second
@@ -53,7 +53,9 @@ class Hands {
   raysAround(stage, x, y, radii) {
     const points = [[x, y]];
     for (const radius of radii) {
-      for (let k = 0; k < 8; ++k) points.push([x + radius * Math.cos(k * Math.PI / 4), y + radius * Math.sin(k * Math.PI / 4)]);
+      for (let angle = 0; angle < 6; angle += Math.PI / 4) {
+        points.push([x + radius * Math.cos(angle), y + radius * Math.sin(angle)]);
+      }
     }
     return points.map(point => {
       const {from, to} = stage.rayThrough(...point);

@@ -3,7 +3,7 @@
 //
 // Starts the page, and offers it to tests and to the console of a browser as `tetskinLive`:
 //
-//   ready             a promise: the first scene is shown. It resolves to null, or to the sentence that is shown instead
+//   ready             a promise: the first scene is shown. Resolves to null, or to the sentence that is shown instead
 //   scenes            names
 //   state()           {scene, frame, first, hash, playing, tets, triangles, bodies, balls, held, milliseconds, times}.
 //                     first: the earliest frame that there is to go back to; times: milliseconds by stage
@@ -22,8 +22,8 @@
 //   notice()          the sentence that is shown, or ''
 //   throwBall(x, y), push(x, y)  at pixels of the page; time stops
 //   memory()          bytes: {module, snapshots, heap}; heap: of the page's scripts, where the browser tells
-//   time(frames)      milliseconds of each of so many frames in the worker, which makes them one after the other, with the
-//                     bones and the hash
+//   time(frames)      milliseconds of each of so many frames in the worker, which makes them one after the other, with
+//                     the bones and the hash
 //
 // All but `state`, `errors`, `scenes` and `notice` return promises; those of frames resolve to the state then.
 'use strict';
@@ -59,7 +59,8 @@ window.tetskinLive = {
   get errors() { return window.live ? window.live.errors : []; },
   state() {
     const {description, state, playing} = window.live, {frame, first, hash, balls, held, milliseconds, times} = state;
-    return {scene: description.name, tets: description.tets, triangles: description.triangles, frame, first, hash, playing,
+    const {name: scene, tets, triangles} = description;
+    return {scene, tets, triangles, frame, first, hash, playing,
       bodies: state.bodies.length, balls, held, milliseconds, times};
   },
   async open(name, settings = {}) {
@@ -74,7 +75,9 @@ window.tetskinLive = {
   async step(frames = 1) {
     const {live} = window;
     await quietly(live);
-    for (let left = frames; left > 0; left -= FRAMES_AT_ONCE) await live.ask('step', {frames: Math.min(left, FRAMES_AT_ONCE)});
+    for (let left = frames; left > 0; left -= FRAMES_AT_ONCE) {
+      await live.ask('step', {frames: Math.min(left, FRAMES_AT_ONCE)});
+    }
     return this.state();
   },
   async rewind(frames) {
