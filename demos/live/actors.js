@@ -77,7 +77,8 @@ class SoftActor {
     geometry.setAttribute('color', new THREE.BufferAttribute(model.colours, 3, true));
     const gloss = SHINE * 0.2;
     const material = new THREE.MeshPhongMaterial({color: colour, vertexColors: THREE.VertexColors,
-      side: THREE.DoubleSide, shadowSide: THREE.DoubleSide, specular: new THREE.Color(gloss, gloss, gloss), shininess: 30});
+      side: THREE.DoubleSide, shadowSide: THREE.DoubleSide,
+      specular: new THREE.Color(gloss, gloss, gloss), shininess: 30});
     const mesh = boneMesh(geometry, material, model.bones, model.weights, model.boneCount, true);
     mesh.customDepthMaterial = bonesOfShadow();
     for (const one of [material, mesh.customDepthMaterial]) cutByRest(one, this.cut);

@@ -363,8 +363,8 @@ class Live {
   async drop(file) {
     if (this.cages) return this.tell('Another mesh is being read.');
     if (file.size > LONGEST_FILE) {
-      const megabytes = bytes => Math.round(bytes / 1e6);
-      return this.tell(`${file.name} has ${megabytes(file.size)} MB; this page reads up to ${megabytes(LONGEST_FILE)}.`);
+      const [has, most] = [file.size, LONGEST_FILE].map(bytes => Math.round(bytes / 1e6));
+      return this.tell(`${file.name} has ${has} MB; this page reads up to ${most}.`);
     }
     const cages = this.cages = new Port(this.workerText, () => {});
     try {
@@ -466,7 +466,7 @@ function whyNot() {
   if (!context) return `This page draws with WebGL, which this browser does not offer. ${cure}`;
   const units = context.getParameter(context.MAX_VERTEX_TEXTURE_IMAGE_UNITS);
   if (!context.getExtension('OES_texture_float') || units === 0) {
-    return `This page bends surfaces by floating-point textures, which this browser\u2019s WebGL does not offer. ` + cure;
+    return `This page bends surfaces by floating-point textures, which WebGL does not offer here. ${cure}`;
   }
   const lost = context.getExtension('WEBGL_lose_context');
   if (lost) lost.loseContext();

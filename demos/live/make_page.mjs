@@ -36,9 +36,9 @@ function plainScript(module) {
   return script;
 }
 
-/** Positions as words of 16 bits in their box, by axis, each as the difference from the one before, all low bytes before
-    all high ones; then the corners of triangles as differences, signed and of 7 bits a byte. Compressed, they take a
-    third of what they would without. `unpackSerpent` in worker.js reads it. */
+/** Positions as words of 16 bits in their box, by axis, each as the difference from the one before, all low bytes
+    before all high ones; then the corners of triangles as differences, signed and of 7 bits a byte. They compress
+    better so. `unpackSerpent` in worker.js reads it. */
 function pack(json) {
   const {positions, triangles: corners, groups, materials} = JSON.parse(json);
   const vertices = positions.length / 3, triangles = corners.length / 3;

@@ -9,7 +9,7 @@ const KEEP_EVERY = 10, KEPT_FRAMES = 600, KEPT_BYTES = 64e6;
 const MOST_THROWN = 12, THROWN_MASS = 0.5;
 /** Longest side of a body that is dropped on the page. */
 const DROPPED_SIZE = 1.0;
-/** Up to so many triangles, it touches other soft bodies: preparing this takes a second for 20,000, while time stands. */
+/** Up to so many triangles, it touches other soft bodies: to prepare 20,000 takes a second, while time stands. */
 const MOST_SOFT_TRIANGLES = 40000;
 
 /** What is drawn of a mesh in its cage, and its palettes. Shared by the bodies that have both. */
