@@ -19,7 +19,7 @@ function cutByRest(material, cut) {
   };
 }
 
-/** What shadows are drawn with: like `carryNormals` of the recipe, without normals, which the shader of depths has not. */
+/** What shadows are drawn with: like `carryNormals` of the recipe, without normals, which that shader has not. */
 function bonesOfShadow() {
   const material = new THREE.MeshDepthMaterial({depthPacking: THREE.RGBADepthPacking});
   Object.assign(material, {skinning: true, defines: {GRADIENTS: ''}});
@@ -76,8 +76,9 @@ class SoftActor {
     setAttribute(geometry, 'normal', model.normals);
     geometry.setAttribute('color', new THREE.BufferAttribute(model.colours, 3, true));
     const gloss = SHINE * 0.2;
-    const material = new THREE.MeshPhongMaterial({color: colour, vertexColors: THREE.VertexColors, side: THREE.DoubleSide,
-      shadowSide: THREE.DoubleSide, specular: new THREE.Color(gloss, gloss, gloss), shininess: 30});
+    const material = new THREE.MeshPhongMaterial({color: colour, vertexColors: THREE.VertexColors,
+      side: THREE.DoubleSide, shadowSide: THREE.DoubleSide,
+      specular: new THREE.Color(gloss, gloss, gloss), shininess: 30});
     const mesh = boneMesh(geometry, material, model.bones, model.weights, model.boneCount, true);
     mesh.customDepthMaterial = bonesOfShadow();
     for (const one of [material, mesh.customDepthMaterial]) cutByRest(one, this.cut);
@@ -142,7 +143,8 @@ class SoftActor {
       high = Math.max(high, along(n));
     }
     const at = low + cut * (high - low);
-    const triangles = trianglesOfTets(model.tets, t => [0, 1, 2, 3].reduce((sum, k) => sum + along(model.tets[t + k]), 0) < 4 * at);
+    const centreOf = t => [0, 1, 2, 3].reduce((sum, k) => sum + along(model.tets[t + k]), 0) / 4;
+    const triangles = trianglesOfTets(model.tets, t => centreOf(t) < at);
     this.cut.cutAt.value = at;
     this.setIndices(this.solid, triangles);
     this.setIndices(this.edges, edgesOfTriangles(triangles));
@@ -181,7 +183,8 @@ class RigidActor {
   }
 
   show(poses, k) {
-    const position = new THREE.Vector3().fromArray(poses, 7 * k), turn = new THREE.Quaternion().fromArray(poses, 7 * k + 3);
+    const position = new THREE.Vector3().fromArray(poses, 7 * k);
+    const turn = new THREE.Quaternion().fromArray(poses, 7 * k + 3);
     this.mesh.matrix.compose(position, turn, this.scale);
     this.mesh.matrixWorldNeedsUpdate = true;
   }
@@ -217,7 +220,8 @@ class LiveStage extends Stage {
   /** scene: the worker's description; renderer: one for all scenes */
   constructor(canvas, scene, materials, renderer) {
     const [min, max] = scene.focus, focus = {min, max};
-    super(canvas, {focus, moments: 1, materials, bodies: [], models: [], props: [], obstacles: obstaclesOf(scene.rigids), renderer});
+    const obstacles = obstaclesOf(scene.rigids);
+    super(canvas, {focus, moments: 1, materials, bodies: [], models: [], props: [], obstacles, renderer});
     this.materials = new Materials(materials);
     this.models = [];
     this.soft = [];
@@ -254,7 +258,8 @@ class LiveStage extends Stage {
   /** Where a body is held. */
   makeMarker() {
     const geometry = new THREE.SphereBufferGeometry(0.012 * this.radius, 16, 12);
-    const marker = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: 0xf26522, depthTest: false, transparent: true}));
+    const material = new THREE.MeshBasicMaterial({color: 0xf26522, depthTest: false, transparent: true});
+    const marker = new THREE.Mesh(geometry, material);
     marker.renderOrder = 10;
     marker.visible = false;
     this.scene.add(marker);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What pointers do on the canvas: hold a body and drag it, push it, throw a ball at it. Beside bodies they turn the view:
-// the controls start with every pointer, and are stopped when the worker answers that a body was met.
+// What pointers do on the canvas: hold a body and drag it, push it, throw a ball at it. Beside bodies they turn the
+// view: the controls start with every pointer, and are stopped when the worker answers that a body was met.
 
 const PUSH = 1.5;             // mass times velocity, of a body's mass and sizes per second
 const THROW_SPEED = 7;        // sizes per second
+
+/** So many pixels beside a body, a mouse or a finger still takes hold of it: horns are thin. */
+const NEAR = {mouse: [4, 9], touch: [9, 18]};
 
 class Hands {
   /** app: with `stage`, `port` and `tool` */
@@ -20,18 +23,19 @@ class Hands {
     for (const what of ['pointerup', 'pointercancel']) window.addEventListener(what, event => this.up(event), true);
   }
 
-  down({pointerId, button, clientX, clientY}) {
+  down({pointerId, pointerType, button, clientX, clientY}) {
     this.pointers.add(pointerId);
     this.at = [clientX, clientY];
     if (this.pointers.size > 1) return this.letGo();  // two fingers turn and zoom
     if (button !== 0) return;
-    if (this.app.tool === 'hold') this.hold(pointerId, clientX, clientY);
+    if (this.app.tool === 'hold') this.hold(pointerId, clientX, clientY, NEAR[pointerType] || NEAR.mouse);
     else this.act(this.app.tool);
   }
 
-  async hold(pointer, x, y) {
+  /** near: radii around the pixel, on which the body is searched for if it is not there */
+  async hold(pointer, x, y, near) {
     const {stage, port} = this.app, view = this.viewOf(stage);
-    const answer = await port.ask('pick', stage.rayThrough(x, y));
+    const answer = await port.ask('pick', {rays: this.raysAround(stage, x, y, near)});
     if (!answer) return;
     if (!this.pointers.has(pointer) || this.pointers.size > 1 || stage !== this.app.stage) {
       port.ask('letGo');
@@ -44,6 +48,19 @@ class Hands {
     stage.controls.target.copy(view.target);
     stage.camera.lookAt(view.target);
     this.drag();
+  }
+
+  raysAround(stage, x, y, radii) {
+    const points = [[x, y]];
+    for (const radius of radii) {
+      for (let angle = 0; angle < 6; angle += Math.PI / 4) {
+        points.push([x + radius * Math.cos(angle), y + radius * Math.sin(angle)]);
+      }
+    }
+    return points.map(point => {
+      const {from, to} = stage.rayThrough(...point);
+      return {from, to};
+    });
   }
 
   viewOf({camera, controls}) { return {position: camera.position.clone(), target: controls.target.clone()}; }
@@ -91,6 +108,6 @@ class Hands {
       velocity[1] += 0.6;
       await port.ask('throwBall', {position: position.toArray(), velocity, radius: stage.ballRadius});
     }
-    this.app.refresh();
+    await this.app.refresh();
   }
 }

@@ -3,7 +3,7 @@
 //
 // Starts the page, and offers it to tests and to the console of a browser as `tetskinLive`:
 //
-//   ready             a promise: the first scene is shown. It resolves to null, or to the sentence that is shown instead
+//   ready             a promise: the first scene is shown. Resolves to null, or to the sentence that is shown instead
 //   scenes            names
 //   state()           {scene, frame, first, hash, playing, tets, triangles, bodies, balls, held, milliseconds, times}.
 //                     first: the earliest frame that there is to go back to; times: milliseconds by stage
@@ -20,10 +20,10 @@
 //   look({surface, cage, cut})  as the panel: cage is 'none', 'outer', 'all' or 'tets'
 //   drop(name, bytes) as if a file was dropped; resolves when it is a body, or refused with a sentence (`notice`)
 //   notice()          the sentence that is shown, or ''
-//   throwBall(x, y), push(x, y)  at pixels of the page
+//   throwBall(x, y), push(x, y)  at pixels of the page; time stops
 //   memory()          bytes: {module, snapshots, heap}; heap: of the page's scripts, where the browser tells
-//   time(frames)      milliseconds of each of so many frames in the worker, which makes them one after the other, with the
-//                     bones and the hash
+//   time(frames)      milliseconds of each of so many frames in the worker, which makes them one after the other, with
+//                     the bones and the hash
 //
 // All but `state`, `errors`, `scenes` and `notice` return promises; those of frames resolve to the state then.
 'use strict';
@@ -59,7 +59,8 @@ window.tetskinLive = {
   get errors() { return window.live ? window.live.errors : []; },
   state() {
     const {description, state, playing} = window.live, {frame, first, hash, balls, held, milliseconds, times} = state;
-    return {scene: description.name, tets: description.tets, triangles: description.triangles, frame, first, hash, playing,
+    const {name: scene, tets, triangles} = description;
+    return {scene, tets, triangles, frame, first, hash, playing,
       bodies: state.bodies.length, balls, held, milliseconds, times};
   },
   async open(name, settings = {}) {
@@ -74,7 +75,9 @@ window.tetskinLive = {
   async step(frames = 1) {
     const {live} = window;
     await quietly(live);
-    for (let left = frames; left > 0; left -= FRAMES_AT_ONCE) await live.ask('step', {frames: Math.min(left, FRAMES_AT_ONCE)});
+    for (let left = frames; left > 0; left -= FRAMES_AT_ONCE) {
+      await live.ask('step', {frames: Math.min(left, FRAMES_AT_ONCE)});
+    }
     return this.state();
   },
   async rewind(frames) {
@@ -104,13 +107,13 @@ window.tetskinLive = {
   },
   async drop(name, bytes) { await window.live.drop(new File([bytes], name)); },
   notice() { return element('notice').hidden ? '' : element('notice').textContent; },
-  async throwBall(x, y) {
+  async throwBall(x, y) { return this.act('ball', x, y); },
+  async push(x, y) { return this.act('push', x, y); },
+  async act(tool, x, y) {
+    await quietly(window.live);
     window.live.hands.at = [x, y];
-    await window.live.hands.act('ball');
-  },
-  async push(x, y) {
-    window.live.hands.at = [x, y];
-    await window.live.hands.act('push');
+    await window.live.hands.act(tool);
+    return this.state();
   },
   async memory() {
     const {module, snapshots} = await window.live.port.ask('memory');

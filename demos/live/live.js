@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The page: scenes, controls, time. What is simulated is in the worker; a picture asks for the frames that are due since
-// the last one, and draws what has come.
+// The page: scenes, controls, time. What is simulated is in the worker; a picture asks for the frames that are due
+// since the last one, and draws what has come.
 
 const element = id => document.getElementById(id);
 const withCommas = number => number.toLocaleString('en');
@@ -28,8 +28,8 @@ function sentenceOf(error, what) {
     return `${what} needs more memory than this page has. Try fewer tets or triangles, or close other pages.`;
   }
   if (error.code === 'Unsupported') {
-    return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 91, Firefox from ' +
-      '113, Safari from 16.4 have it.';
+    return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 95, ' +
+      'Firefox from 113, Safari from 16.4 have it.';
   }
   return `${what}: ${error.message}`;
 }
@@ -45,7 +45,8 @@ class Live {
     this.data = JSON.parse(element('model').textContent);
     this.workerText = element('module').textContent + '\n' + element('worker').textContent;
     this.renderer = makeRenderer(element('canvas'));
-    this.port = new Port(this.workerText, text => this.fail(`The simulation has stopped: ${text} Load the page again.`));
+    const stopped = text => this.fail(`The simulation has stopped: ${text} Load the page again.`);
+    this.port = new Port(this.workerText, stopped);
     this.hands = new Hands(element('canvas'), this);
     this.makeScenes();
     this.listen();
@@ -177,7 +178,8 @@ class Live {
     this.figuresAt = now;
     const rows = Object.entries(STAGES).map(([stage, text]) => `<tr><td>${text}<td>${mean[stage].toFixed(2)} ms`);
     const asleep = bodies.filter(body => body.asleep).length;
-    rows.push(`<tr class="sum"><td>a frame, in all<td>${mean.step.toFixed(2)} ms`, `<tr><td>frame<td>${withCommas(frame)}`,
+    rows.push(`<tr class="sum"><td>a frame, in all<td>${mean.step.toFixed(2)} ms`,
+      `<tr><td>frame<td>${withCommas(frame)}`,
       `<tr><td>bodies at rest<td>${asleep} of ${bodies.length}`);
     element('figures').innerHTML = rows.join('');
     element('hash').textContent = `state ${hash}`;
@@ -202,7 +204,7 @@ class Live {
 
   /** What is seen again, though no time has passed. */
   refresh() {
-    if (!this.playing) this.ask('step', {frames: 0});
+    return this.playing ? null : this.ask('step', {frames: 0});
   }
 
   // --- Controls
@@ -222,7 +224,9 @@ class Live {
     }
     Object.entries({tets, elements, skin}).forEach(([id, value]) => element(id).value = value);
     element('play').classList.toggle('playing', this.playing);
-    for (const button of element('tools').children) button.setAttribute('aria-checked', button.dataset.tool === this.tool);
+    for (const button of element('tools').children) {
+      button.setAttribute('aria-checked', button.dataset.tool === this.tool);
+    }
     element('cuts').hidden = element('cage').value !== 'tets';
   }
 
@@ -272,7 +276,8 @@ class Live {
     for (const list of document.querySelectorAll('select')) list.addEventListener('change', () => list.blur());
     this.showPanel(innerWidth > 720 && innerHeight > 520);
     window.addEventListener('error', ({message}) => this.errors.push(message));
-    window.addEventListener('unhandledrejection', ({reason}) => this.errors.push(String(reason && reason.message || reason)));
+    window.addEventListener('unhandledrejection',
+      ({reason}) => this.errors.push(String(reason && reason.message || reason)));
   }
 
   /** Back to a frame of the last ten seconds, as the slider is moved; one question at a time. */
@@ -336,7 +341,8 @@ class Live {
       list.dispatchEvent(new Event(list.id === 'skin' ? 'change' : 'input'));
     };
     const names = Object.keys(SCENES), actions = {
-      ' ': () => this.play(!this.playing), ArrowRight: () => this.step(), ArrowLeft: () => this.rewind(event.shiftKey ? 60 : 10),
+      ' ': () => this.play(!this.playing),
+      ArrowRight: () => this.step(), ArrowLeft: () => this.rewind(event.shiftKey ? 60 : 10),
       Backspace: () => this.rewind(REWOUND), Home: () => this.reset(), v: () => this.resetView(),
       s: () => element('surface').click(), c: () => next(element('cage')), q: () => next(element('skin')),
       h: () => this.choose('hold'), p: () => this.hands.act('push'), b: () => this.hands.act('ball'),
@@ -345,7 +351,8 @@ class Live {
     names.forEach((name, k) => actions[k + 1] = () => this.change(name));
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     const pressed = ['BUTTON', 'INPUT', 'SUMMARY'].includes(event.target.tagName);
-    if (!action || !this.stage || (pressed && (event.key === ' ' || event.key.startsWith('Arrow') || event.key === 'Home'))) return;
+    const isTheirs = pressed && (event.key === ' ' || event.key.startsWith('Arrow') || event.key === 'Home');
+    if (!action || !this.stage || isTheirs) return;
     event.preventDefault();
     action();
   }
@@ -356,7 +363,8 @@ class Live {
   async drop(file) {
     if (this.cages) return this.tell('Another mesh is being read.');
     if (file.size > LONGEST_FILE) {
-      return this.tell(`${file.name} has ${Math.round(file.size / 1e6)} MB; this page reads up to ${LONGEST_FILE / 1e6}.`);
+      const [has, most] = [file.size, LONGEST_FILE].map(bytes => Math.round(bytes / 1e6));
+      return this.tell(`${file.name} has ${has} MB; this page reads up to ${most}.`);
     }
     const cages = this.cages = new Port(this.workerText, () => {});
     try {
@@ -378,7 +386,8 @@ class Live {
   }
 
   async add({mesh, cage, triangles, tets}) {
-    const {stage} = this, {model, body, state} = await this.port.ask('add', {mesh, cage}, {transfer: [mesh.buffer, cage.buffer]});
+    const {stage} = this, transfer = [mesh.buffer, cage.buffer];
+    const {model, body, state} = await this.port.ask('add', {mesh, cage}, {transfer});
     if (stage !== this.stage) return;
     stage.models[model.number] = model;
     stage.addBody(body);
@@ -421,8 +430,10 @@ class Live {
     const {innerWidth: width, innerHeight: height} = window;
     const top = document.querySelector('header').getBoundingClientRect().bottom;
     const footer = document.querySelector('footer').getBoundingClientRect();
-    const panel = element('panel').getBoundingClientRect(), beside = panel.width > 0 && panel.width < 0.5 * width;
-    if (this.stage) this.stage.resize(width, height, top, height < 520 ? 0 : height - footer.top, beside ? width - panel.left : 0);
+    const panel = element('panel').getBoundingClientRect(), isShown = panel.width > 0;
+    const isBeside = isShown && panel.width < 0.5 * width, isBelow = isShown && !isBeside;
+    const bottom = height - (isBelow ? panel.top : footer.top), right = isBeside ? width - panel.left : 0;
+    if (this.stage) this.stage.resize(width, height, top, bottom, right);
     this.changed = true;
   }
 
@@ -443,16 +454,19 @@ function showTrouble(sentence) {
   if (!window.live || !window.live.stage) {
     for (const part of ['footer', 'aside', 'header']) document.querySelector(part).hidden = true;
     element('hint').hidden = true;
+    element('canvas').style.visibility = 'hidden';  // black, where nothing has been drawn
   }
 }
 
 /** Why the page cannot start, in a sentence; or null. */
 function whyNot() {
   const canvas = document.createElement('canvas'), context = canvas.getContext('webgl');
-  const cure = 'Open it in another browser, or turn on hardware acceleration in this one\u2019s settings and load it again.';
+  const cure = 'Open it in another browser, or turn on hardware acceleration in this one\u2019s settings and load it ' +
+    'again.';
   if (!context) return `This page draws with WebGL, which this browser does not offer. ${cure}`;
-  if (!context.getExtension('OES_texture_float') || context.getParameter(context.MAX_VERTEX_TEXTURE_IMAGE_UNITS) === 0) {
-    return `This page bends surfaces by floating-point textures, which this browser\u2019s WebGL does not offer. ${cure}`;
+  const units = context.getParameter(context.MAX_VERTEX_TEXTURE_IMAGE_UNITS);
+  if (!context.getExtension('OES_texture_float') || units === 0) {
+    return `This page bends surfaces by floating-point textures, which WebGL does not offer here. ${cure}`;
   }
   const lost = context.getExtension('WEBGL_lose_context');
   if (lost) lost.loseContext();

@@ -3,8 +3,8 @@
 //
 // Joins the page from its parts:
 //   node make_page.mjs OUTPUT MODULE SERPENT THREE ORBIT_CONTROLS PACKAGE
-// MODULE: the ES module of plugin/js; SERPENT: what serpent.cpp writes; PACKAGE: the folder with its licences, which the
-// page shows.
+// MODULE: the ES module of plugin/js; SERPENT: what serpent.cpp writes; PACKAGE: the folder with its licences, which
+// the page shows.
 import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -14,26 +14,31 @@ const HERE = dirname(fileURLToPath(import.meta.url)), VIEW = join(HERE, '../view
 const text = (folder, name) => readFileSync(join(folder, name), 'utf8');
 
 /** What the worker has beside the module, and what the page has, in their order. */
-const WORKER = [[VIEW, 'shading.js'], [HERE, 'shapes.js'], [HERE, 'scenes.js'], [HERE, 'simulation.js'], [HERE, 'worker.js']];
+const WORKER = [[VIEW, 'shading.js'], [HERE, 'shapes.js'], [HERE, 'scenes.js'], [HERE, 'simulation.js'],
+  [HERE, 'worker.js']];
 const PAGE = [[VIEW, 'shading.js'], [VIEW, 'stage.js'], [RECIPES, 'bones_three.js'], [HERE, 'shapes.js'],
-  [HERE, 'scenes.js'], [HERE, 'actors.js'], [HERE, 'port.js'], [HERE, 'hands.js'], [HERE, 'live.js'], [HERE, 'hook.js']];
+  [HERE, 'scenes.js'], [HERE, 'actors.js'], [HERE, 'port.js'], [HERE, 'hands.js'], [HERE, 'live.js'],
+  [HERE, 'hook.js']];
 
 /** Escapes what would look like the end of a script element, or the start of another one in it. */
 const escaped = script => script.replaceAll('</', '<\\/').replaceAll('<!--', '<\\!--');
 const joined = files => files.map(([folder, name]) => text(folder, name)).join('');
 const asText = html => html.replaceAll('&', '&amp;').replaceAll('<', '&lt;');
 
-/** An ES module as a plain script, whose exports are names like others: a page from a file may make no worker of a module. */
+/** An ES module as a plain script, whose exports are names like others: a page from a file may make no worker of a
+    module. */
 function plainScript(module) {
   const script = module.replace(/^export\s+default\s+\w+;?$/gm, '').replace(/^export\s*\{[^}]*\};?/gm, '')
-    .replace(/^export\s+(?=async|function|const|let|var|class)/gm, '').replaceAll('import.meta.url', 'self.location.href');
-  if (/^\s*(import|export)\b(?!\s*\()/m.test(script)) throw new Error('the module has imports, or exports of another form');
+    .replace(/^export\s+(?=async|function|const|let|var|class)/gm, '')
+    .replaceAll('import.meta.url', 'self.location.href');
+  const isModule = /^\s*(import|export)\b(?!\s*\()/m.test(script);
+  if (isModule) throw new Error('the module has imports, or exports of another form');
   return script;
 }
 
-/** Positions as words of 16 bits in their box, by axis, each as the difference from the one before, all low bytes before
-    all high ones; then the corners of triangles as differences, signed and of 7 bits a byte. Compressed, they take a
-    third of what they would without. `unpackSerpent` in worker.js reads it. */
+/** Positions as words of 16 bits in their box, by axis, each as the difference from the one before, all low bytes
+    before all high ones; then the corners of triangles as differences, signed and of 7 bits a byte. They compress
+    better so. `unpackSerpent` in worker.js reads it. */
 function pack(json) {
   const {positions, triangles: corners, groups, materials} = JSON.parse(json);
   const vertices = positions.length / 3, triangles = corners.length / 3;
@@ -101,4 +106,5 @@ const page = filled(text(HERE, 'live.html'), {
   '@SCRIPTS@': escaped(joined(PAGE)),
 });
 writeFileSync(output, page);
-console.log(`${output}: ${(page.length / 1e6).toFixed(1)} MB, ${(gzipSync(page, {level: 9}).length / 1e6).toFixed(2)} compressed`);
+const megabytes = bytes => (bytes / 1e6).toFixed(2);
+console.log(`${output}: ${megabytes(page.length)} MB, ${megabytes(gzipSync(page, {level: 9}).length)} compressed`);

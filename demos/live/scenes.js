@@ -58,7 +58,8 @@ function addHeap(builder) {
   const kinds = ['ring', 'ball', 'ring', 'cube', 'ball', 'ring', 'cube', 'ball'];
   kinds.forEach((kind, k) => {
     const layer = Math.floor(k / 4), corner = k % 4, away = 0.56;
-    const position = [(corner % 2 ? away : -away) + 0.06 * next(), 0.55 + 0.95 * layer, (corner < 2 ? away : -away) + 0.06 * next()];
+    const x = (corner % 2 ? away : -away) + 0.06 * next(), z = (corner < 2 ? away : -away) + 0.06 * next();
+    const position = [x, 0.55 + 0.95 * layer, z];
     const rotation = quaternion([next(), next(), next() + 0.01], 3 * next());
     builder.addBody(kind, Math.max(20, Math.round(builder.tets(1000) / 8)),
       {position, rotation, mass: 1, softContact: true}, HEAP_COLOURS[k]);

@@ -78,7 +78,7 @@ function ringMesh(radius, thin, thick, around, across) {
 function barMesh(halfLength, halfWidth, rings, columns) {
   const positions = [-halfLength, 0, 0], triangles = [], RIDGES = 16;
   for (let ring = 1; ring < rings; ++ring) {
-    const t = ring / rings, x = halfLength * (2 * t - 1), end = Math.min(1, (halfLength - Math.abs(x)) / (0.6 * halfWidth));
+    const x = halfLength * (2 * ring / rings - 1), end = Math.min(1, (halfLength - Math.abs(x)) / (0.6 * halfWidth));
     const cap = Math.sqrt(Math.max(0.02, 1 - (1 - end) ** 2));
     for (let column = 0; column < columns; ++column) {
       const angle = 2 * Math.PI * column / columns, c = Math.cos(angle), s = Math.sin(angle);
@@ -101,7 +101,8 @@ function barMesh(halfLength, halfWidth, rings, columns) {
 
 /** A flat box, of which the surface has chequers: two groups, each with vertices of its own where they meet. */
 function matMesh(half, steps, chequer) {
-  const {positions, triangles} = gridCube(steps, point => point.map((x, k) => x * half[k])), count = positions.length / 3;
+  const {positions, triangles} = gridCube(steps, point => point.map((x, k) => x * half[k]));
+  const count = positions.length / 3;
   const light = [], dark = [];
   for (let t = 0; t < triangles.length; t += 3) {
     const square = [0, 2].map(k => {

@@ -9,6 +9,8 @@ const KEEP_EVERY = 10, KEPT_FRAMES = 600, KEPT_BYTES = 64e6;
 const MOST_THROWN = 12, THROWN_MASS = 0.5;
 /** Longest side of a body that is dropped on the page. */
 const DROPPED_SIZE = 1.0;
+/** Up to so many triangles, it touches other soft bodies: to prepare 20,000 takes a second, while time stands. */
+const MOST_SOFT_TRIANGLES = 40000;
 
 /** What is drawn of a mesh in its cage, and its palettes. Shared by the bodies that have both. */
 class Model {
@@ -72,7 +74,8 @@ class Shelf {
     if (!this.meshes.has(name)) {
       const shape = name === 'serpent' ? this.serpent : SHAPES[name]();
       const mesh = this.module.createMesh(shape.positions, shape.triangles);
-      const groups = shape.groups && shape.groups.map(group => ({...group, colour: this.materials[group.material].colour}));
+      const coloured = group => ({...group, colour: this.materials[group.material].colour});
+      const groups = shape.groups && shape.groups.map(coloured);
       this.meshes.set(name, {mesh, groups});
     }
     return this.meshes.get(name);
@@ -113,11 +116,13 @@ class Builder {
   /** The number of tets that is wished for, or the scene's own. */
   tets(usual) { return this.settings.tets || usual; }
 
-  /** options: of the module, and damping, a share of that which is set; gravity: of its own; pinned: by rest position */
+  /** options: the module's, and damping, a share of that which is set; gravity: its own; pinned: by rest position */
   addBody(name, tets, options, colour = '#ffffff') {
     const {simulation, settings} = this, {damping = 1, gravity, pinned, ...others} = options;
     const model = simulation.modelOf(name, tets);
-    const all = {relativeStiffness: settings.stiffness, stiffnessDamping: damping * settings.damping, visible: false, ...others};
+    const all = {
+      relativeStiffness: settings.stiffness, stiffnessDamping: damping * settings.damping, visible: false, ...others,
+    };
     if (pinned) all.pinned = this.nodesWhere(model.cage, pinned);
     const body = this.world.addBody(model.cage, model.mesh, all);
     if (gravity === 0) body.setGravity([0, 0, 0]);
@@ -185,7 +190,8 @@ class Simulation {
   }
 
   modelOf(name, tets) {
-    const {mesh, groups} = this.shelf.mesh(name), cage = this.shelf.cage(name, tets, this.settings.elements === 'quadratic');
+    const {mesh, groups} = this.shelf.mesh(name);
+    const cage = this.shelf.cage(name, tets, this.settings.elements === 'quadratic');
     return this.models.find(model => model.cage === cage && model.mesh === mesh) || this.addModel(mesh, cage, groups);
   }
 
@@ -280,10 +286,10 @@ class Simulation {
 
   // --- Hands
 
-  /** Takes hold of the surface that a ray meets; null where it meets none. */
-  pick({from, to}) {
+  /** Takes hold of the surface that the first of some rays meets; null where none meets any. */
+  pick({rays}) {
     this.letGo();
-    const hit = this.world.raycast(from, to);
+    const hit = rays.reduce((found, {from, to}) => found || this.world.raycast(from, to), null);
     if (!hit) return null;
     this.held = {hit, spring: this.world.addSpring(hit), target: [...hit.point]};
     return {point: [...hit.point], distance: hit.distance};
@@ -327,9 +333,10 @@ class Simulation {
     const model = this.addModel(mesh, cage, null), {settings} = this;
     const body = this.world.addBody(cage, mesh, {
       relativeStiffness: settings.stiffness, stiffnessDamping: settings.damping, visible: false, mass: 1,
-      position: [0, 0.2 + this.top(), 0],
+      position: [0, 0.2 + this.top(), 0], softContact: mesh.triangleCount <= MOST_SOFT_TRIANGLES,
     });
-    const part = {body, model, colour: '#7089a8', damping: 1, softer: 1, modulusOfOne: body.youngsModulus / settings.stiffness};
+    const modulusOfOne = body.youngsModulus / settings.stiffness;
+    const part = {body, model, colour: '#7089a8', damping: 1, softer: 1, modulusOfOne};
     this.parts.push(part);
     for (const snapshot of this.kept.splice(0)) this.forget(snapshot);
     this.keep();
@@ -365,7 +372,8 @@ class Simulation {
       ({bones: model.palette(skin).update(body).slice(), nodes: body.nodes.slice(), asleep: body.asleep}));
     const bones = performance.now() - began;
     return {
-      frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, skin, bodies, poses: this.world.poses().slice(),
+      frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, skin, bodies,
+      poses: this.world.poses().slice(),
       balls: this.thrown.length, held: this.held && [...this.held.spring.position],
       times: {...this.timesOf(), bones}, milliseconds: this.milliseconds || 0,
     };
@@ -377,7 +385,8 @@ class Simulation {
   }
 
   memory() {
-    return {module: this.module.memoryBytes, snapshots: this.keptBytes() + this.spare.reduce((sum, {length}) => sum + length, 0)};
+    const spare = this.spare.reduce((sum, {length}) => sum + length, 0);
+    return {module: this.module.memoryBytes, snapshots: this.keptBytes() + spare};
   }
 
   /** The highest vertex at rest of the first body, which is the serpent's horn: where it is now. */

@@ -60,7 +60,7 @@ const ACTIONS = {
     return simulation.state();
   },
   set(settings) { simulation.set(settings); return simulation.state(); },
-  pick(ray) { return simulation.pick(ray); },
+  pick(rays) { return simulation.pick(rays); },
   drag({target}) { simulation.drag(target); },
   letGo() { simulation.letGo(); },
   push(ray) { return simulation.push(ray); },

@@ -3,7 +3,9 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Files dropped on the live page: good ones become bodies, damaged ones get a sentence, and the scene goes on."""
 import base64
+import itertools
 import json
+import math
 import tempfile
 import unittest
 from pathlib import Path
@@ -40,6 +42,10 @@ class Dropped(WithBrowser):
                 self.assertEqual(live.page.faults, [])
         live.page.frame()
         live.picture("dropped")
+        nodes = live.page.evaluate("simulation.parts.slice(-3).map(({body}) => [...body.nodes])", session=live.worker())
+        middles = [[sum(one[k::3]) / (len(one) // 3) for k in range(3)] for one in nodes]
+        for a, b in itertools.combinations(middles, 2):
+            self.assertGreater(math.dist(a, b), 0.5, "balls of radius 0.5 touch each other, and do not share a place")
         self.assertEqual(live.call("reset")["bodies"], before["bodies"])
 
     def test_a_dropped_body_can_be_held_and_comes_back_to_the_bit(self):

@@ -21,7 +21,7 @@ class Dragging(WithBrowser):
         live.step(90)  # it lies on the ramp and the dome
         live.page.frame()
         horn = live.call("horn")
-        x, y = self.point_on_body(live, horn["screen"])
+        x, y = horn["screen"]
         live.page.press(x, y)
         live.page.until("live.hands.held !== null", 30)
         to = (x - 60, y - 90) if phone else (x - 90, y - 120)
@@ -33,18 +33,6 @@ class Dragging(WithBrowser):
         live.page.frame()
         live.picture("phone_drag" if phone else "drag")
         return live, horn, (x, y), to
-
-    def point_on_body(self, live, screen):
-        """The horn's tip is on the outline: the nearest pixel at which a ray meets the serpent."""
-        x, y = screen
-        for ring in range(0, 12):
-            for k in range(max(1, 8 * ring)):
-                at = [x + ring * math.cos(2 * math.pi * k / (8 * ring or 1)), y + ring * math.sin(2 * math.pi * k / (8 * ring or 1))]
-                found = live.page.evaluate(f"live.port.ask('pick', live.stage.rayThrough({at[0]}, {at[1]}))"
-                                           ".then(hit => live.port.ask('letGo').then(() => hit))")
-                if found:
-                    return at
-        self.fail("no ray within 12 pixels of the horn meets the serpent")
 
     def check_drag(self, phone):
         live, before, start, to = self.drag_the_horn(phone)
@@ -285,9 +273,9 @@ class Controls(WithBrowser):
         page.move(200, 350)
         page.release()
         page.frame()
-        self.assertGreater(distance(page.evaluate(eye), first), 0.1)
+        self.assertGreater(distance(page.evaluate(eye), first), 1)
         page.click_on("#view")
-        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 1e-3", 10)
+        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 0.3", 10)  # the turn's last swing may follow
 
     def test_figures_tell_milliseconds_of_each_stage_and_the_hash(self):
         state = self.one.step(30)

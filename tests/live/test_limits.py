@@ -21,7 +21,8 @@ class Lacking(unittest.TestCase):
             shown = live.page.evaluate("(one => one && !one.hidden && one.getBoundingClientRect().height > 10 && "
                                        "one.textContent)(document.getElementById('trouble'))")
             self.assertEqual(shown, live.trouble)
-            live.picture(f"lacking_{words[0].lower()}")
+            width, _, channels, rows = chromium.pixels(live.picture(f"lacking_{words[0].lower()}"))
+            self.assertGreater(min(rows[len(rows) // 8][channels * width // 8:][:3]), 200, "dark words on a light page")
             crashes = [fault for fault in live.page.faults if "WebGL" not in fault]
             self.assertEqual(crashes, [])
 
@@ -43,14 +44,13 @@ class Lacking(unittest.TestCase):
 
 class LittleMemory(unittest.TestCase):
     def test_what_does_not_fit_gets_a_sentence_and_the_scene_goes_on(self):
-        """In twice what the first scene needs."""
+        """In four megabytes more than the first scene needs."""
+        address = PAGE.as_uri() + "#twist"
         with chromium.Chromium() as browser:
-            live = Live(browser)
-            live.open("twist")
-            needed = live.call("memory")["module"]
-        pages = int(1.3 * needed / 65536)
+            needed = Live(browser, address=address).call("memory")["module"]
+        pages = needed // 65536 + 64
         with chromium.Chromium([f"--js-flags=--wasm-max-mem-pages={pages}"]) as browser:
-            live = Live(browser, address=PAGE.as_uri() + "#twist")
+            live = Live(browser, address=address)
             self.assertIsNone(live.trouble, live.trouble)
             frame = live.step(10)["frame"]
             live.page.evaluate("live.settings.tets = 5000, live.change('heap')", patience=300)

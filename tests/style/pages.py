@@ -11,8 +11,9 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests/pages"))
 import page  # noqa: E402
 
-# Pages of other languages have no program in C++; tests/python and tests/js run theirs.
-OTHERS = ("python.md", "pybullet.md", "many_runs.md", "javascript.md")
+# Pages of other languages have no program in C++; tests/python and tests/js run theirs. That of the live page has none:
+# tests/live run the page.
+OTHERS = ("python.md", "pybullet.md", "many_runs.md", "javascript.md", "live.md")
 FIRST, CONTENTS, TOPICS = "README.md", "plugin/README.md", "plugin/docs"
 MOST_LINES = {FIRST: 170, CONTENTS: 80, TOPICS: 150}
 
