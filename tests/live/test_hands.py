@@ -21,7 +21,7 @@ class Dragging(WithBrowser):
         live.step(90)  # it lies on the ramp and the dome
         live.page.frame()
         horn = live.call("horn")
-        x, y = horn["screen"]
+        x, y = self.point_on_body(live, horn["screen"])
         live.page.press(x, y)
         live.page.until("live.hands.held !== null", 30)
         to = (x - 60, y - 90) if phone else (x - 90, y - 120)
@@ -33,6 +33,22 @@ class Dragging(WithBrowser):
         live.page.frame()
         live.picture("phone_drag" if phone else "drag")
         return live, horn, (x, y), to
+
+    def point_on_body(self, live, screen):
+        """The horn's tip is on the outline: the nearest pixel at which a ray meets the serpent."""
+        found = live.page.evaluate(f"""(async () => {{
+          for (let ring = 0; ring < 14; ++ring) {{
+            for (let k = 0; k < Math.max(1, 6 * ring); ++k) {{
+              const turn = 2 * Math.PI * k / (6 * ring || 1);
+              const at = [{screen[0]} + ring * Math.cos(turn), {screen[1]} + ring * Math.sin(turn)];
+              const {{from, to}} = live.stage.rayThrough(...at), hit = await live.port.ask('pick', {{rays: [{{from, to}}]}});
+              await live.port.ask('letGo');
+              if (hit) return at;
+            }}
+          }}
+        }})()""")
+        self.assertIsNotNone(found, "no ray near the horn meets the serpent")
+        return found
 
     def check_drag(self, phone):
         live, before, start, to = self.drag_the_horn(phone)
