@@ -23,6 +23,7 @@ class Dragging(WithBrowser):
         horn = live.call("horn")
         x, y = self.point_on_body(live, horn["screen"])
         live.page.press(x, y)
+        self.addCleanup(lambda: live.page.finger and live.page.release())  # also if the test fails: others have this page
         live.page.until("live.hands.held !== null", 30)
         to = (x - 60, y - 90) if phone else (x - 90, y - 120)
         for step in range(1, 7):  # time goes on while the hand moves, and then
