@@ -4,9 +4,9 @@
 // Makes the npm package of what Emscripten has made: the module in one file, its types, licences and pages.
 //   node pack.mjs core.js core.wasm FOLDER   the folder is replaced
 //
-// WebAssembly is deflated, and in base64, in that file: a third of what it would be otherwise, on the disk and in the
-// memory of what reads it. All is in one function, whose names nothing else sees; the last line is the only one of an ES
-// module, so that a page may replace it.
+// WebAssembly is deflated, and in base64, in that file: less than half of what it would be otherwise. All is in one
+// function, whose names nothing else sees; the last line is the only one of an ES module, so that a page may replace
+// it.
 import {cpSync, mkdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {dirname, join} from "node:path";
 import {fileURLToPath} from "node:url";
@@ -24,8 +24,8 @@ const parts = ["errors", "arguments", "instance", "models", "world", "load"];
 const sources = parts.map(part => read(join(here, "module", `${part}.js`)).replace(/^\/\/.*\n/gm, ""));
 const packed = deflateSync(readFileSync(binary), {level: 9}).toString("base64");
 
-const module = `// tetskin ${version}, zlib licence. Contains Bullet, Eigen, tinygltf, JSON for Modern C++, and what it uses of the
-// libraries of Emscripten, musl and LLVM: their licences are in the folder licences of the npm package.
+const module = `// tetskin ${version}, zlib licence. Contains Bullet, Eigen, tinygltf, JSON for Modern C++, and what
+// it uses of the libraries of Emscripten, musl and LLVM: their licences are in the folder licences of the npm package.
 const tetskin = (() => {
 "use strict";
 ${read(script).trim()}

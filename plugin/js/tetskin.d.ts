@@ -3,12 +3,12 @@
 //
 // tetskin for JavaScript: soft bodies of Bullet, simulated in coarse cages, with detailed surfaces embedded in them.
 //
-// Units are yours, with seconds for time; vectors are x, y, z; quaternions x, y, z, w; a count of "n x 3" is 3 n numbers
-// side by side. Rest space is that of the mesh as it was read, world space that of the simulation.
+// Units are yours, with seconds for time; vectors are x, y, z; quaternions x, y, z, w; a count of "n x 3" is 3 n
+// numbers side by side. Rest space is that of the mesh as it was read, world space that of the simulation.
 //
-// Views are typed arrays of the module's own memory: nothing is copied, and the next call that changes the thing changes
-// them. When the memory grows, which any call may do, all views that were made before have the length 0: get each view
-// anew where it is used, or compare `memoryVersion`, or copy it with `slice()`.
+// Views are typed arrays of the module's own memory: nothing is copied, and the next call that changes the thing
+// changes them. When the memory grows, which any call may do, all views that were made before have the length 0: get
+// each view anew where it is used, or compare `memoryVersion`, or copy it with `slice()`.
 
 /** Of the npm package. */
 export const version: string;

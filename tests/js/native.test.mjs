@@ -19,12 +19,15 @@ const pose = (x, y, z) => `${x} ${y} ${z} 0 0 0 1`;
 const body = (tets, place, contact) => `body tube ${tets} ${place} 5 60 0.02 0.5 ${contact}`;
 const ground = `box 10 1 10 0 ${pose(0, -1, 0)} 0.5`;
 const scenes = {
-  "a body falls on a box and a ball": [ground, `sphere 0.4 0 ${pose(1, 0, 0.1)} 0.5`, body(1000, pose(0, 0.9, 0), "none")],
-  "two bodies fall onto each other": [ground, body(300, pose(0, 0.5, 0), "soft"), body(300, pose(0.3, 1.3, 0.2), "soft")],
+  "a body falls on a box and a ball": [
+    ground, `sphere 0.4 0 ${pose(1, 0, 0.1)} 0.5`, body(1000, pose(0, 0.9, 0), "none")],
+  "two bodies fall onto each other": [
+    ground, body(300, pose(0, 0.5, 0), "soft"), body(300, pose(0.3, 1.3, 0.2), "soft")],
 };
 
 for (const [name, lines] of Object.entries(scenes)) {
-  test(`${name}: 120 frames have the nodes of a native run`, {skip: !native && "TETSKIN_LIVE_NATIVE is not set"}, () => {
+  const skip = !native && "TETSKIN_LIVE_NATIVE is not set";
+  test(`${name}: 120 frames have the nodes of a native run`, {skip}, () => {
     const place = mkdtempSync(join(tmpdir(), "tetskin-"));
     try {
       const {positions, triangles} = tube(), counts = Int32Array.of(positions.length / 3, triangles.length / 3);

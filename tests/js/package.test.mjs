@@ -38,8 +38,9 @@ test("nothing else is linked", {skip: !existsSync(rulesOfBuild) && "the package 
   const rules = readFileSync(rulesOfBuild, "utf8");
   const sources = [...rules.matchAll(/^build \S+[.]o: \S+ (\S+)/gm)].map(([, source]) => source);
   assert.ok(sources.length > 20);
-  const known = /\/(bullet[^/]*\/src|plugin\/(tetskin|facade|js))\/|(^|\/)(CMakeFiles|library)\/.*\/Unity\/|\/tinygltf[.]cpp$/;
-  assert.deepEqual(sources.filter(source => !known.test(source)), []);
+  const known = [/\/(bullet[^/]*\/src|plugin\/(tetskin|facade|js))\//, /(^|\/)(CMakeFiles|library)\/.*\/Unity\//,
+    /\/tinygltf[.]cpp$/];
+  assert.deepEqual(sources.filter(source => !known.some(place => place.test(source))), []);
 });
 
 test("the package tells the library's version, and its own", () => {

@@ -172,14 +172,16 @@ test("materials change while it runs", () => {
   const {world, body} = drop({youngsModulus: 1e4, mass: 5});
   assert.ok(Math.abs(body.mass - 5) < 1e-3 && Math.abs(body.youngsModulus - 1e4) < 1e-6);
   Object.assign(body, {youngsModulus: 2e4, poissonRatio: 0.4, stiffnessDamping: 0.1, friction: 0.25});
-  assert.deepEqual([body.youngsModulus, body.poissonRatio, body.stiffnessDamping, body.friction], [2e4, 0.4, 0.1, 0.25]);
+  assert.deepEqual([body.youngsModulus, body.poissonRatio], [2e4, 0.4]);
+  assert.deepEqual([body.stiffnessDamping, body.friction], [0.1, 0.25]);
   body.setGravity([0, 1, 0]);
   steps(world, 30);
   assert.ok(body.bounds[1] > 0.5);
   body.setGravity(null);
   steps(world, 30);
   assert.ok(body.relativeStiffness > 0);
-  for (const [name, value] of [["youngsModulus", -1], ["poissonRatio", 0.5], ["stiffnessDamping", -1], ["friction", 2]]) {
+  const refused = {youngsModulus: -1, poissonRatio: 0.5, stiffnessDamping: -1, friction: 2};
+  for (const [name, value] of Object.entries(refused)) {
     const before = body[name];
     assert.throws(() => { body[name] = value; }, failure("InvalidOption"));
     assert.equal(body[name], before);
@@ -191,8 +193,8 @@ test("bodies with soft contact meet each other", () => {
   world.addPlane();
   for (const height of [0.35, 1.1]) world.addBody(cage, mesh, {position: [0, height, 0], softContact: true});
   steps(world, 120);
-  const [below, above] = world.bodies;
-  assert.ok(above.bounds[4] > below.bounds[4] + 0.2 || above.bounds[1] > 0.1 || Math.abs(above.bounds[2] - below.bounds[2]) > 0.3);
+  const [below, above] = world.bodies.map(({bounds}) => bounds);  // one lies on the other, or beside it
+  assert.ok(above[4] > below[4] + 0.2 || above[1] > 0.1 || Math.abs(above[2] - below[2]) > 0.3);
   assert.ok(world.times.softSearch > 0);
 });
 

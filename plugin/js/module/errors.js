@@ -15,8 +15,8 @@ const kOutOfMemory = "there is not enough memory for this: take a smaller mesh o
 /** Of what the library has thrown. Its messages name options as C++ and Python do. */
 function errorOf(code, message) {
   if (code === "OutOfMemory") return new TetskinError(code, kOutOfMemory);
-  return new TetskinError(code, message.replace(/^\w+(?=:)/, name => name.replace(/_([a-z])/g, (_, letter) => letter.toUpperCase()))
-    .replaceAll("/file.", "file."));
+  const inCamelCase = name => name.replace(/_([a-z])/g, (_, letter) => letter.toUpperCase());
+  return new TetskinError(code, message.replace(/^\w+(?=:)/, inCamelCase).replaceAll("/file.", "file."));
 }
 
 function invalid(message) {

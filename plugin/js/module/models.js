@@ -114,7 +114,8 @@ class Tetskin {
     if (typeof format !== "string") throw invalid("format: must be a string, for instance obj");
     const extension = format.slice(format.lastIndexOf(".") + 1).toLowerCase();
     if (!/^[a-z0-9]{1,8}$/.test(extension)) {
-      throw new TetskinError("UnsupportedFormat", `format: ${format} names none; read are obj, ply, off, stl, glb, gltf`);
+      throw new TetskinError("UnsupportedFormat",
+        `format: ${format} names none; read are obj, ply, off, stl, glb, gltf`);
     }
     return this.withMemory(memory => {
       const {at, count} = memory.bytes(content);
@@ -174,7 +175,8 @@ class Tetskin {
     const {interpolation, gradients, layout} = optionsOf(options, kPaletteOptions);
     if (layout !== "rows" && layout !== "columns") throw invalid("layout: \"rows\" or \"columns\"");
     return new Palette(this.hidden.instance, this.core.createPalette(
-      this.handle(cage, Cage, "cage"), this.handle(mesh, Mesh, "mesh"), interpolation, gradients, layout === "columns"));
+      this.handle(cage, Cage, "cage"), this.handle(mesh, Mesh, "mesh"), interpolation, gradients,
+      layout === "columns"));
   }
   createWorld(options) {
     const {gravity, deterministic} = optionsOf(options, {gravity: [0, -9.81, 0], deterministic: false});

@@ -4,8 +4,8 @@
 const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
   angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
 const kBodyOptions = {position: [0, 0, 0], rotation: [0, 0, 0, 1], density: 100, mass: NaN, youngsModulus: NaN,
-  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, contactMargin: NaN, sampleSpacing: NaN,
-  interpolation: "linear", normals: "none", visible: true, surfaceContact: true, softContact: false,
+  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, contactMargin: NaN,
+  sampleSpacing: NaN, interpolation: "linear", normals: "none", visible: true, surfaceContact: true, softContact: false,
   selfContact: false, pinned: []};
 const kStages = ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces", "total"];
 
@@ -48,7 +48,8 @@ class World extends Thing {
     return this.keepRigid(this.core.addBox(own(this), sizes, optionsOf(options, kRigidOptions)));
   }
   addSphere(radius, options) {
-    return this.keepRigid(this.core.addSphere(own(this), numberOf(radius, "radius"), optionsOf(options, kRigidOptions)));
+    return this.keepRigid(this.core.addSphere(own(this), numberOf(radius, "radius"),
+      optionsOf(options, kRigidOptions)));
   }
   addCapsule(radius, height, options) {
     return this.keepRigid(this.core.addCapsule(own(this), numberOf(radius, "radius"), numberOf(height, "height"),
