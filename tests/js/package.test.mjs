@@ -4,7 +4,7 @@
 // What is in the npm package, and that it loads wherever it is put.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
-import {mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from "node:fs";
+import {existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
@@ -31,9 +31,11 @@ test("licences of all that is inside are in the package", () => {
   })) assert.ok(read(name).includes(words), name);
 });
 
-test("nothing else is linked", () => {
+const rulesOfBuild = join(folder, "../build.ninja");
+
+test("nothing else is linked", {skip: !existsSync(rulesOfBuild) && "the package is not where it was built"}, () => {
   // Every source that was compiled is of the library, of Bullet, or of what has a licence in the package.
-  const rules = readFileSync(join(folder, "../build.ninja"), "utf8");
+  const rules = readFileSync(rulesOfBuild, "utf8");
   const sources = [...rules.matchAll(/^build \S+[.]o: \S+ (\S+)/gm)].map(([, source]) => source);
   assert.ok(sources.length > 20);
   const known = /\/(bullet[^/]*\/src|plugin\/(tetskin|facade|js))\/|(^|\/)(CMakeFiles|library)\/.*\/Unity\/|\/tinygltf[.]cpp$/;

@@ -252,7 +252,7 @@ test("3,000 steps and snapshots take no more memory", () => {
   const before = tetskin.memoryBytes;
   for (let i = 0; i < 3000; ++i) {
     world.step(1 / 60, 1);
-    if (i % 30 === 0) world.restore(snapshot);
+    if (i % 3 === 0) world.restore(snapshot);  // 40 MB of snapshots in all
     world.raycast([1, 5, 0], [1, -5, 0]);
   }
   assert.equal(tetskin.memoryBytes, before);

@@ -47,7 +47,8 @@ class Chromium:
         self.folder = tempfile.TemporaryDirectory(prefix="tetskin_live_", ignore_cleanup_errors=True)
         self.log = Path(self.folder.name) / "log.txt"
         taken = {flag[1:] for flag in flags if flag.startswith("-") and not flag.startswith("--")}
-        command = [PROGRAM, *(flag for flag in FLAGS if flag not in taken), *(flag for flag in flags if flag[1:] not in taken),
+        command = [PROGRAM, *(flag for flag in FLAGS if flag not in taken),
+                   *(flag for flag in flags if flag[1:] not in taken),
                    f"--user-data-dir={self.folder.name}/profile", "about:blank"]
         read_commands, self.commands = os.pipe()
         self.answers, write_answers = os.pipe()

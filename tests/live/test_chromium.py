@@ -15,8 +15,10 @@ PAGE = """<!doctype html><meta name="viewport" content="width=device-width">
 <script>
   const seen = [], dropped = [];
   let clicked = false;
-  for (const kind of ['pointerdown', 'pointermove', 'pointerup'])
-    canvas.addEventListener(kind, e => seen.push([kind, e.pointerType, Math.round(e.clientX), Math.round(e.clientY), e.buttons]));
+  for (const kind of ['pointerdown', 'pointermove', 'pointerup']) {
+    canvas.addEventListener(kind, ({pointerType, clientX, clientY, buttons}) =>
+      seen.push([kind, pointerType, Math.round(clientX), Math.round(clientY), buttons]));
+  }
   addEventListener('dragover', e => e.preventDefault());
   addEventListener('drop', async e => {
     e.preventDefault();
