@@ -99,6 +99,7 @@ class Live {
     if (this.stage) this.stage.dispose();
     this.hands.held = null;
     this.description = scene;
+    this.ofScene = {tets: scene.tets, triangles: scene.triangles};
     this.stage = new LiveStage(element('canvas'), scene, this.data.materials, this.renderer);
     this.stage.setLook(this.look());
     for (const button of element('scenes').children) {
@@ -197,9 +198,12 @@ class Live {
   }
 
   rewind(frames) { return this.ask('rewind', {frames}); }
-  reset() {
+  async reset() {
     this.meanTimes = null;
-    return this.ask('reset');
+    const state = await this.ask('reset');
+    Object.assign(this.description, this.ofScene);  // without what was dropped
+    this.showFacts();
+    return state;
   }
 
   /** What is seen again, though no time has passed. */

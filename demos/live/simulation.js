@@ -248,9 +248,11 @@ class Simulation {
     this.step(wanted - this.frame);
   }
 
+  /** Whether a mesh was dropped: then `start` is a snapshot of another world, and the scene has to be made again. */
+  get hasDropped() { return this.parts.length > this.dropped; }
+
   reset() {
     this.letGo();
-    for (const {body} of this.parts.splice(this.dropped)) body.delete();
     this.restore(this.start);
     for (const snapshot of this.kept.splice(0)) this.forget(snapshot);
     this.keep();
@@ -326,7 +328,7 @@ class Simulation {
     this.thrown.push(this.world.addSphere(radius, {mass: THROWN_MASS, position, velocity, friction: 0.6}));
   }
 
-  /** A body that was dropped on the page. The world before it cannot come back but by `reset`. */
+  /** A body that was dropped on the page. The world before it does not come back. */
   add({mesh: meshBytes, cage: cageBytes}) {
     this.letGo();
     const mesh = this.module.meshFromBytes(meshBytes), cage = this.module.cageFromBytes(cageBytes);

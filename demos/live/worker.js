@@ -37,6 +37,14 @@ function placed(mesh) {
   return api.createMesh(moved, mesh.triangles.slice());
 }
 
+/** To frame 0, without what was dropped on the page. */
+function restart() {
+  if (!simulation.hasDropped) return simulation.reset();
+  const next = new Simulation(api, shelf, simulation.name, simulation.settings);
+  simulation.delete();
+  simulation = next;
+}
+
 const ACTIONS = {
   async start({model, zipped, materials}) {
     api = await load();
@@ -54,7 +62,7 @@ const ACTIONS = {
       simulation.step(frames);
     } catch (error) {
       if (error.code !== 'NonFinite') throw error;
-      simulation.reset();
+      restart();
       return {...simulation.state(), trouble: 'The simulation became unstable, and begins again.'};
     }
     return simulation.state();
@@ -66,7 +74,7 @@ const ACTIONS = {
   push(ray) { return simulation.push(ray); },
   throwBall(ball) { simulation.throwBall(ball); },
   rewind({frames}) { simulation.rewind(frames); return simulation.state(); },
-  reset() { simulation.reset(); return simulation.state(); },
+  reset() { restart(); return simulation.state(); },
   add(body) { return {...simulation.add(body), state: simulation.state()}; },
   horn() { return simulation.horn(); },
   memory() { return simulation.memory(); },
