@@ -12,7 +12,7 @@ sys.path.insert(0, str(REPOSITORY / "tests/pages"))
 import page  # noqa: E402
 
 # Pages of the Python package have no program in C++; tests/python runs theirs.
-PYTHON = ("python.md", "pybullet.md", "many_runs.md")
+PYTHON = ("python.md", "pybullet.md", "many_runs.md", "peers.md")
 FIRST, CONTENTS, TOPICS = "README.md", "plugin/README.md", "plugin/docs"
 MOST_LINES = {FIRST: 170, CONTENTS: 80, TOPICS: 150}
 
