@@ -29,7 +29,7 @@ sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.stem != "__init__"]
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
-ROUNDS, ENOUGH = 3, 6.0  # at most so many runs of a case, and no further one after so many seconds in all
+ROUNDS, ENOUGH = 3, 1.0  # at most so many runs of a case, and no further one after so many seconds in all
 LIMIT, QUICK_LIMIT = 60, 12  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
 COLUMNS = [
     "scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
