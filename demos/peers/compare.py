@@ -29,8 +29,9 @@ sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.stem != "__init__"]
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
+QUICK = ["beam", "snake", "sag", "slide", "heap", "skin"]  # scenes of --quick, unless --only names others
 ROUNDS, ENOUGH = 3, 1.0  # at most so many runs of a case, and no further one after so many seconds in all
-LIMIT, QUICK_LIMIT = 60, 12  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
+LIMIT, QUICK_LIMIT = 60, 8  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
 COLUMNS = [
     "scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
     "ms_most", "runs", "status", "why", "load", "date", "machine"
@@ -39,13 +40,13 @@ COLUMNS = [
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], allow_abbrev=False)
-    parser.add_argument("--quick", action="store_true", help="fewer settings, shorter scenes")
+    parser.add_argument("--quick", action="store_true", help=f"fewer settings, once, of {', '.join(QUICK)}")
     parser.add_argument("--only", action="append", metavar="SCENE", help=f"may be repeated: {', '.join(SCENES)}")
     parser.add_argument("--peers", metavar="LIST", help=f"with commas: {','.join(PEERS)}")
     parser.add_argument("--out", metavar="FOLDER", default="out/peers")
     parser.add_argument("--check", action="store_true", help="check the arguments, and run nothing")
     options = parser.parse_args()
-    options.scenes = options.only or SCENES
+    options.scenes = options.only or (QUICK if options.quick else SCENES)
     options.peers = options.peers.split(",") if options.peers else PEERS
     for given, known, kind in ((options.scenes, SCENES, "scene"), (options.peers, PEERS, "peer")):
         for name in given:

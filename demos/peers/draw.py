@@ -25,8 +25,8 @@ LABELS = {("beam", "error in time"): "error of the tip's way in time alone, %\no
           ("snake", "error"): "distance of the drawn surface from\ntetskin in 64 substeps, % of its size"}
 
 
-# The table for a first page: label, scene, figure, and the error that the quickest run must have, or None: the figure in
-# the setting of the peer's own example. Without a figure: its time.
+# The table for a first page: label, scene, figure, and the error that the quickest run must have, or None: the figure
+# in the setting of the peer's own example. Without a figure: its time.
 SUMMARY = [("beam: ms for 1 % error in time", "beam", "error in time", 1.0),
            ("beam: ms for 0.1 %", "beam", "error in time", 0.1),
            ("beam: ms for 1 % error in all", "beam", "error in all", 1.0),
