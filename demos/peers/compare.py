@@ -29,23 +29,24 @@ sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.stem != "__init__"]
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
-ROUNDS, ENOUGH = 3, 6.0  # at most so many runs of a case, and no further one after so many seconds in all
-LIMIT, QUICK_LIMIT = 60, 12  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
+QUICK = ["beam", "snake", "sag", "slide", "heap", "skin"]  # scenes of --quick, unless --only names others
+ROUNDS, ENOUGH = 3, 1.0  # at most so many runs of a case, and no further one after so many seconds in all
+LIMIT, QUICK_LIMIT = 60, 8  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
 COLUMNS = [
     "scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
-    "ms_most", "runs", "status", "why"
+    "ms_most", "runs", "status", "why", "load", "date", "machine"
 ]
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], allow_abbrev=False)
-    parser.add_argument("--quick", action="store_true", help="fewer settings, shorter scenes")
+    parser.add_argument("--quick", action="store_true", help=f"fewer settings, once, of {', '.join(QUICK)}")
     parser.add_argument("--only", action="append", metavar="SCENE", help=f"may be repeated: {', '.join(SCENES)}")
     parser.add_argument("--peers", metavar="LIST", help=f"with commas: {','.join(PEERS)}")
     parser.add_argument("--out", metavar="FOLDER", default="out/peers")
     parser.add_argument("--check", action="store_true", help="check the arguments, and run nothing")
     options = parser.parse_args()
-    options.scenes = options.only or SCENES
+    options.scenes = options.only or (QUICK if options.quick else SCENES)
     options.peers = options.peers.split(",") if options.peers else PEERS
     for given, known, kind in ((options.scenes, SCENES, "scene"), (options.peers, PEERS, "peer")):
         for name in given:
@@ -147,8 +148,8 @@ def line_of(case, outcome):
     return f"{case.peer:9s} {what}{' *' if case.example else ''}: {told}"
 
 
-def rows_of(name, cases, outcomes):
-    """Rows of the table: one for each figure of each case."""
+def rows_of(name, cases, outcomes, where):
+    """Rows of the table: one for each figure of each case. where: columns that all have."""
     for case, done in zip(cases, outcomes):
         first, good = done[0], [one for one in done if one["status"] == "ok"]
         times = [one["ms"] for one in good]
@@ -162,7 +163,8 @@ def rows_of(name, cases, outcomes):
             "example": int(case.example),
             "runs": len(done),
             "status": first["status"],
-            "why": first["why"]
+            "why": first["why"],
+            **where
         }
         if not good:
             yield row
@@ -181,20 +183,19 @@ def main():
         return
     folder = Path(options.out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    began, rows, head = time.time(), [], [
-        f"date {datetime.date.today()}", f"machine {machine()}", f"Python {platform.python_version()}"
-    ]
+    began, rows = time.time(), []
+    where = {"date": str(datetime.date.today()), "machine": f"{machine()}, Python {platform.python_version()}"}
     for name in options.scenes:
         scene = importlib.import_module(f"scenes.{name}")
         print(f"{name}: {scene.TITLE} (load {load()})", flush=True)
         prepare(name, scene, folder, options.quick)
         cases = [case for case in scene.plan(options.quick) if case.peer in options.peers]
-        start = time.time()
+        start, before = time.time(), load()
         limit = getattr(scene, "QUICK_LIMIT", QUICK_LIMIT) if options.quick else LIMIT
         outcomes = measured(name, cases, folder, limit, 1 if options.quick else ROUNDS)
-        rows += rows_of(name, cases, outcomes)
-        head.append(f"{name} {time.time() - start:.0f} s, load {load()}")
-        write(folder / "peers.csv", head, rows)  # after each scene: what is interrupted has its rows
+        rows += rows_of(name, cases, outcomes, {"load": f"{before} to {load()}", **where})
+        write(folder / "peers.csv", rows)  # after each scene: what is interrupted has its rows
+        print(f"  {time.time() - start:.0f} s")
     try:
         import draw
     except ImportError as fault:
@@ -204,9 +205,8 @@ def main():
     print(f"{len(rows)} rows in {folder / 'peers.csv'}, after {(time.time() - began) / 60:.1f} minutes")
 
 
-def write(path, head, rows):
+def write(path, rows):
     with open(path, "w", newline="", encoding="utf-8") as file:
-        file.writelines(f"# {line}\n" for line in head)
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         table.writeheader()
         table.writerows(rows)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Draws what compare.py has measured: FOLDER/SCENE_FIGURE.png, error against time, and tables.md, a short one first.
+"""Draws what compare.py has measured: FOLDER/peers_SCENE.png, error against time, and tables.md, a short one first.
 
 draw.py peers.csv [FOLDER]
 
@@ -20,13 +20,13 @@ from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, plt  # noqa: E402
 COLOURS = {"tetskin": BLUE, "mujoco": ORANGE, "rapier": GREEN, "pybullet": GREY, "newton": PINK}
 NAMES = {"tetskin": "tetskin", "mujoco": "MuJoCo", "rapier": "Rapier", "pybullet": "pybullet", "newton": "Newton"}
 MARKERS = "osD^vPX<>h"
-PLOTS = {("beam", "error in time"): "error of the tip's way in time alone, %\nof the largest (the same 3,000 tets)",
-         ("beam", "error in all"): "error of the tip's way in all, %\nof the largest",
-         ("snake", "error"): "distance of the drawn surface from\ntetskin in 64 substeps, % of its size"}
+LABELS = {("beam", "error in time"): "error of the tip's way in time alone, %\nof the largest (the same 3,000 tets)",
+          ("beam", "error in all"): "error of the tip's way in all, %\nof the largest",
+          ("snake", "error"): "distance of the drawn surface from\ntetskin in 64 substeps, % of its size"}
 
 
-# The table for a first page: label, scene, figure, and the error that the quickest run must have, or None: the figure in
-# the setting of the peer's own example. Without a figure: its time.
+# The table for a first page: label, scene, figure, and the error that the quickest run must have, or None: the figure
+# in the setting of the peer's own example. Without a figure: its time.
 SUMMARY = [("beam: ms for 1 % error in time", "beam", "error in time", 1.0),
            ("beam: ms for 0.1 %", "beam", "error in time", 0.1),
            ("beam: ms for 1 % error in all", "beam", "error in all", 1.0),
@@ -41,16 +41,18 @@ SUMMARY = [("beam: ms for 1 % error in time", "beam", "error in time", 1.0),
 
 
 def rows_of(path):
-    """The head's lines, and the table's rows with numbers where there are numbers."""
     with open(path, newline="", encoding="utf-8") as file:
-        lines = file.read().splitlines()
-    head = [line[2:] for line in lines if line.startswith("# ")]
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
+        return numbers(csv.DictReader(file))
+
+
+def numbers(rows):
+    """The table's rows, with numbers where there are numbers."""
+    rows = list(rows)
     for row in rows:
         for name in ("value", "ms_per_frame", "ms_least", "ms_most"):
             row[name] = float(row[name]) if row[name] else math.nan
         row["example"] = row["example"] == "1"
-    return head, rows
+    return rows
 
 
 def front(points):
@@ -67,11 +69,20 @@ def good(rows, scene, figure):
     return [row for row in rows if (row["scene"], row["figure"]) == (scene, figure) and row["status"] == "ok"]
 
 
-def plot(rows, scene, figure, label, path):
-    rows = good(rows, scene, figure)
-    if not rows:
-        return
-    canvas, axes = plt.subplots(figsize=(7.5, 4.6), layout="constrained")
+def plot(rows, scene):
+    """A figure of the scene's errors against time, side by side; None if none was measured."""
+    kinds = [figure for of, figure in LABELS if of == scene and good(rows, scene, figure)]
+    if not kinds:
+        return None
+    canvas, panels = plt.subplots(1, len(kinds), figsize=(4 + 4 * len(kinds), 4.6), layout="constrained", squeeze=False)
+    for axes, figure in zip(panels[0], kinds):
+        draw_errors(axes, good(rows, scene, figure))
+        axes.set_ylabel(LABELS[scene, figure])
+    panels[0][0].legend(frameon=False, fontsize=9)
+    return canvas
+
+
+def draw_errors(axes, rows):
     for peer, colour in COLOURS.items():
         own = [row for row in rows if row["peer"] == peer and row["value"] > 0]
         if not own:
@@ -87,11 +98,8 @@ def plot(rows, scene, figure, label, path):
         stars = [(row["ms_per_frame"], row["value"]) for row in own if row["example"]]
         if stars:
             axes.plot(*zip(*stars), "*", color=colour, markersize=13, markeredgecolor="white", zorder=4)
-    axes.set(xscale="log", yscale="log", xlabel="processor time per frame of 1/60 s, ms", ylabel=label)
+    axes.set(xscale="log", yscale="log", xlabel="processor time per frame of 1/60 s, ms")
     axes.grid(color="#dddddd", linewidth=0.6)
-    axes.legend(frameon=False, fontsize=9)
-    canvas.savefig(path, dpi=DPI, metadata={"Software": ""})
-    plt.close(canvas)
 
 
 def number(value):
@@ -175,12 +183,14 @@ def losses(rows):
 
 
 def draw(path, folder):
-    head, rows = rows_of(path)
-    folder = Path(folder)
-    for (scene, figure), label in PLOTS.items():
-        plot(rows, scene, figure, label, folder / f"{scene}_{figure.replace(' ', '_')}.png")
-    text = ["Measured " + "; ".join(head) + ". A star is the setting of the peer's own example.", ""]
-    text += [summary(rows), ""]
+    rows, folder = rows_of(path), Path(folder)
+    for scene in dict.fromkeys(scene for scene, _ in LABELS):
+        canvas = plot(rows, scene)
+        if canvas:
+            canvas.savefig(folder / f"peers_{scene}.png", dpi=DPI, metadata={"Software": ""})
+            plt.close(canvas)
+    where = "; ".join(dict.fromkeys(f"{row['date']}, {row['machine']}" for row in rows))
+    text = [f"Measured {where}. A star is the setting of the peer's own example.", "", summary(rows), ""]
     for scene in dict.fromkeys(row["scene"] for row in rows):
         text += [f"## {scene}", "", scene_table(rows, scene), ""]
     text += ["## Lost", "", *(losses(rows) or ["Nothing."]), ""]

@@ -29,16 +29,20 @@ def cases(peer, curve, settings, example=None, mesh=""):
     return [Case(peer, curve, setting, mesh, is_example(setting)) for setting in settings]
 
 
-def usual(quick):
-    """For scenes with contact: each peer in the setting of its own example, and unless quick in a finer one."""
+def usual(quick, many=False):
+    """For scenes with contact: each peer in the setting of its own example, and unless quick in finer ones.
+
+    many: bodies or contacts, for which those that take half a minute and more are tried in one setting.
+    """
     of = lambda counts, **more: [{"substeps": n, **more} for n in counts]  # noqa: E731
     planned = [
         *cases("tetskin", "world", of((4,) if quick else (2, 4, 8, 16)), {"substeps": 4}),
         *cases("rapier", "constraints", of((4,) if quick else (4, 8, 16)), {"substeps": 4}),
         *cases("mujoco", "discrete", of((16,)), {"substeps": 16}),
-        *cases("pybullet", "neo-Hookean", of((4,) if quick else (4, 16)), {"substeps": 4}),
+        *cases("pybullet", "neo-Hookean", of((4,) if quick or many else (4, 16)), {"substeps": 4}),
         *cases("newton", "VBD", of((10,), iterations=10), {"substeps": 10}),
     ]
     if not quick:
-        planned += cases("rapier", "finite elements", of((4, 16), solver="fem", iterations=100), {"substeps": 4})
+        fem = of((4,) if many else (4, 16), solver="fem", iterations=100)
+        planned += cases("rapier", "finite elements", fem, {"substeps": 4})
     return planned

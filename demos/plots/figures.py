@@ -23,6 +23,9 @@ from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
 from orders import draw_orders  # noqa: E402
 from solvers import draw_table  # noqa: E402
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "peers"))
+import draw as peers  # noqa: E402
+
 TABLES = Path(__file__).resolve().parents[1] / "figures"
 GRID = {"color": "#dddddd", "linewidth": 0.6}
 OURS = {"color": BLUE, "marker": "o"}
@@ -275,7 +278,16 @@ def orders(rows):
     return draw_orders(rows)
 
 
-PLOTS = (cage_kinds, orders, reduction, attach_update_build, crowd, solvers, step_time, landing, gaps, contact_checks)
+def peers_beam(rows):
+    return peers.plot(peers.numbers(rows), "beam")
+
+
+def peers_snake(rows):
+    return peers.plot(peers.numbers(rows), "snake")
+
+
+PLOTS = (cage_kinds, orders, reduction, attach_update_build, crowd, solvers, step_time, landing, gaps, contact_checks,
+         peers_beam, peers_snake)
 
 
 def hash_of(table):

@@ -17,10 +17,15 @@ using test::ball;
 using test::FlyingBlock;
 using test::forEachSubstep;
 using test::latticeCage;
+using test::lowest;
 using test::momentumOf;
 using test::Rigid;
+using test::rmsSpeed;
+using test::smallCageAbove;
 using test::spinOf;
+using test::step;
 using test::TetskinWorld;
+using test::twoComponents;
 
 std::unique_ptr<btCollisionShape> plate() {
   return std::make_unique<btBoxShape>(btVector3(btScalar(0.6), btScalar(0.05), btScalar(0.6)));
@@ -47,6 +52,25 @@ TEST(SolverContacts, KeepMomentumAndAngularMomentum) {
     EXPECT_GT(turned, 0.01) << "they have met";
     EXPECT_LT(lost, 1e-5 * 2.0) << mass;
     EXPECT_LT(lostSpin, 1e-5 * 2.0 * 5.0) << mass << ", at five metres";
+  }
+}
+
+/// Rounding in the stiffness of a body is not taken for the mass of a component, whichever it is.
+TEST(SolverContacts, BringABodyOfManyStiffComponentsToRest) {
+  for (const double modulus : {1e7, 1e9, 1e11}) {
+    TetskinWorld world;
+    SoftBodyOptions options;
+    options.youngsModulus = modulus;
+    options.margin = 0.02;
+    const auto body = added(world, twoComponents(twoComponents(twoComponents(smallCageAbove(0.1)))), options);
+    step(world, 60);
+    double fastest = 0.0;
+    for (int f = 0; f < 20; ++f) {
+      step(world, 1);
+      fastest = std::max(fastest, rmsSpeed(body->body()));
+    }
+    EXPECT_LT(fastest, 0.01) << modulus;
+    EXPECT_NEAR(lowest(body->body()), 0.0, 0.03) << modulus;
   }
 }
 

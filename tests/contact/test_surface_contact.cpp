@@ -161,6 +161,26 @@ TEST(SurfaceContact, GainsNoEnergyInALanding) {
   EXPECT_LT(risen, 0.01 * impact);
 }
 
+/// Rounding in the stiffness of a body is not taken for its mass, which would throw it off.
+TEST(SurfaceContact, BringsABodyOfAnyStiffnessToRest) {
+  for (const double modulus : {1e6, 1e8, 1e9, 1e10, 1e11}) {
+    for (const int steps : {1, 2, 4, 8}) {
+      TetskinWorld world;
+      SoftBodyOptions material;
+      material.youngsModulus = modulus;
+      TouchingBody body(world, boxMesh(Eigen::Vector3d::Constant(0.3)), btVector3(0, btScalar(0.4), 0), {}, material);
+      const btScalar dt = btScalar(1) / static_cast<btScalar>(60 * steps);
+      double fastest = 0.0;
+      for (int f = 0; f < 80; ++f) {
+        world.deformable().stepSimulation(btScalar(1) / 60, steps, dt);
+        if (f >= 60) fastest = std::max(fastest, rmsSpeed(body.body->body()));
+      }
+      EXPECT_LT(fastest, 0.01) << modulus << " Pa, " << steps << " steps per frame";
+      EXPECT_NEAR(body.height(), 0.0, kAllowedGap) << modulus << " Pa, " << steps << " steps per frame";
+    }
+  }
+}
+
 TEST(SurfaceContact, RestsOnConvexHullsMeshesHeightFieldsAndChildrenOfCompounds) {
   const auto flat = [](btScalar y) {
     auto* mesh = new btTriangleMesh;

@@ -13,7 +13,7 @@ import page  # noqa: E402
 
 # Pages of other languages have no program in C++; tests/python and tests/js run theirs. That of the live page has none:
 # tests/live run the page.
-OTHERS = ("python.md", "pybullet.md", "many_runs.md", "javascript.md", "live.md")
+OTHERS = ("python.md", "pybullet.md", "many_runs.md", "peers.md", "javascript.md", "live.md")
 FIRST, CONTENTS, TOPICS = "README.md", "plugin/README.md", "plugin/docs"
 MOST_LINES = {FIRST: 170, CONTENTS: 80, TOPICS: 150}
 

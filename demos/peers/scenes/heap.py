@@ -11,7 +11,7 @@ TITLE = "Heap of 26 balls of 384 tets: radius 0.2 m, E 2e5 Pa, 200 kg/m3, dampin
 
 
 def plan(quick):
-    return usual(quick)
+    return usual(quick, many=True)
 
 
 def run(Simulation, case, clock, _):

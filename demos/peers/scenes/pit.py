@@ -12,7 +12,7 @@ RADIUS, COUNT = 0.08, 50
 
 
 def plan(quick):
-    return usual(quick)
+    return usual(quick, many=True)
 
 
 def run(Simulation, case, clock, _):

@@ -11,7 +11,7 @@ TITLE = "Stack of three boxes of 0.3 m: E 2e5 Pa, 200 kg/m3, 480 tets each, damp
 
 
 def plan(quick):
-    return usual(quick)
+    return usual(quick, many=True)
 
 
 def run(Simulation, case, clock, _):

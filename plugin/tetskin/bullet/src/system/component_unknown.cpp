@@ -4,13 +4,16 @@
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/system/component_unknown.h>
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Stiffness factor from which on the matrix's product with rigid motions is only rounding.
-constexpr double kRounded = 1e5;
+/// Rounding in the matrix's products with translations, relative to these, from which on all products with rigid
+/// motions are left out. From 0.5 on, a cube of 1e9 Pa that lands does not rest, or is thrown off.
+constexpr double kRounded = 0.01;
 
 using Fields = AlignedVector<btScalar>[Dynamics::kRigidMotions];
 
@@ -58,68 +61,122 @@ void addFields(const Fields& fields, const Vector6& factors, btScalar* wide) {
 
 }  // namespace
 
-std::optional<ComponentUnknown> ComponentUnknown::make(const Dynamics& dynamics, std::size_t component,
-                                                       ParallelFor* threads) {
-  assert(component < dynamics.componentCount());
-  ComponentUnknown unknown;
-  Points points;
-  if (!dynamics.rigidMotions(component, points)) return std::nullopt;
-  const bool rounded = dynamics.stiffnessNumber() > kRounded;
-  unknown.findImages(dynamics, points, rounded, threads);
-  const auto& matrix = dynamics.matrix();
-  AlignedVector<btScalar> right(matrix.wideSize(), btScalar(0));
-  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-    btVector3 began = matrix.mass(n) * fromWide(dynamics.deviation() + matrix.wideOf(n));
-    if (!rounded) dynamics.rightSide(n, began.m_floats);
-    toWide(began, &right[matrix.wideOf(n)]);
+std::vector<ComponentUnknown> ComponentUnknown::makeAll(const Dynamics& dynamics, std::size_t most,
+                                                        ParallelFor* threads) {
+  std::vector<ComponentUnknown> unknowns;
+  Points points, products;
+  for (std::size_t component = 0; component < std::min(dynamics.componentCount(), most); ++component) {
+    if (dynamics.rigidMotions(component, points)) unknowns.emplace_back().component = component;
   }
-  unknown.began = unknown.motionProducts(right.data());
+  if (unknowns.empty()) return unknowns;
+  // Of all components at once: the matrix connects none with another.
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    unknown.mass.col(indexOf(k)) = unknown.motionProducts(unknown.images[k].data());
+    products[k].assign(dynamics.matrix().wideSize(), btScalar(0));
+    dynamics.matrix().multiply(points[k].data(), products[k].data(), threads);
   }
-  unknown.mass = (0.5 * (unknown.mass + unknown.mass.transpose())).eval();
-  return unknown;
+  for (ComponentUnknown& unknown : unknowns) {
+    unknown.take(dynamics, points, products);
+    const bool rounded = unknown.rounding(dynamics) > kRounded;
+    if (rounded) unknown.leaveOutElasticity(dynamics);
+    unknown.findMass(dynamics, !rounded);
+  }
+  return unknowns;
 }
 
-/// Elasticity resists rigid motions as far as the matrix belongs to other rotations than the body's, or to a deformed
-/// body. For the stiffest bodies, rounding in this product would exceed their mass, so that it is left out.
-/// points  the motions, 4 scalars per slot
-void ComponentUnknown::findImages(const Dynamics& dynamics, const Points& points, bool rounded, ParallelFor* threads) {
+/// Takes what is the component's.
+/// points    motions of all components, 4 scalars per slot
+/// products  the matrix times these, in the wide layout
+void ComponentUnknown::take(const Dynamics& dynamics, const Points& points, const Points& products) {
   const auto& matrix = dynamics.matrix();
+  begin = matrix.wideSize();
+  std::size_t end = 0;
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    if (dynamics.componentOf(n) != component) continue;
+    nodes_.push_back(n);
+    const std::size_t chunk = matrix.wideOf(n) / kernels::kWideVector * kernels::kWideVector;
+    begin = std::min(begin, chunk);
+    end = std::max(end, chunk + kernels::kWideVector);
+  }
+  assert(begin < end);
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    motions[k].assign(matrix.wideSize(), btScalar(0));
-    images[k].assign(matrix.wideSize(), btScalar(0));
-    if (!rounded) matrix.multiply(points[k].data(), images[k].data(), threads);
-    for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
-      const btVector3 motion = fromPoint(&points[k][4 * matrix.slotOf(n)]);
-      toWide(motion, &motions[k][matrix.wideOf(n)]);
-      if (rounded) toWide(matrix.mass(n) * motion, &images[k][matrix.wideOf(n)]);
+    motions[k].assign(end - begin, btScalar(0));
+    images[k].assign(end - begin, btScalar(0));
+    for (const std::size_t n : nodes_) {
+      toWide(fromPoint(&points[k][4 * matrix.slotOf(n)]), &motions[k][matrix.wideOf(n) - begin]);
+      toWide(fromWide(&products[k][matrix.wideOf(n)]), &images[k][matrix.wideOf(n) - begin]);
     }
   }
 }
 
+/// What rounding has added to the images of translations, relative to these: nothing elastic resists a translation, so
+/// that A Z = M Z. It grows with the stiffness of the tets, in relation to their mass.
+double ComponentUnknown::rounding(const Dynamics& dynamics) const {
+  const auto& matrix = dynamics.matrix();
+  double added = 0.0, all = 0.0;
+  for (std::size_t k = 0; k < Dynamics::kTranslations; ++k) {
+    for (const std::size_t n : nodes_) {
+      const std::size_t at = matrix.wideOf(n) - begin;
+      const btVector3 exact = matrix.mass(n) * fromWide(&motions[k][at]);
+      added += (toEigen(fromWide(&images[k][at])) - toEigen(exact)).squaredNorm();
+      all += toEigen(exact).squaredNorm();
+    }
+  }
+  return std::sqrt(added / all);
+}
+
+/// Elasticity resists rigid motions as far as the matrix belongs to other rotations than the body's, or to a deformed
+/// body: little, in a body so stiff that rounding matters.
+void ComponentUnknown::leaveOutElasticity(const Dynamics& dynamics) {
+  const auto& matrix = dynamics.matrix();
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    for (const std::size_t n : nodes_) {
+      const std::size_t at = matrix.wideOf(n) - begin;
+      toWide(matrix.mass(n) * fromWide(&motions[k][at]), &images[k][at]);
+    }
+  }
+}
+
+/// elastic  whether the elastic forces count for the momentum; their sum is 0 but for rounding
+void ComponentUnknown::findMass(const Dynamics& dynamics, bool elastic) {
+  const auto& matrix = dynamics.matrix();
+  AlignedVector<btScalar> right(motions[0].size(), btScalar(0));
+  for (const std::size_t n : nodes_) {
+    btVector3 own = matrix.mass(n) * fromWide(dynamics.deviation() + matrix.wideOf(n));
+    if (elastic) dynamics.rightSide(n, own.m_floats);
+    toWide(own, &right[matrix.wideOf(n) - begin]);
+  }
+  began = productsOf(motions, right.data());
+  for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
+    mass.col(indexOf(k)) = productsOf(motions, images[k].data());
+  }
+  mass = (0.5 * (mass + mass.transpose())).eval();
+}
+
 Vector6 ComponentUnknown::imageProducts(const btScalar* wide) const {
-  return productsOf(images, wide);
+  return productsOf(images, wide + begin);
 }
 
 Vector6 ComponentUnknown::motionProducts(const btScalar* wide) const {
-  return productsOf(motions, wide);
+  return productsOf(motions, wide + begin);
 }
 
 void ComponentUnknown::addImages(const Vector6& q, btScalar* wide) const {
-  addFields(images, q, wide);
+  addFields(images, q, wide + begin);
 }
 
 void ComponentUnknown::addMotions(const Vector6& q, Dynamics& dynamics) const {
-  addFields(motions, q, dynamics.matrix().solution());
+  addFields(motions, q, dynamics.matrix().solution() + begin);
 }
 
 RowMotions ComponentUnknown::motionsAt(const Dynamics& dynamics, const CarriedPoint& point) const {
   assert(point.count > 0);
   RowMotions at;
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    at.col(indexOf(k)) = toEigen(
-        point.sum([&](int n) { return fromWide(&motions[k][dynamics.matrix().wideOf(static_cast<std::size_t>(n))]); }));
+    at.col(indexOf(k)) = toEigen(point.sum([&](int n) {
+      const auto node = static_cast<std::size_t>(n);
+      if (dynamics.componentOf(node) != component) return btVector3(0, 0, 0);
+      return fromWide(&motions[k][dynamics.matrix().wideOf(node) - begin]);
+    }));
   }
   return at;
 }

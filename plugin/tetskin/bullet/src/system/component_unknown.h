@@ -11,7 +11,7 @@
 #include <tetskin/core/src/base/aligned.h>
 
 #include <Eigen/Core>
-#include <optional>
+#include <vector>
 
 namespace tetskin::bullet_detail {
 
@@ -22,15 +22,17 @@ using RowMotions = Eigen::Matrix<double, 3, 6>;
 /// Z are the six motions, A is the matrix without rows, b the right side.
 struct ComponentUnknown {
   std::size_t body = 0;                                      ///< in SolverBodies::bodies
+  std::size_t component = 0;                                 ///< of the body
   Eigen::Index first = 0;                                    ///< index of its six among the system's reduced unknowns
-  AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z, in the wide layout
-  AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, in the wide layout
+  std::size_t begin = 0;                                     ///< of its nodes in the wide layout, and of the fields
+  AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z, in the wide layout from `begin` on
+  AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, likewise
   Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
   Vector6 began = Vector6::Zero();                                         ///< Z^T b
 
-  /// Empty if some node of the component is pinned.
+  /// Those of a body's components, the first `most` of them, without components of which some node is pinned.
   /// dynamics  whose matrix has no rows added yet
-  static std::optional<ComponentUnknown> make(const Dynamics& dynamics, std::size_t component, ParallelFor* threads);
+  static std::vector<ComponentUnknown> makeAll(const Dynamics& dynamics, std::size_t most, ParallelFor* threads);
 
   /// Z^T A times a vector in the wide layout.
   Vector6 imageProducts(const btScalar* wide) const;
@@ -45,7 +47,11 @@ struct ComponentUnknown {
 
  private:
   using Points = AlignedVector<btScalar>[Dynamics::kRigidMotions];
-  void findImages(const Dynamics& dynamics, const Points& points, bool rounded, ParallelFor* threads);
+  void take(const Dynamics& dynamics, const Points& points, const Points& products);
+  double rounding(const Dynamics& dynamics) const;
+  void leaveOutElasticity(const Dynamics& dynamics);
+  void findMass(const Dynamics& dynamics, bool elastic);
+  std::vector<std::size_t> nodes_;  ///< of the component
 };
 
 }  // namespace tetskin::bullet_detail

@@ -19,7 +19,7 @@ namespace {
 /// Stiffness factor from which on the rigid motions of components are separate unknowns.
 constexpr double kStiffPart = 5.0;
 /// Most components of a body whose rigid motions are separate unknowns.
-constexpr std::size_t kMaxParts = 4;
+constexpr std::size_t kMaxParts = 64;
 
 Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
   Eigen::Matrix3d to;
@@ -51,10 +51,7 @@ void SystemSolve::collectComponents() {
   std::vector<std::vector<ComponentUnknown>> found(bodies_.size());
   forEachBody([&](Body& body, ParallelFor* inner) {
     if (!needsComponents(body)) return;
-    for (std::size_t component = 0; component < std::min(body.dynamics().componentCount(), kMaxParts); ++component) {
-      std::optional<ComponentUnknown> unknown = ComponentUnknown::make(body.dynamics(), component, inner);
-      if (unknown) found[body.solved.place].push_back(std::move(*unknown));
-    }
+    found[body.solved.place] = ComponentUnknown::makeAll(body.dynamics(), kMaxParts, inner);
   });
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     bodies_[k].firstComponent = components_.size();

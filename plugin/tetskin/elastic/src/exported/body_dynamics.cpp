@@ -520,7 +520,7 @@ bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&mot
     for (std::size_t k = 0; k < 3; ++k) centroid[k] += m * static_cast<double>(moved_[4 * slot + k]);
   }
   if (!(mass > 0.0)) return false;
-  for (AlignedVector<S>& motion : motions) motion.assign(4 * matrix_.slotCount(), S(0));
+  for (AlignedVector<S>& motion : motions) motion.resize(4 * matrix_.slotCount(), S(0));
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n);
     if (partOf_[slot] != component) continue;

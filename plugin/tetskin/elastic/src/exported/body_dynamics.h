@@ -41,7 +41,7 @@ template <class S>
 class TETSKIN_ELASTIC_API BodyDynamics {
  public:
   /// Three translations and three rotations.
-  static constexpr std::size_t kRigidMotions = 6;
+  static constexpr std::size_t kRigidMotions = 6, kTranslations = 3;
 
   /// rest  may be empty: a body without elasticity, which has masses only
   BodyDynamics(RestTets rest, std::size_t nodes);
@@ -150,8 +150,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   double alpha() const { return alpha_; }
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
-  /// scalars per slot. Returns false, and writes nothing, if some node of the component is pinned, or it has no mass.
+  /// scalars per slot. Writes those of the component's nodes alone: several components may share the vectors, which are
+  /// empty before the first. Returns false, and writes nothing, if some node of it is pinned, or it has no mass.
   bool rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const;
+  std::size_t componentOf(std::size_t node) const { return partOf_[matrix_.slotOf(node)]; }
   std::size_t componentCount() const { return motions_.size(); }
   /// Replaces the solution, for each component, by the rigid motion with its momentum, as far as pinned nodes permit
   /// it.
