@@ -5,8 +5,9 @@
 //
 //   ready             a promise: the first scene is shown. Resolves to null, or to the sentence that is shown instead
 //   scenes            names
-//   state()           {scene, frame, first, hash, playing, tets, triangles, bodies, balls, held, milliseconds, times}.
-//                     first: the earliest frame that there is to go back to; times: milliseconds by stage
+//   state()           {scene, frame, first, hash, compared, playing, tets, triangles, bodies, balls, held, milliseconds,
+//                     times}. first: the earliest frame that there is to go back to; compared: {frame, hash} that is
+//                     shown beside the native one; times: milliseconds by stage
 //   errors            sentences of all errors so far
 //   open(name, settings)   opens a scene, paused, with these settings changed: {stiffness, damping, gravity, tets,
 //                     elements: 'linear' or 'quadratic', skin: likewise}; of all but the first four, others stay
@@ -39,7 +40,7 @@ async function startLive() {
     await window.live.start();
     return null;
   } catch (error) {
-    const sentence = sentenceOf(error, 'The page');
+    const sentence = sentenceOf(error, 'The page', 'Load it again');
     window.live.fail(sentence);
     return sentence;
   }
@@ -58,9 +59,10 @@ window.tetskinLive = {
   scenes: Object.keys(SCENES),
   get errors() { return window.live ? window.live.errors : []; },
   state() {
-    const {description, state, playing} = window.live, {frame, first, hash, balls, held, milliseconds, times} = state;
+    const {description, state, playing} = window.live;
+    const {frame, first, hash, compared, balls, held, milliseconds, times} = state;
     const {name: scene, tets, triangles} = description;
-    return {scene, tets, triangles, frame, first, hash, playing,
+    return {scene, tets, triangles, frame, first, hash, compared, playing,
       bodies: state.bodies.length, balls, held, milliseconds, times};
   },
   async open(name, settings = {}) {

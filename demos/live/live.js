@@ -8,8 +8,6 @@ const element = id => document.getElementById(id);
 const withCommas = number => number.toLocaleString('en');
 
 const TETS = [100, 300, 600, 1000, 2000, 3000, 5000];
-/** What the sliders say where nothing else is asked for. */
-const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, tets: 0, elements: 'linear', skin: 'linear'};
 /** Frames that a picture asks for at most: on slower machines time goes slower. */
 const MOST_FRAMES = 3;
 const REWOUND = 600;
@@ -22,16 +20,18 @@ const STAGES = {
   system: 'contact solve', other: 'Bullet', bones: 'bones',
 };
 
-/** What a person can do about an error. */
-function sentenceOf(error, what) {
+/** What a person can do about an error. what: has failed; cure: where there is too little memory for it */
+function sentenceOf(error, what, cure = 'Choose fewer tets') {
   if (error.code === 'OutOfMemory') {
-    return `${what} needs more memory than this page has. Try fewer tets or triangles, or close other pages.`;
+    return `${what} needs more memory than this page has. ${cure}, or close other pages.`;
   }
   if (error.code === 'Unsupported') {
     return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 95, ' +
       'Firefox from 113, Safari from 16.4 have it.';
   }
-  return `${what}: ${error.message}`;
+  // Readers have a file by the name "file": what follows it, a line, stays.
+  const [, place, message] = /^(?:file\.\w+(:\d+)?: )?([^]*)$/.exec(error.message);
+  return `${what}${place || ''}: ${message}`;
 }
 
 class Live {
@@ -170,7 +170,7 @@ class Live {
     this.changed = true;
   }
 
-  showFigures({times, milliseconds, hash, frame, bodies}) {
+  showFigures({times, milliseconds, hash, compared, frame, bodies}) {
     const now = performance.now();
     const mean = this.meanTimes || {...times, step: milliseconds};
     for (const [stage, ms] of Object.entries({...times, step: milliseconds})) mean[stage] += 0.1 * (ms - mean[stage]);
@@ -184,6 +184,18 @@ class Live {
       `<tr><td>bodies at rest<td>${asleep} of ${bodies.length}`);
     element('figures').innerHTML = rows.join('');
     element('hash').textContent = `state ${hash}`;
+    this.showNative(compared);
+  }
+
+  /** compared: {frame, hash}, the last state to compare with that of the library in C++; null: none */
+  showNative(compared) {
+    const hashes = this.data.native[this.description.name], line = element('native');
+    const native = compared && hashes && hashes[compared.frame / COMPARED_EVERY - 1];
+    line.hidden = !native;
+    if (!native) return;
+    const {frame, hash} = compared, isEqual = hash === native;
+    line.classList.toggle('differs', !isEqual);
+    line.textContent = isEqual ? `frame ${frame}: ${hash}, in C++ the same` : `frame ${frame}: ${hash}, in C++ ${native}`;
   }
 
   play(playing) {
@@ -370,6 +382,10 @@ class Live {
       const [has, most] = [file.size, LONGEST_FILE].map(bytes => Math.round(bytes / 1e6));
       return this.tell(`${file.name} has ${has} MB; this page reads up to ${most}.`);
     }
+    const formats = element('file').accept.split(',');
+    if (!formats.some(format => file.name.toLowerCase().endsWith(format))) {
+      return this.tell(`${file.name} is none of what this page reads: ${formats.join(', ')}.`);
+    }
     const cages = this.cages = new Port(this.workerText, () => {});
     try {
       this.work(`${file.name}: reading`, 0, () => cages.end());
@@ -381,7 +397,7 @@ class Live {
       });
       await this.add(made);
     } catch (error) {
-      if (error.code !== 'Cancelled') this.tell(sentenceOf(error, file.name));
+      if (error.code !== 'Cancelled') this.tell(sentenceOf(error, file.name, 'Take fewer triangles'));
     } finally {
       cages.end();
       this.cages = null;

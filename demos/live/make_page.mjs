@@ -66,7 +66,7 @@ function pack(json) {
     before = corner;
   }
   const zipped = gzipSync(Uint8Array.from(bytes), {level: 9}).toString('base64');
-  return {serpent: {vertices, triangles, groups, box}, materials, zipped};
+  return {serpent: {vertices, triangles, groups, box}, materials, zipped, native: JSON.parse(text(HERE, 'native_hashes.json'))};
 }
 
 /** The template, with each word of the form @NAME@ replaced once by its text. */

@@ -5,6 +5,10 @@
 // number alone, so that a world that was taken back goes on as it did.
 
 const FRAME = 1 / 60;
+/** What the sliders say where nothing else is asked for. tets: 0, the scene's own number. */
+const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, tets: 0, elements: 'linear', skin: 'linear'};
+/** Frames between two states that native_hashes.json has. */
+const COMPARED_EVERY = 30;
 
 /** From 0 to 1 while t goes from one time to another. */
 function eased(from, to, t) {

@@ -176,6 +176,8 @@ class Simulation {
     this.script = null;
     this.held = null;   // {hit, spring, target}
     this.frame = 0;
+    this.touched = !this.isUsual();  // by hands or settings: what follows is not what a native run has
+    this.compared = null;            // {frame, hash}, the last one to compare with a native run
     this.kept = [];     // snapshots, the oldest first
     this.spare = [];    // memory of former ones
     SCENES[name].build(new Builder(this));
@@ -212,6 +214,7 @@ class Simulation {
       simulated += this.world.times.total;
       ++this.frame;
       if (this.frame % KEEP_EVERY === 0) this.keep();
+      if (this.frame % COMPARED_EVERY === 0 && !this.touched) this.compared = {frame: this.frame, hash: this.world.hash};
     }
     this.milliseconds = (performance.now() - began) / Math.max(1, frames);
   }
@@ -223,6 +226,7 @@ class Simulation {
     return {
       frame: this.frame, memory, bytes: this.world.save(memory), thrown: this.thrown.length,
       held: this.held && {hit: this.held.hit, target: this.held.target}, settings: JSON.stringify(this.settings),
+      touched: this.touched,
     };
   }
 
@@ -266,6 +270,8 @@ class Simulation {
     this.world.restore(snapshot.bytes);
     if (spring) spring.delete();
     this.frame = snapshot.frame;
+    this.touched = snapshot.touched || !this.isUsual();
+    if (this.compared && this.compared.frame > this.frame) this.compared = null;
     if (snapshot.settings !== JSON.stringify(this.settings)) this.applySettings();
   }
 
@@ -274,7 +280,13 @@ class Simulation {
   /** Those that a running world takes. */
   set(settings) {
     Object.assign(this.settings, settings);
+    this.touched = this.touched || !this.isUsual();
     this.applySettings();
+  }
+
+  /** But for the skin, which changes nothing that is simulated. */
+  isUsual() {
+    return Object.keys(USUAL).every(name => name === 'skin' || this.settings[name] === USUAL[name]);
   }
 
   applySettings() {
@@ -293,6 +305,7 @@ class Simulation {
     this.letGo();
     const hit = rays.reduce((found, {from, to}) => found || this.world.raycast(from, to), null);
     if (!hit) return null;
+    this.touched = true;
     this.held = {hit, spring: this.world.addSpring(hit), target: [...hit.point]};
     return {point: [...hit.point], distance: hit.distance};
   }
@@ -312,6 +325,7 @@ class Simulation {
   push({from, to, strength}) {
     const hit = this.world.raycast(from, to);
     if (!hit) return null;
+    this.touched = true;
     const length = Math.hypot(...to.map((x, k) => x - from[k])), along = to.map((x, k) => (x - from[k]) / length);
     const radius = 0.35, centre = hit.point.map((x, k) => x - 0.4 * radius * along[k]);
     hit.body.applyRadialImpulse(centre, radius, strength * hit.body.mass);
@@ -320,6 +334,7 @@ class Simulation {
 
   /** The oldest is thrown again where there are many. */
   throwBall({position, velocity, radius}) {
+    this.touched = true;
     const place = this.throws++ % MOST_THROWN;
     if (this.thrown.length === MOST_THROWN) {
       Object.assign(this.thrown[place], {position, velocity, angularVelocity: [0, 0, 0]});
@@ -331,6 +346,7 @@ class Simulation {
   /** A body that was dropped on the page. The world before it does not come back. */
   add({mesh: meshBytes, cage: cageBytes}) {
     this.letGo();
+    this.touched = true;
     const mesh = this.module.meshFromBytes(meshBytes), cage = this.module.cageFromBytes(cageBytes);
     const model = this.addModel(mesh, cage, null), {settings} = this;
     const body = this.world.addBody(cage, mesh, {
@@ -374,7 +390,7 @@ class Simulation {
       ({bones: model.palette(skin).update(body).slice(), nodes: body.nodes.slice(), asleep: body.asleep}));
     const bones = performance.now() - began;
     return {
-      frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, skin, bodies,
+      frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, compared: this.compared, skin, bodies,
       poses: this.world.poses().slice(),
       balls: this.thrown.length, held: this.held && [...this.held.spring.position],
       times: {...this.timesOf(), bones}, milliseconds: this.milliseconds || 0,

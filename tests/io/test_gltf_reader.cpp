@@ -343,6 +343,9 @@ TEST(LoadGltf, NamesWhatIsNoGltf) {
     EXPECT_FALSE(status.ok()) << text;
     EXPECT_NE(status.message.find("m.gltf: "), std::string::npos) << status.message;
   }
+  for (const char* text : {"", " \n", "solid", "\xef\xbb\xbf[1]", "GLTF"}) {
+    expectError(loadMeshText("m.glb", text), kMalformed, {"m.glb: is no glTF 2.0", "'glTF'", "'{'"});
+  }
   const auto glb = [](std::uint32_t scene) { return "glTF" + raw<std::uint32_t>({2, 24, scene}) + "JSON" + "{}  "; };
   expectError(loadMeshText("m.glb", glb(2000000000)), kMalformed,
               {"m.glb: states a chunk of 2000000000 bytes", "contains 4", "complete"});

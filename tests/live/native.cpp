@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Plays a scene of the live page natively, to be compared with what JavaScript makes of it: the nodes' bits, with
+// Plays a scene of the live page natively, to be compared with what JavaScript makes of it: the state's bits, with
 // `deterministic`, and the time.
-//   live_native SCENE FRAMES [--any] [--fast]   SCENE: what describe.mjs writes
-// Prints a hash of the nodes' positions after so many frames of four substeps, and the median of what frames took, in
+//   live_native SCENE FRAMES [--any] [--fast]   SCENE: what describe.js writes
+// Prints the hash of the state after each 30 frames of four substeps, and the median of what frames took, in
 // milliseconds, with the instructions that each processor of this architecture has.
 //   --any   with those that this processor has
 //   --fast  without `deterministic`
@@ -12,6 +12,7 @@
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/soft_body_skin.h>
+#include <tetskin/bullet/src/exported/state_hash.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
@@ -87,6 +88,7 @@ TriangleMesh readMesh(const std::string& path) {
 
 struct Rigid {
   std::unique_ptr<btCollisionShape> shape;
+  std::unique_ptr<btDefaultMotionState> motion;  // as the module has it: it turns zeros of the basis positive
   std::unique_ptr<btRigidBody> body;
 };
 
@@ -127,22 +129,7 @@ class Scene {
     SoftBodySkin::updateAll(skins.data(), skins.size());
   }
 
-  /// FNV-1a of the nodes' positions.
-  std::uint64_t hash() const {
-    std::uint64_t hash = 1469598103934665603u;
-    for (const auto& soft : softs_) {
-      const auto& nodes = soft->body->body().m_nodes;
-      for (int n = 0; n < nodes.size(); ++n) {
-        for (int k = 0; k < 3; ++k) {
-          const auto x = static_cast<float>(nodes[n].m_x[k]);
-          std::uint32_t bits = 0;
-          std::memcpy(&bits, &x, sizeof bits);
-          for (int byte = 0; byte < 4; ++byte) hash = (hash ^ (bits >> 8 * byte & 0xff)) * 1099511628211u;
-        }
-      }
-    }
-    return hash;
-  }
+  std::uint64_t hash() const { return bullet_detail::stateHash(*world_); }
 
   std::size_t tets() const {
     std::size_t sum = 0;
@@ -175,12 +162,12 @@ class Scene {
     const btTransform pose = words.pose();
     btVector3 inertia(0, 0, 0);
     if (mass > 0) shape->calculateLocalInertia(mass, inertia);
-    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape.get(), inertia);
-    info.m_startWorldTransform = pose;
+    auto motion = std::make_unique<btDefaultMotionState>(pose);
+    btRigidBody::btRigidBodyConstructionInfo info(mass, motion.get(), shape.get(), inertia);
     info.m_friction = btScalar(words.number());
     auto body = std::make_unique<btRigidBody>(info);
     world_->addRigidBody(body.get());
-    rigids_.push_back({std::move(shape), std::move(body)});
+    rigids_.push_back({std::move(shape), std::move(motion), std::move(body)});
   }
 
   /// Mesh, tets, position, rotation, mass, relative stiffness, damping, friction, kind of contact among soft bodies.
@@ -236,10 +223,11 @@ int main(int argc, char** argv) try {
     const auto start = std::chrono::steady_clock::now();
     scene.step();
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    if ((frame + 1) % 30 != 0) continue;
+    std::printf("hash %d %016llx\n", frame + 1, static_cast<unsigned long long>(scene.hash()));
   }
   std::nth_element(times.begin(), times.begin() + frames / 2, times.end());
-  std::printf("tets %zu\nhash %016llx\nmilliseconds %.3f\n", scene.tets(),
-              static_cast<unsigned long long>(scene.hash()), times[static_cast<std::size_t>(frames) / 2]);
+  std::printf("tets %zu\nmilliseconds %.3f\n", scene.tets(), times[static_cast<std::size_t>(frames) / 2]);
   return 0;
 } catch (const std::exception& fault) {
   return std::puts(fault.what()), 2;

@@ -1,16 +1,25 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The page's scenes, as live_native plays them."""
+"""The page's scenes, as live_native plays them. As a program: writes demos/live/native_hashes.json, the hashes that the
+page shows beside its own. After the solver has changed, build the page and live_native (TETSKIN_LIVE_NATIVE is its
+path), run this, and build the page again."""
 import json
 import re
 import struct
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
-from live import NATIVE
+import chromium
+from live import NATIVE, REPOSITORY, Live
 
 DESCRIBE = (Path(__file__).parent / "describe.js").read_text(encoding="utf-8")
+HASHES = REPOSITORY / "demos/live/native_hashes.json"
+# Scenes without rigid bodies that turn, and without a script: Bullet turns by the C library's sines, scripts by the
+# browser's. Ten seconds of them, every half second.
+COMPARED, FRAMES, EVERY = ("serpent", "heap", "stack"), 600, 30
 
 
 def stored_scene(live, scene, folder):
@@ -28,23 +37,25 @@ def stored_scene(live, scene, folder):
     return text
 
 
-def native_hash(live, scene, frames):
+def native_hashes(live, scene, frames):
+    """Of the state after each 30 frames, of the scene that the page has."""
     with tempfile.TemporaryDirectory() as folder:
         said = subprocess.run([NATIVE, stored_scene(live, scene, Path(folder)), str(frames)], capture_output=True, text=True,
                               check=True).stdout
-    return re.search("hash (.*)", said)[1]
+    return re.findall(r"hash \d+ (.*)", said)
 
 
-def nodes_of(live):
-    """Positions of all nodes, body by body, as bytes."""
-    return live.page.evaluate("simulation.parts.map(({body}) => [...new Uint8Array(body.nodes.slice().buffer)])",
-                              session=live.worker())
+def main():
+    if not NATIVE:
+        sys.exit(__doc__)
+    hashes = {}
+    with chromium.Chromium() as browser:
+        live = Live(browser)
+        for scene in COMPARED:
+            live.open(scene)
+            hashes[scene] = native_hashes(live, scene, FRAMES)
+    HASHES.write_text(json.dumps(hashes, indent=1) + "\n", encoding="utf-8")
 
 
-def hash_of(bodies):
-    """FNV-1a, as live_native's"""
-    value = 1469598103934665603
-    for nodes in bodies:
-        for byte in nodes:
-            value = (value ^ byte) * 1099511628211 & 0xffffffffffffffff
-    return f"{value:016x}"
+if __name__ == "__main__":
+    main()

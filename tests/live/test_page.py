@@ -3,11 +3,12 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """The live page: its file, its scenes, time that goes back, memory, and the bits of its nodes."""
 import gzip
+import json
 import re
 import unittest
 
 from live import DESKTOP, NATIVE, PAGE, Server, WithBrowser, colours
-from native import hash_of, native_hash, nodes_of
+from native import COMPARED, FRAMES, HASHES, native_hashes
 
 SCENES = ["serpent", "heap", "pit", "gripper", "stack", "twist"]
 MEGABYTE = 1e6
@@ -85,10 +86,16 @@ class OneScene(WithBrowser):
         self.assertEqual(other.step(60)["hash"], first)
 
     @unittest.skipUnless(NATIVE, "no live_native: built with the tests of a folder that is configured")
-    def test_nodes_after_120_frames_are_those_of_a_native_run(self):
-        live = self.live(scene="serpent")
-        live.step(120)
-        self.assertEqual(hash_of(nodes_of(live)), native_hash(live, "serpent", 120))
+    def test_states_are_those_of_a_native_run_which_are_shown_beside_them(self):
+        live = self.live(scene=self.scene)
+        hashes = native_hashes(live, self.scene, 120)
+        for half_second, native in enumerate(hashes, start=1):
+            state = live.step(30)
+            self.assertEqual((state["frame"], state["hash"]), (30 * half_second, native))
+            self.assertEqual(state["compared"], {"frame": state["frame"], "hash": native})
+            self.assertEqual(live.text("#native"), f"frame {state['frame']}: {native}, in C++ the same")
+        self.assertEqual(hashes, json.loads(HASHES.read_text(encoding="utf-8"))[self.scene][:4],
+                         "what the page has of native runs is old: tests/live/native.py writes it")
 
 
 class OtherScenes(WithBrowser):
@@ -113,13 +120,38 @@ class OtherScenes(WithBrowser):
                 self.assertEqual(live.step(50)["hash"], hashes[3])
 
     @unittest.skipUnless(NATIVE, "no live_native")
-    def test_soft_bodies_alone_have_the_bits_of_a_native_run(self):
-        live = self.live()
-        for scene in ("heap", "stack"):
+    def test_soft_bodies_alone_have_the_bits_of_a_native_run_for_ten_seconds(self):
+        live, shown = self.live(), json.loads(HASHES.read_text(encoding="utf-8"))
+        self.assertEqual(tuple(shown), COMPARED)
+        for scene in COMPARED:
             with self.subTest(scene):
                 live.open(scene)
-                live.step(120)
-                self.assertEqual(hash_of(nodes_of(live)), native_hash(live, scene, 120))
+                hashes = native_hashes(live, scene, FRAMES)
+                self.assertEqual([live.step(30)["hash"] for _ in hashes], hashes)
+                self.assertEqual(hashes, shown[scene], "tests/live/native.py writes what the page shows")
+
+    def test_what_was_touched_is_not_compared(self):
+        live = self.live(scene="stack")
+        hidden = "document.getElementById('native').hidden"
+        live.step(30)
+        self.assertFalse(live.page.evaluate(hidden))
+        live.call("push", 480, 300)
+        self.assertEqual(live.step(60)["compared"]["frame"], 30)
+        live.call("rewind", 80)
+        self.assertEqual(live.step(20)["compared"]["frame"], 30, "before it was touched")
+        live.call("reset")
+        self.assertTrue(live.page.evaluate(hidden))
+        live.open("stack", stiffness=100)
+        self.assertIsNone(live.step(30)["compared"])
+        self.assertTrue(live.page.evaluate(hidden))
+
+    def test_another_hash_than_the_native_one_is_seen(self):
+        live = self.live(scene="stack")
+        self.addCleanup(live.page.evaluate, "live.data.native.stack[0] = kept, 0")
+        live.page.evaluate("kept = live.data.native.stack[0], live.data.native.stack[0] = 'another', 0")
+        live.step(30)
+        self.assertIn("in C++ another", live.text("#native"))
+        self.assertTrue(live.page.evaluate("document.getElementById('native').classList.contains('differs')"))
 
     def test_each_is_chosen_by_its_button_on_a_phone_too(self):
         for phone in (False, True):

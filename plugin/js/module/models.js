@@ -92,6 +92,7 @@ class Palette extends Thing {
   }
 }
 
+const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
 const kCageOptions = {targetTets: 3000, duplicateElements: true, fit: true, progress: undefined};
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
 const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
@@ -113,9 +114,8 @@ class Tetskin {
     const content = bytesOf(bytes, "bytes");
     if (typeof format !== "string") throw invalid("format: must be a string, for instance obj");
     const extension = format.slice(format.lastIndexOf(".") + 1).toLowerCase();
-    if (!/^[a-z0-9]{1,8}$/.test(extension)) {
-      throw new TetskinError("UnsupportedFormat",
-        `format: ${format} names none; read are obj, ply, off, stl, glb, gltf`);
+    if (!kFormats.includes(extension)) {
+      throw new TetskinError("UnsupportedFormat", `format: ${format} is none of ${kFormats.join(", ")}`);
     }
     return this.withMemory(memory => {
       const {at, count} = memory.bytes(content);

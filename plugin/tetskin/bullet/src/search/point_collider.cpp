@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/search/point_collider.h>
 #include <tetskin/bullet/src/search/point_path.h>
+#include <tetskin/core/src/base/arithmetic/larger.h>
 
 #include <algorithm>
 #include <cassert>
@@ -216,7 +217,7 @@ btScalar PointCollider::clearance(const ContactPatch& patch, btScalar known) con
   btScalar moved = 0;
   for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
     const btVector3& from = memory_->carriers[patch.firstNode + n];
-    moved = std::max({moved, (carriers_[n].now - from).length2(), (carriers_[n].predicted - from).length2()});
+    moved = larger(larger(moved, (carriers_[n].now - from).length2()), (carriers_[n].predicted - from).length2());
   }
   return known - speculation_ - btSqrt(moved) * patch.spread;
 }
