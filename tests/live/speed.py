@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a frame of the live page costs: four substeps of the serpent on ramp and dome. By hand, on a machine that does
-nothing else; prints a table.
+"""What a frame of the live page costs: four substeps of the serpent on ramp and dome, and then of all scenes. By hand, on
+a machine that does nothing else; prints two tables.
 
 speed.py [FRAMES [ROUNDS]]   by default 240 frames, five rounds
 
 By turns, in each round: natively, with the instructions that each x86-64 processor has (SSE2), with and without
 `deterministic`, and with all that this one has; in Node; and in the page's worker in Chromium, where the bones and the
-hash of each frame are made, too. Medians over frames, then over rounds; ratios are medians of those within a round.
+hash of each frame are made, too. Medians over frames, then over rounds; ratios are medians of those within a round. Of
+all scenes in the worker: median, mean, and what 95 of 100 frames stay below.
 Needs the page (./demos/run --live), build/js/package, and live_native (see tests/live/run).
 """
 import os
@@ -32,6 +33,7 @@ def said(command):
 
 
 def main(frames, rounds):
+    scenes = {}
     columns = {"native, SSE2, deterministic": [], "native, SSE2": [], "native": [], "Node": [], "Chromium's worker": []}
     with chromium.Chromium() as browser, tempfile.TemporaryDirectory() as folder:
         live = Live(browser)
@@ -48,7 +50,10 @@ def main(frames, rounds):
             for column, result in zip(columns.values(), results):
                 column.append(result)
             if node["hash"] != first["hash"]:
-                print("Node's nodes are not those of the native run", file=sys.stderr)
+                print("Node's states are not those of the native run", file=sys.stderr)
+        for name in live.page.evaluate("tetskinLive.scenes"):
+            tets = live.open(name)["tets"]
+            scenes[f"{name}, {tets:,} tets"] = sorted(live.call("time", frames))
     processor = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
     print(f"serpent on ramp and dome, {first['tets']} tets, four substeps; {frames} frames, {rounds} rounds; "
           f"{processor[1] if processor else 'unknown processor'}, load {os.getloadavg()[0]:.1f}")
@@ -57,6 +62,10 @@ def main(frames, rounds):
     for name, column in columns.items():
         ratio = statistics.median(one / other for one, other in zip(column, base))
         print(f"| {name} | {statistics.median(column):.2f} | {ratio:.2f} |")
+    print("\n| in Chromium's worker | median | mean | 95 of 100 below |\n|---|---|---|---|")
+    for name, times in scenes.items():
+        median, most = statistics.median(times), times[95 * len(times) // 100]
+        print(f"| {name} | {median:.1f} ms | {statistics.mean(times):.1f} | {most:.1f} |")
 
 
 if __name__ == "__main__":

@@ -135,7 +135,7 @@ class OtherScenes(WithBrowser):
         hidden = "document.getElementById('native').hidden"
         live.step(30)
         self.assertFalse(live.page.evaluate(hidden))
-        live.call("push", 480, 300)
+        live.call("push", *live.call("onScreen", [0, 1.11, 0.3]))
         self.assertEqual(live.step(60)["compared"]["frame"], 30)
         live.call("rewind", 80)
         self.assertEqual(live.step(20)["compared"]["frame"], 30, "before it was touched")

@@ -20,7 +20,7 @@ from programs import examples, options
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 NO_COMMAND_LINE = ["tetskin_hello"]
-LANGUAGES = ("sh", "cpp", "cmake", "json", "text", "python", "")  # Python's by tests/python
+LANGUAGES = ("sh", "cpp", "cmake", "json", "text", "python", "js", "")  # by tests/python, tests/js
 COMMAND = re.compile(r"\s*(\./|build/|tetskin_|cmake |ctest )")
 DROPS = "./demos/run"  # builds tetskin_drop, and runs it with its own arguments
 
