@@ -291,6 +291,7 @@ class Page:
 
     def release(self):
         if self.phone:
+            self.browser.listen(0.1)  # a finger that is lifted in motion throws the page, and the next tap would only stop it
             self.touch("touchEnd")
         else:
             self.mouse("mouseReleased", *self.finger)
@@ -346,12 +347,14 @@ class Page:
         return data
 
     def javascript_memory(self):
-        """Bytes of JavaScript's heaps in use after a collection, in the page and in its workers together."""
+        """Bytes of JavaScript's heaps in use after a collection, with those of arrays, which are outside of them, in the page
+        and in its workers together."""
         self.browser.listen(0.2)  # workers that have ended are told
         total = 0
         for session in (self.session, *self.workers):
             self.browser.call("HeapProfiler.collectGarbage", session)
-            total += self.browser.call("Runtime.getHeapUsage", session)["usedSize"]
+            usage = self.browser.call("Runtime.getHeapUsage", session)
+            total += usage["usedSize"] + usage["backingStorageSize"]
         return total
 
     def close(self):

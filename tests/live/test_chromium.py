@@ -110,6 +110,9 @@ class Driver(unittest.TestCase):
         before = page.javascript_memory()
         page.evaluate("more = new Array(1e6).fill(0).map((_, i) => i + 0.5), 0")
         self.assertGreater(page.javascript_memory(), before + 7e6)
+        before = page.javascript_memory()
+        page.evaluate("arrays = [1, 2, 3].map(() => new Float32Array(1e6).fill(1)), 0")
+        self.assertGreater(page.javascript_memory(), before + 11e6, "arrays are outside of the heap")
 
     def test_screenshots_have_the_pages_colours(self):
         for phone, scale in ((False, 1), (True, 2)):
