@@ -49,7 +49,9 @@ TEST_F(ReportOrders, QuadraticTetsBendAsTheBeamDoesAndLinearOnesLess) {
   EXPECT_NEAR(number(quadratic[0], "sag_excess"), 0.0, 0.02);
   EXPECT_LE(number(linear[0], "error_total_rms"),
             number(linear[0], "error_space_rms") + number(linear[0], "error_time_rms") + 1e-9);
-  EXPECT_EQ(scene.at("order_advice").get<std::string>().rfind("Use quadratic tets: ", 0), 0u);
+  // Which linear cage costs as much is measured, and on a busy machine there may be none; the other advice is wrong.
+  const auto advice = scene.at("order_advice").get<std::string>();
+  EXPECT_TRUE(advice.empty() || advice.rfind("Use quadratic tets: ", 0) == 0) << advice;
   const auto own = rowsOf(scene, "reference").back();
   for (const char* error : {"error_of_motion", "error_at_rest", "frequency_error"}) {
     EXPECT_GT(number(own, error), 0.0) << error;
