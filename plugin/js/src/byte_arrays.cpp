@@ -80,6 +80,28 @@ class Reader {
   std::size_t left_;
 };
 
+/// The arrays in their order, for a Writer and for a Reader.
+template <class Stream, class Mesh>
+void visitMesh(Stream& stream, Mesh& mesh) {
+  stream.array(mesh.positions);
+  stream.array(mesh.triangles);
+  stream.array(mesh.normals);
+  stream.array(mesh.texcoords);
+}
+template <class Stream, class AnyCage>
+void visitCage(Stream& stream, AnyCage& cage) {
+  stream.array(cage.mesh.nodes);
+  stream.array(cage.mesh.tets);
+  stream.array(cage.vertexTets);
+  stream.array(cage.volumeFraction);
+  stream.array(cage.stiffnessFactor);
+  stream.array(cage.masses);
+  stream.array(cage.component);
+  stream.array(cage.sourceTet);
+  stream.array(cage.quadraticTet);
+  stream.array(cage.fineVolumeFraction);
+}
+
 void checkLength(std::size_t length, std::size_t vertices) {
   if (length != 0 && length != vertices) fail(StatusCode::SizeMismatch, "bytes of a mesh: an array is too short");
 }
@@ -88,20 +110,14 @@ void checkLength(std::size_t length, std::size_t vertices) {
 
 std::vector<unsigned char> bytesOf(const TriangleMesh& mesh) {
   Writer writer(kMeshTag);
-  writer.array(mesh.positions);
-  writer.array(mesh.triangles);
-  writer.array(mesh.normals);
-  writer.array(mesh.texcoords);
+  visitMesh(writer, mesh);
   return writer.take();
 }
 
 MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count) {
   Reader reader(kMeshTag, bytes, count);
   auto mesh = std::make_shared<TriangleMesh>();
-  reader.array(mesh->positions);
-  reader.array(mesh->triangles);
-  reader.array(mesh->normals);
-  reader.array(mesh->texcoords);
+  visitMesh(reader, *mesh);
   check(validate(*mesh));
   checkLength(mesh->normals.size(), mesh->vertexCount());
   checkLength(mesh->texcoords.size(), mesh->vertexCount());
@@ -111,16 +127,7 @@ MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count) {
 std::vector<unsigned char> bytesOf(const CageModel& model) {
   const Cage& cage = *model.cage;
   Writer writer(kCageTag);
-  writer.array(cage.mesh.nodes);
-  writer.array(cage.mesh.tets);
-  writer.array(cage.vertexTets);
-  writer.array(cage.volumeFraction);
-  writer.array(cage.stiffnessFactor);
-  writer.array(cage.masses);
-  writer.array(cage.component);
-  writer.array(cage.sourceTet);
-  writer.array(cage.quadraticTet);
-  writer.array(cage.fineVolumeFraction);
+  visitCage(writer, cage);
   std::vector<std::uint64_t> hash;
   if (cage.meshHash) hash.push_back(*cage.meshHash);
   writer.array(hash);
@@ -131,16 +138,7 @@ std::vector<unsigned char> bytesOf(const CageModel& model) {
 CageModel cageOfBytes(const unsigned char* bytes, std::size_t count) {
   Reader reader(kCageTag, bytes, count);
   Cage cage;
-  reader.array(cage.mesh.nodes);
-  reader.array(cage.mesh.tets);
-  reader.array(cage.vertexTets);
-  reader.array(cage.volumeFraction);
-  reader.array(cage.stiffnessFactor);
-  reader.array(cage.masses);
-  reader.array(cage.component);
-  reader.array(cage.sourceTet);
-  reader.array(cage.quadraticTet);
-  reader.array(cage.fineVolumeFraction);
+  visitCage(reader, cage);
   std::vector<std::uint64_t> hash;
   reader.array(hash);
   if (!hash.empty()) cage.meshHash = hash.front();
