@@ -30,19 +30,6 @@ class SkinTest : public testing::Test {
     }
   }
 
-  /// The nodes of the sleeping body that can move unnoticed, found by trying.
-  std::vector<int> nodesNotLookedAt() {
-    std::vector<int> unseen;
-    for (int n = 0; n < body->m_nodes.size(); ++n) {
-      const btVector3 here = body->m_nodes[n].m_x;
-      body->m_nodes[n].m_x += btVector3(0, 1, 0);
-      if (skin.update() == StatusCode::Asleep) unseen.push_back(n);
-      body->m_nodes[n].m_x = here;
-      (void)skin.update();
-    }
-    return unseen;
-  }
-
   static Eigen::Vector3d at(const SoftBodySkin& body, std::size_t v) {
     const btScalar* p = body.positions()[v];
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};

@@ -70,6 +70,9 @@ TEST_F(SleepingBody, IsWokenByChangesOfItself) {
   btSoftBody::Node& node = body->m_nodes[5];
   EXPECT_TRUE(isWokenBy([&] { node.m_x.setZ(node.m_x.z() + btScalar(1e-5)); }));
   EXPECT_TRUE(isWokenBy([&] { std::swap(node.m_x, body->m_nodes[6].m_x); }));
+  EXPECT_TRUE(isWokenBy([&] {
+    for (const int n : {5, 6}) body->m_nodes[n].m_x.setY(-body->m_nodes[n].m_x.y());
+  })) << "signs";
   EXPECT_TRUE(isWokenBy([&] { node.m_im /= 2; }));
   EXPECT_TRUE(isWokenBy([&] { body->m_cfg.kDF /= 2; }));
   EXPECT_TRUE(isWokenBy([&] { node.m_v.setX(btScalar(0.1)); }));

@@ -6,9 +6,14 @@
 #include <tetskin/core/mesh_skin.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 
 namespace tetskin {
+
+namespace bullet_detail {
+struct NodeMoves;
+}
 
 /// Data that skins of several bodies with one cage can share: see `SoftBodySkin::binding`.
 using SoftBodyBinding = SkinBinding<btScalar>;
@@ -63,7 +68,8 @@ class TETSKIN_BULLET_API SoftBodySkin {
   Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding, const Options& options) = delete;
 
   /// Computes the current positions, and normals if requested. Cost O(vertexCount + nodeCount); allocates nothing. For
-  /// a sleeping body only a few nodes are read, for a hidden skin nothing.
+  /// a sleeping body in a world of `DeformableSolver` only a few nodes are read; in other worlds, and in none, all, and
+  /// one that has fallen asleep is updated once more. For a hidden skin nothing is read.
   /// alpha    interpolation between the last two recorded steps: 0 is the previous one, 1 the body's current nodes;
   ///          clamped to this range. NaN counts as 1, and so does any value if there is nothing to interpolate: see
   ///          `recordStep`
@@ -95,9 +101,10 @@ class TETSKIN_BULLET_API SoftBodySkin {
   ///       for a hidden skin. Without calls nothing is stored, and alpha has no effect
   void recordStep();
 
-  /// Call this after moving single nodes of a sleeping body by hand: the next update will not skip it. For a sleeping
-  /// body only four nodes, not in one plane, are checked, at least one of which moves in every teleport, rotation,
-  /// stretch or other affine motion of the whole body.
+  /// The next update will not skip a sleeping body. Needed only where the application has written the m_x of single
+  /// nodes of a body in a world of `DeformableSolver`, and wants to see it before the next step, which finds it out and
+  /// wakes the body. There, steps, `translate`, `rotate`, `transform`, `scale` and snapshots are counted; for the rest,
+  /// four nodes are compared that are not in one plane, of which every affine motion of the whole body moves one.
   void markMoved() { moved_ = true; }
   /// Call this after moving a body by hand, asleep or awake, to a position where it shall appear at once: updates do
   /// not show it in between, and the next one has no motion (see `previousPositions`). Without it, the next recorded
@@ -138,20 +145,22 @@ class TETSKIN_BULLET_API SoftBodySkin {
   Status setOrigin(const btVector3& origin);
 
  private:
-  /// A node position at the last update.
+  /// A node position at the last update, of a body whose moves are counted.
   struct Sample {
     int node = 0;
     btScalar position[3] = {};
   };
 
   bool isBetween(btScalar alpha) const { return between_ && alpha < 1; }
-  bool bodyLives() const { return !watched_ || !life_.expired(); }
+  bool bodyLives() const { return !moves_ || !life_.expired(); }
   StatusCode decide(btScalar alpha);
   static void decideAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses, btScalar alpha);
   StatusCode compute(btScalar alpha);
   StatusCode topologyChanged();
   void restart();
-  void sample();
+  bool movesCounted() const;
+  void remember(bool hashes);
+  bool unmoved() const;
   bool samplesUnmoved() const;
   void fetch() const;
   void fetchBody() const;
@@ -162,12 +171,14 @@ class TETSKIN_BULLET_API SoftBodySkin {
   int nodeCount_ = 0;
   int tetCount_ = 0;
   bool visible_ = true;
-  bool watched_ = false;  ///< `life_` tells whether the body still exists
-  bool moved_ = false;    ///< nodes have moved, or may have without a change of samples_: the next update does not skip
-  bool between_ = false;  ///< there are two recorded steps to interpolate between
-  bool sleeps_ = false;   ///< the body slept when the last step was recorded
-  bool teleported_ = false;  ///< the next update counts as no motion
-  std::weak_ptr<const void> life_;
+  bool counted_ = false;                             ///< `seen_` is a number of moves, not a hash
+  bool moved_ = false;                               ///< nodes have moved, or may have: the next update does not skip
+  bool between_ = false;                             ///< there are two recorded steps to interpolate between
+  bool sleeps_ = false;                              ///< the body slept when the last step was recorded
+  bool teleported_ = false;                          ///< the next update counts as no motion
+  const bullet_detail::NodeMoves* moves_ = nullptr;  ///< null if nothing tells whether the body still exists
+  std::weak_ptr<const bullet_detail::NodeMoves> life_;  ///< of `moves_`
+  std::uint64_t seen_ = 0;                              ///< at the last update: number of moves, or hash of all nodes
   std::array<Sample, 4> samples_;
   MeshSkin<btScalar> skin_;
   StepHistory<btScalar> steps_;

@@ -216,17 +216,20 @@ void BodyWithTrees::keepFaceTree() {
 
 void BodyWithTrees::transform(const btTransform& transform) {
   btSoftBody::transform(transform);
+  countMove();
   if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 
 void BodyWithTrees::scale(const btVector3& factors) {
   btSoftBody::scale(factors);
+  countMove();
   if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 
 void BodyWithTrees::visitState(WorldStream& stream) {
   stream(reach_);
   if (!stream.restoring()) return;
+  countMove();
   setSpeculation(0);
   pointContacts_.clear();
   if (!hasNoFaceTree()) updateFaceTree(false, false);

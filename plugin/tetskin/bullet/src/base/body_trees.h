@@ -14,6 +14,7 @@
 #include <tetskin/bullet/src/base/point_contacts.h>
 #include <tetskin/export.h>
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -31,6 +32,13 @@ TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
 /// updated if it was not omitted, and only rebuilt if nodes or faces have been added or moved in memory. Cost O(links +
 /// faces + nodes) without a rebuild; nothing if the flag is not set.
 void updateConstants(btSoftBody& body);
+
+/// What tells, as long as the body lives, whether its nodes may have moved.
+struct NodeMoves {
+  std::uint64_t count = 1;
+  /// The solver whose steps count; null if none does. If the body has another one, its world moves nodes uncounted.
+  const btSoftBodySolver* counter = nullptr;
+};
 
 /// A soft body that keeps its trees valid.
 ///
@@ -53,7 +61,15 @@ class BodyWithTrees : public btSoftBody {
   void renewFaceTree();
 
   /// Expires when the body is destroyed.
-  std::weak_ptr<const void> lifetime() const { return lifetime_; }
+  std::weak_ptr<const NodeMoves> lifetime() const { return moves_; }
+  /// Call it whenever nodes may have been moved; `transform`, `scale` and `visitState` do.
+  void countMove() { ++moves_->count; }
+  /// From now on, the steps of this solver alone move the nodes, and call `countMove`; null: others may.
+  void setMovesCountedBy(const btSoftBodySolver* solver) {
+    if (moves_->counter == solver) return;
+    moves_->counter = solver;
+    countMove();  // whatever has happened in between
+  }
   /// What finds the contacts of other points than the nodes with rigid objects; expired if there is nothing.
   const std::weak_ptr<BodyContacts>& surfaceContacts() const { return surfaceContacts_; }
   void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
@@ -117,7 +133,7 @@ class BodyWithTrees : public btSoftBody {
   btScalar reach_ = -1, speculation_ = 0;
   unsigned predictions_ = 0;
   bool searchWaits_ = false;
-  std::shared_ptr<const void> lifetime_ = std::make_shared<char>();
+  std::shared_ptr<NodeMoves> moves_ = std::make_shared<NodeMoves>();
   PointContacts pointContacts_;
   std::weak_ptr<BodyContacts> surfaceContacts_;
   std::shared_ptr<BodyContacts> nodeContacts_;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/contact_filter.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/motion/sleepers.h>
@@ -119,15 +120,18 @@ void removeStale(RestingBody& sleeper) {
 }
 
 /// Compares the body with what was stored of it. Bullet sets the velocities of a sleeping body to 0 in each step; one
-/// that the application has put to sleep may have some in the first.
+/// that the application has put to sleep may have some in the first, and may have been moved since.
 void seeItself(RestingBody& sleeper) {
   btSoftBody& body = *sleeper.body;
   if (body.isActive()) return;
   const SleepingState now(body);
   const bool isNew = !sleeper.before;
-  if (isNew) sleeper.before = now;
-  const bool same = sleeper.before->nodes == now.nodes && sleeper.before->friction == now.friction;
-  sleeper.disturbed |= !same || (now.moves && !isNew);
+  const bool moved = isNew || sleeper.before->nodes != now.nodes;
+  const bool changed = !isNew && (moved || sleeper.before->friction != now.friction);
+  BodyWithTrees* own = moved ? bodyWithTrees(body) : nullptr;
+  if (own) own->countMove();
+  sleeper.before = now;
+  sleeper.disturbed |= changed || (now.moves && !isNew);
 }
 
 /// The shape is that of the object, unless the application has given it another one since.
@@ -158,7 +162,8 @@ SleepingState::SleepingState(const btSoftBody& body) : friction(body.m_cfg.kDF) 
   const auto bitsOf = [](btScalar value) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof value);
-    return bits;
+    // A product keeps nothing of the upper bits of a double but themselves: the signs of two would cancel out.
+    return bits ^ (bits >> 32);
   };
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body.m_nodes[n];

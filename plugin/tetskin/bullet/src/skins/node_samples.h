@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftBodySkin: chooses the four nodes by which it detects whether a sleeping body has been moved.
+// Internal to SoftBodySkin: chooses the four nodes by which it detects whether a sleeping body, whose own moves are
+// counted, has been moved as a whole by an application that writes its nodes.
 #pragma once
 
 #include <Eigen/Core>

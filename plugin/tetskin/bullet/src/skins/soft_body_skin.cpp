@@ -5,6 +5,7 @@
 #include <tetskin/bullet/src/base/dangling_nodes.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
 #include <tetskin/core/src/base/compiler.h>
+#include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <algorithm>
@@ -30,6 +31,17 @@ struct ActivationState : btCollisionObject {
     return &(object.*(&ActivationState::m_activationState1));
   }
 };
+
+/// By axis, so that the steps of one hash do not wait for those of the others.
+std::uint64_t hashOf(PointView<const btScalar> nodes) {
+  std::array<Hash, 3> axes;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (std::size_t k = 0; k < 3; ++k) axes[k].add(static_cast<double>(nodes[n][k]));
+  }
+  Hash hash;
+  for (const Hash& axis : axes) hash.add(axis.value());
+  return hash.value();
+}
 
 /// Number of skins that are decided on before any is computed.
 constexpr std::size_t kTogether = 512;
@@ -76,11 +88,11 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
   if (Status status = skin_.bind(std::move(binding), nodePositions(body), options); !status.ok()) return status;
   body_ = &body;
   const BodyWithTrees* own = bodyWithTrees(body);
-  watched_ = own != nullptr;
-  life_ = own ? own->lifetime() : std::weak_ptr<const void>();
+  life_ = own ? own->lifetime() : std::weak_ptr<const NodeMoves>();
+  moves_ = life_.lock().get();
   nodeCount_ = body.m_nodes.size();
   tetCount_ = body.m_tetras.size();
-  moved_ = between_ = teleported_ = false;
+  between_ = teleported_ = false;
   sleeps_ = !body.isActive();
   steps_ = {};
   const PointView<const btScalar> nodes = nodePositions(body);
@@ -88,7 +100,7 @@ Status SoftBodySkin::bind(const btSoftBody& body, std::shared_ptr<const SoftBody
     return Eigen::Map<const Eigen::Matrix<btScalar, 3, 1>>(nodes[n]).cast<double>().eval();
   });
   for (std::size_t k = 0; k < samples_.size(); ++k) samples_[k].node = four[k];
-  sample();
+  remember(true);
   return {};
 }
 
@@ -104,7 +116,7 @@ StatusCode SoftBodySkin::decide(btScalar alpha) {
   if (!visible_) return StatusCode::Hidden;
   if (!bodyLives()) return StatusCode::BodyDeleted;
   if (body_->m_nodes.size() != nodeCount_) return topologyChanged();
-  if (!body_->isActive() && !moved_ && !isBetween(alpha) && samplesUnmoved()) return StatusCode::Asleep;
+  if (!body_->isActive() && !moved_ && !isBetween(alpha) && unmoved()) return StatusCode::Asleep;
   if (body_->m_tetras.size() != tetCount_) return topologyChanged();
   return StatusCode::Ok;
 }
@@ -119,8 +131,8 @@ StatusCode SoftBodySkin::compute(btScalar alpha) {
   }
   if (teleported_) skin_.clearMotion();
   teleported_ = false;
-  moved_ = between;  // the surface has not reached the body's position yet
-  sample();
+  remember(!body_->isActive());
+  moved_ |= between;  // the surface has not reached the body's position yet
   return StatusCode::Ok;
 }
 
@@ -195,11 +207,14 @@ void SoftBodySkin::fetch() const {
 void SoftBodySkin::fetchBody() const {
   if (!skin_.bound() || !visible_) return;
   prefetch(&body_->m_nodes);
+  prefetch(&body_->m_softBodySolver);
+  if (moves_) prefetch(moves_);
   prefetch(ActivationState::addressIn(*body_));
 }
 
 void SoftBodySkin::fetchNodes() const {
   if (!skin_.bound() || !visible_ || !bodyLives() || body_->m_nodes.size() != nodeCount_) return;
+  if (!counted_) return;  // all nodes are read
   const PointView<const btScalar> now = nodePositions(*body_);
   for (const Sample& s : samples_) prefetch(now[static_cast<std::size_t>(s.node)]);
 }
@@ -228,10 +243,31 @@ Status SoftBodySkin::setOrigin(const btVector3& origin) {
   return status;
 }
 
-void SoftBodySkin::sample() {
+/// True if steps count the moves of nodes, as long as the body is in the world of the solver that does.
+bool SoftBodySkin::movesCounted() const {
+  return moves_ && moves_->counter && moves_->counter == body_->m_softBodySolver;
+}
+
+/// The surface is where the nodes are now: stores what tells whether they have moved since. Where nothing counts, that
+/// is a hash of all nodes.
+/// hashes  false: the next update computes the surface anyway, unless moves are counted
+void SoftBodySkin::remember(bool hashes) {
   assert(body_ && body_->m_nodes.size() == nodeCount_);
   const PointView<const btScalar> now = nodePositions(*body_);
+  counted_ = movesCounted();
+  moved_ = !counted_ && !hashes;
+  if (moved_) return;
+  seen_ = counted_ ? moves_->count : hashOf(now);
+  if (!counted_) return;
   for (Sample& s : samples_) std::copy_n(now[static_cast<std::size_t>(s.node)], 3, s.position);
+}
+
+/// True if the nodes are where they were when the surface was computed. What is not counted is what the application
+/// does by writing nodes: of that, only affine motions of the whole body are seen, by the samples.
+bool SoftBodySkin::unmoved() const {
+  assert(body_->m_nodes.size() == nodeCount_);
+  if (counted_ != movesCounted()) return false;
+  return counted_ ? seen_ == moves_->count && samplesUnmoved() : seen_ == hashOf(nodePositions(*body_));
 }
 
 /// An affine map that fixes four points that are not in one plane fixes everything.

@@ -48,7 +48,10 @@ void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>
   if (!inStep) bodies.clear();  // the next step lists them anew
   const std::vector<const btSoftBody*> gone = bodies.dropAllBut(world, solver.m_softBodies);
   if (gone.empty()) return;
-  for (const btSoftBody* body : gone) driven.forget(*body);
+  for (const btSoftBody* body : gone) {
+    driven.forget(*body);
+    if (auto* own = bodyWithTrees(*const_cast<btSoftBody*>(body))) own->setMovesCountedBy(nullptr);
+  }
   if (!inStep) {
     // The next step numbers the nodes.
     solver.m_objective->m_nodes.resizeNoInitialize(0);
