@@ -69,7 +69,7 @@ class TETSKIN_BULLET_API DeformableBody {
   /// wakes. Error: InvalidOption, also for a body that is too stiff for its mass and size (E above 1e12 density size^2
   /// / s^2 in float, 1e16 in double); nothing is changed then.
   Status setYoungsModulus(double pressure);
-  /// From the next step on, 0 to below 0.5; wakes the body. Error: InvalidOption
+  /// From the next step on, 0 to 0.4999 in float, to 0.499999 in double; wakes the body. Error: InvalidOption
   Status setPoissonRatio(double ratio);
   /// From the next step on, 0 or more; wakes the body. Error: InvalidOption
   Status setStiffnessDamping(double seconds);

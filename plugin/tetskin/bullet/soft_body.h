@@ -106,11 +106,11 @@ struct SoftBodyOptions {
   /// they are applied through `Tetra::m_element_measure`, which the body's `scale` resets. Empty: those of the cage,
   /// from its volume fractions and stiffness factors.
   std::vector<double> stiffnessScale;
-  double poissonRatio = 0.3;  ///< 0 to below 0.5
+  double poissonRatio = 0.3;  ///< 0 to 0.4999 in float, to 0.499999 in double
   double stiffnessDamping =
       0.02;  ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones
   double timeStep = 1.0 / 240.0;  ///< seconds: the substep that the default stiffness must be stable for
-  double solverTolerance = 5e-3;  ///< Corotated: of the residual relative to that without elasticity, 0 to below 1
+  double solverTolerance = 5e-3;  ///< Corotated: of the forces left, relative to those that act; 0 to below 1
   int maxIterations = 100;     ///< Corotated: limit of the conjugate gradient per solve; contact takes several solves
   double linkStiffness = 0.5;  ///< MassSpring only: Bullet's m_kLST, 0 to 1
   /// Whether to build trees of the faces, which rays, VF_SS, VF_DD and SDF_RDF search. They cost a refit, and a search

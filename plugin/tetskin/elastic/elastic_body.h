@@ -29,7 +29,7 @@ inline ElasticModuli fromLame(double mu, double lambda) {
 /// Material and solver settings of an ElasticBody.
 struct ElasticOptions {
   double youngsModulus = 1e5;  ///< in pressure units, above 0; the default, in Pa, is that of soft foam
-  double poissonRatio = 0.3;   ///< 0 to below 0.5
+  double poissonRatio = 0.3;   ///< 0 to 0.4999 in float, to 0.499999 in double
   double stiffnessDamping =
       0.0;               ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones
   double density = 1.0;  ///< mass per volume, above 0
@@ -38,7 +38,7 @@ struct ElasticOptions {
   /// nodeCount, above 0. Empty: the cage's `masses` times the density, or, where it has none, a quarter of each tet's
   /// mass to each node
   std::vector<double> nodeMasses;
-  double tolerance = 5e-3;  ///< residual of a step relative to that at its start; 0 to below 1
+  double tolerance = 5e-3;  ///< forces that a step leaves, relative to those that act; 0 to below 1
   int maxIterations = 200;  ///< limit of the conjugate gradient per step; at least 1
   /// Whether all is computed in the same order of operations on every processor, without fused multiply-adds, see
   /// `DeformableSolver::setDeterministic`.

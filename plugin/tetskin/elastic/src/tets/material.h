@@ -25,6 +25,12 @@ inline Lame lameOf(double youngsModulus, double poissonRatio) {
           youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio))};
 }
 
+/// The largest Poisson's ratio. Beyond it, the resistance to a change of volume exceeds that to a change of shape so
+/// far that the rounding of the one is as large as the other: balls that land have exploded from 0.49999 on in float,
+/// and solves take hundreds of iterations.
+template <class Scalar>
+constexpr double kMaxPoissonRatio = sizeof(Scalar) == sizeof(float) ? 0.4999 : 0.499999;
+
 /// Ok, or what is invalid in a material, or beyond the range of Scalar.
 /// damping  seconds
 template <class Scalar>
@@ -36,6 +42,10 @@ Status checkMaterial(double youngsModulus, double poissonRatio, double damping) 
   }
   if (!(poissonRatio >= 0.0 && poissonRatio < 0.5)) {
     return invalid("Poisson's ratio must be at least 0 and below 0.5");
+  }
+  if (poissonRatio > kMaxPoissonRatio<Scalar>) {
+    return invalid(sizeof(Scalar) == sizeof(float) ? "Poisson's ratio may be at most 0.4999 in float"
+                                                   : "Poisson's ratio may be at most 0.499999 in double");
   }
   if (!(damping >= 0.0 && std::isfinite(damping))) return invalid("damping must be finite and not negative");
   const Lame lame = lameOf(youngsModulus, poissonRatio);
