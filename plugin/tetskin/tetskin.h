@@ -6,7 +6,7 @@
 #pragma once
 
 #define TETSKIN_VERSION_MAJOR 0           ///< rises with incompatible changes
-#define TETSKIN_VERSION_MINOR 24          ///< rises with additions and, while major is 0, with incompatible changes
+#define TETSKIN_VERSION_MINOR 25          ///< rises with additions and, while major is 0, with incompatible changes
 #define TETSKIN_VERSION_PATCH 0           ///< rises with fixes
 #define TETSKIN_TEXT_(x) #x               ///< helper of TETSKIN_TEXT
 #define TETSKIN_TEXT(x) TETSKIN_TEXT_(x)  ///< the expansion of x, as a string literal

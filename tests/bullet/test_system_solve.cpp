@@ -240,7 +240,7 @@ TEST_F(System, OfAStiffBodyThatSlidesOnARigidOneKeepsTheLawAtAllPoints) {
   const VectorXd b = rightSide();
   const SolveReport report = solve();
   EXPECT_TRUE(report.converged);
-  EXPECT_LT(report.passes, 20);
+  EXPECT_LT(report.passes, 25);
   int sliding = 0;
   for (const ContactRow& row : rows_.rows()) sliding += row.state == ContactRow::State::Slides;
   EXPECT_GT(sliding, 0);

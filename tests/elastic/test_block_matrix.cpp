@@ -96,7 +96,7 @@ TYPED_TEST(BlockMatrixOf, ReturnsTheNormOfTheResidualWhichStays) {
     AssembledBody<TypeParam> body(cageForMatrix());
     body.toWide(Random(35).vector(3 * body.nodes.size()), body.matrix.residual());
     const VectorXd r = body.fromWide(body.matrix.residual());
-    const double norm = body.matrix.squaredResidual(nullptr);
+    const double norm = body.matrix.squaredNorm(body.matrix.residual(), nullptr);
     EXPECT_EQ(body.fromWide(body.matrix.residual()), r);
     EXPECT_EQ(norm, body.matrix.lower(nullptr));
   });
@@ -148,7 +148,8 @@ TYPED_TEST(BlockMatrixOf, HasTheSameBitsOnAnyThreads) {
     std::vector<TypeParam> difference(matrix.wideSize()), image = difference;
     matrix.multiplyDifference(matrix.residual(), nullptr, difference.data(), image.data(), threads);
     append(body.fromWide(image.data()));
-    append(Eigen::Vector2d(matrix.squaredResidual(threads), matrix.inner(difference.data(), image.data(), threads)));
+    append(Eigen::Vector2d(matrix.squaredNorm(matrix.residual(), threads),
+                           matrix.inner(difference.data(), image.data(), threads)));
     const double norm = matrix.lower(threads);
     matrix.backward(0, threads);
     const double bend = matrix.forward(nullptr, threads);

@@ -102,8 +102,8 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   /// Linear solves of the last step, over all bodies on which anything beside elasticity acts; bodies that are solved
   /// simultaneously count once.
   int linearSolves() const;
-  /// How many of these systems with contacts were stopped before convergence: their bodies continue with the result of
-  /// the last pass.
+  /// How many systems of the last step were stopped before convergence, a body that nothing touches being one by
+  /// itself: their bodies continue with what was found.
   int unconvergedSystems() const;
   /// Times of all steps so far; the differences of two readings are those of the steps between.
   const StepTimes& stepTimes() const;

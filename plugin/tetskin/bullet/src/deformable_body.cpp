@@ -6,6 +6,7 @@
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/src/base/body_elements.h>
 #include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/build/soft_bodies.h>
@@ -215,6 +216,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   const bool corotated = options.forceModel == ForceModel::Corotated;
   Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
   if (!rest.ok()) return rest.status();
+  rest.value().nodes = cage.mesh.nodes;
   Result<std::vector<QuadraticShape>> quadratic =
       corotated ? quadraticShapes(cage, given.stiffnessScale) : std::vector<QuadraticShape>();
   if (!quadratic.ok()) return quadratic.status();
@@ -302,6 +304,9 @@ void DeformableBody::Impl::describe(BuildStream& stream) {
     parts.settings = force.settings();
     parts.stiffnessScale = force.body().stiffnessScale;
     parts.quadratic = force.body().quadratic;
+    for (const Eigen::Vector3d& p : force.body().dynamics->tets()->rest().nodes) {
+      parts.restNodes.insert(parts.restNodes.end(), p.data(), p.data() + 3);
+    }
   }
   parts.visit(stream);
 }
@@ -319,6 +324,9 @@ std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& strea
     if (!status.ok()) stream.refuse(status.message);
   }
   if (stream.failed()) return nullptr;
+  for (std::size_t k = 0; k < parts.restNodes.size(); k += 3) {
+    rest.value().nodes.emplace_back(parts.restNodes[k], parts.restNodes[k + 1], parts.restNodes[k + 2]);
+  }
   world.addSoftBody(body.get(), parts.filters.group, parts.filters.mask);
   auto impl = std::make_unique<DeformableBody::Impl>(world, solverOf(world), std::move(body));
   impl->masses = std::move(parts.masses);
@@ -433,6 +441,7 @@ Status DeformableBody::setPinnedPosition(int node, const btVector3& position) {
     return {StatusCode::NonFinite, "the position of pinned node " + std::to_string(node) + " is not finite"};
   }
   body().m_nodes[node].m_x = position;
+  if (BodyWithTrees* own = bodyWithTrees(body())) own->countMove();
   body().activate();
   return {};
 }

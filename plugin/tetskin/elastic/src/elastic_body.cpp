@@ -130,8 +130,8 @@ struct ElasticBody<Scalar>::Impl {
       const bool pinned = dynamics.matrix().mass(n) == Scalar(0);
       for (std::size_t k = 0; k < 3; ++k) {
         if (!pinned) velocities[3 * n + k] = dynamics.velocity(n)[k] + solution[wide + k * kGroup];
-        positions[3 * n + k] += static_cast<Scalar>(seconds) * velocities[3 * n + k];
       }
+      std::copy_n(dynamics.advance(n, seconds, &velocities[3 * n]), 3, &positions[3 * n]);
     }
   }
 
@@ -199,7 +199,11 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   p.dynamics.predict(seconds, threads);
   p.dynamics.start(threads);
   elastic_detail::SolveLimits limits = p.limits;
-  limits.floor = p.dynamics.roundingSpeed(seconds);
+  // At rest, less than this is left of the weight, and no step needs an iteration.
+  double squared = 0.0;
+  for (const double a : acceleration) squared += a * a;
+  const double unseen = std::min(1e-3, 0.2 * limits.tolerance) * pushed * std::sqrt(squared);
+  limits.enough = p.dynamics.squaredImpulses(std::max(unseen, p.dynamics.roundingSpeed(seconds)));
   p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
   p.dynamics.remember(seconds);
   p.dynamics.removeMomentum();

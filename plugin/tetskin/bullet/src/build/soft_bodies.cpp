@@ -112,6 +112,7 @@ void BodyParts::visit(BuildStream& stream) {
     bytes.array(nodes);
     bytes.array(tets);
     bytes.array(rest);
+    bytes.array(restNodes);
     bytes.array(stiffnessScale);
     bytes.each(quadratic, [&](QuadraticShape& shape) { visitQuadratic(bytes, shape); });
   });
@@ -119,9 +120,11 @@ void BodyParts::visit(BuildStream& stream) {
   const std::size_t nodeCount = nodes.size() / 3, tetCount = tets.size() / 4;
   const bool sizes = nodes.size() == 3 * nodeCount && tets.size() == 4 * tetCount && masses.size() == nodeCount &&
                      rest.size() == kRestNumbers * tetCount &&
+                     (restNodes.empty() || restNodes.size() == nodes.size()) &&
                      (stiffnessScale.empty() || stiffnessScale.size() == tetCount);
   const bool kind = forceModel >= 0 && forceModel < static_cast<int>(ForceModel::MassSpring);
-  stream.require(sizes && kind && areFinite(rest) && std::isfinite(weightPressure), "a soft body is damaged");
+  stream.require(sizes && kind && areFinite(rest) && areFinite(restNodes) && std::isfinite(weightPressure),
+                 "a soft body is damaged");
   for (const QuadraticShape& shape : quadratic) {
     stream.require(isValid(shape, nodeCount, tetCount), "a quadratic tet is damaged");
   }

@@ -16,10 +16,11 @@ namespace tetskin::bullet_detail {
 /// What a DeformableBody was made of, by what is left of it in the body. The state of its nodes is that of the snapshot
 /// that follows.
 struct BodyParts {
-  std::vector<btScalar> nodes;  ///< three per node: where it was created
-  std::vector<int> tets;        ///< four per tet
-  std::vector<btScalar> rest;   ///< ten per tet: the inverse of its rest matrix, by rows, and its measure
-  int links = 0, faces = 0;     ///< how many there are
+  std::vector<btScalar> nodes;    ///< three per node: where it was created
+  std::vector<int> tets;          ///< four per tet
+  std::vector<btScalar> rest;     ///< ten per tet: the inverse of its rest matrix, by rows, and its measure
+  std::vector<double> restNodes;  ///< three per node, or empty: see elastic_detail::RestTets
+  int links = 0, faces = 0;       ///< how many there are
   std::vector<btScalar> masses;
   std::vector<double> stiffnessScale;
   std::vector<QuadraticShape> quadratic;

@@ -12,6 +12,10 @@
 namespace tetskin::bullet_detail {
 namespace {
 
+/// By how much a tet may differ from its nodes at rest, as a share of its size, because of rounding: of positions in
+/// the world, where the body was created; and of the rest shapes of tets, from one to the next.
+constexpr double kRoundedCage = 0.1, kRoundedTets = 3e-5;
+
 /// 0: it is pinned.
 btScalar massOf(const btSoftBody::Node& node) {
   return node.m_im > 0 ? 1 / node.m_im : btScalar(0);
@@ -108,8 +112,13 @@ void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMate
   if (dynamics && tetCount != linear.count()) quadratic.clear();
   tetCount = linear.count();
   const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
-  dynamics = std::make_unique<Dynamics>(withQuadraticTets(linear, stiffnessScale, quadratic),
-                                        static_cast<std::size_t>(body->m_nodes.size()));
+  const auto nodes = static_cast<std::size_t>(body->m_nodes.size());
+  elastic_detail::RestTets exact = linear;
+  if (linear.nodes.empty() || !takeRestShapes(exact, kRoundedCage)) {
+    findRestNodes(exact, nodes);
+    takeRestShapes(exact, kRoundedTets);
+  }
+  dynamics = std::make_unique<Dynamics>(withQuadraticTets(exact, stiffnessScale, quadratic), nodes);
   dynamics->setLastSeconds(lastSeconds);
   restMeasure = restMeasureOf(*body);
   setMaterial(material);
@@ -162,7 +171,7 @@ void ForcedBody::visitState(WorldStream& stream) {
   if (!stream.restoring() || !dynamics->remembers()) return;
   for (int n = 0; n < body->m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body->m_nodes[n];
-    dynamics->arrive(static_cast<std::size_t>(n), node.m_x, node.m_vn);
+    dynamics->arrive(static_cast<std::size_t>(n), node.m_vn);
   }
 }
 

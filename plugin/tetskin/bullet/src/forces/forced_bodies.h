@@ -29,7 +29,7 @@ struct ElasticMaterial {
 
 /// The tolerances to which the velocities of a step are solved.
 struct SolverSettings {
-  double tolerance = 5e-3;  ///< of the residual relative to that without elasticity; 0 to below 1
+  double tolerance = 5e-3;  ///< of the forces left, relative to those that act; 0 to below 1
   int iterations = 100;     ///< bound of the iterations of the conjugate gradient per pass; at least 1
 };
 
@@ -61,7 +61,7 @@ struct ForcedBody {
 
   /// Computes, or renews, the data derived from the body's tets. Scale factors and quadratic tets are dropped if the
   /// body has another number of tets now.
-  /// linear  see `restTetsOf`
+  /// linear  see `restTetsOf`; its nodes are those of the body's cage, or empty
   void build(const elastic_detail::RestTets& linear, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.

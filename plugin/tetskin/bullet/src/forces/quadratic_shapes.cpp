@@ -89,6 +89,7 @@ RestTets withQuadraticTets(const RestTets& linear, const std::vector<double>& st
                            const std::vector<QuadraticShape>& shapes) {
   assert(linear.quadratic.empty() && (stiffnessScale.empty() || stiffnessScale.size() == linear.count()));
   RestTets rest;
+  rest.nodes = linear.nodes;
   std::vector<char> isLinear(linear.count(), 1);
   for (const QuadraticShape& shape : shapes) {
     std::optional<RestQuadraticTet> whole = restOf(linear, shape);

@@ -30,6 +30,8 @@ struct DrivenNode {
 
 class DrivenNodes {
  public:
+  /// True if some nodes of the body are being moved.
+  bool knows(const btSoftBody& body) const { return bodies_.count(&body) > 0; }
   /// Forgets a body that has left the world.
   void forget(const btSoftBody& body) { bodies_.erase(&body); }
   /// Call it when a step begins, before anything reads nodes: gives the nodes their velocities. Costs one pass over the

@@ -26,7 +26,8 @@ constexpr btScalar kUnbalanced = btScalar(0.025), kMeanTime = btScalar(0.3);
 /// Fraction of the threshold of sleep below which nodes are as a body falls asleep: faster ones still swing, and load
 /// one support after the other.
 constexpr btScalar kCalm = btScalar(0.1);
-/// Rounding of positions, in units of the last digit: far from the origin, nodes at rest jump by one now and then.
+/// Rounding of positions, in units of the last digit: far from the origin, nodes at rest jump by one now and then, and
+/// so do the forces of contacts.
 constexpr btScalar kLastDigits = 4;
 
 btScalar gravityOf(const SolvedBody& solved) {
@@ -152,7 +153,8 @@ btScalar Stillness::timeOf(const SolvedBody& solved, btScalar seconds) {
   const btScalar mean = kMeanTime * btSqrt(size / std::max(gravity, kSizesPerSecond * kSizesPerSecond * size));
   const btVector3 velocity = meanVelocity(body);
   wait.velocity += std::min(seconds / mean, btScalar(1)) * (velocity - wait.velocity);
-  const btScalar unbalanced = kUnbalanced * threshold * gravity * mean + rounding / seconds;
+  const bool touched = !solved.elastic || *solved.hasContacts;
+  const btScalar unbalanced = kUnbalanced * threshold * gravity * mean + (touched ? rounding / seconds : btScalar(0));
   const bool isBalanced = !((velocity - wait.velocity).length() > unbalanced) || !(gravity > 0);
   const bool isCalm = isBalanced && !(squared > kCalm * kCalm * threshold * threshold);
   return isCalm ? time : std::min(time, std::max(gDeactivationTime - 2 * seconds, btScalar(0)));

@@ -95,6 +95,16 @@ btVector3 velocityBefore(const SolvedBody& body, const CarriedPoint& point) {
   return point.sum([&](int n) { return fromPoint(body.dynamics->velocity(static_cast<std::size_t>(n))); });
 }
 
+/// What rounding has taken from the position of a point: where a body rests on something, it moves by less than that.
+btVector3 remainderAt(const SolvedBody& body, const CarriedPoint& point) {
+  if (!body.elastic) return {0, 0, 0};
+  return point.sum([&](int n) {
+    btScalar rest[3];
+    body.dynamics->remainder(static_cast<std::size_t>(n), rest);
+    return fromPoint(rest);
+  });
+}
+
 /// The velocity of the first end relative to the rigid object that it meets, before the solve.
 btVector3 relativeVelocity(const SolvedBody& body, const RowOrigin& origin, const RigidPoint& rigid,
                            RigidUnknowns& rigids, btScalar seconds) {
@@ -165,16 +175,21 @@ const FrictionAnchor* anchorFrom(const std::vector<FrictionAnchor>& anchors, con
 }
 
 /// Reads from the step before where the point sticks, and the impulse that acted on it.
-/// frame  the object's
-void warmStart(const SolvedBody& body, const btTransform& frame, btScalar seconds, ContactRow& row, RowOrigin& origin) {
+/// remainder  of the point: see `remainderAt`
+/// frame      the object's
+void warmStart(const SolvedBody& body, const btVector3& remainder, const btTransform& frame, btScalar seconds,
+               ContactRow& row, RowOrigin& origin) {
   assert(body.frictionAnchors && seconds > 0);
-  origin.stickingPosition = frame.invXform(origin.position);
+  // In the object's frame, where sums keep the digits that a place far from the origin has not.
+  const btVector3 here = frame.invXform(origin.position) + remainder * frame.getBasis();
+  origin.stickingPosition = here;
   const FrictionAnchor* known = anchorFrom(*body.frictionAnchors, row, origin);
   if (!known) return;
   origin.stickingPosition = known->position;
-  btVector3 offset = row.ends[1].isSoft() ? known->position : origin.position - frame * known->position;
+  btVector3 offset = row.ends[1].isSoft() ? known->position : frame.getBasis() * (here - known->position);
   offset -= row.normal.dot(offset) * row.normal;
-  row.offsetVelocity = visibleOffset(offset, origin.position) / seconds;
+  const bool exact = body.elastic && !row.ends[1].isSoft() && origin.object->isStaticOrKinematicObject();
+  row.offsetVelocity = (exact ? offset : visibleOffset(offset, origin.position)) / seconds;
   row.normalBound = known->normalForce * seconds;
   row.stuck = known->stuck;
 }
@@ -280,16 +295,19 @@ void ContactRows::add(PointContacts& contacts, SolverBodies& bodies, btScalar se
     RowOrigin origin = originAt(contact);
     SolvedBody &body = bodies.bodies()[index], *other = bodies.find(object);
     row.relative = velocityBefore(body, contact.at);
+    btVector3 remainder = remainderAt(body, contact.at);
     bool anyFree = contact.at.isFree(*body.body);
     if (other) {
       row.ends[1].body = bodies.indexOf(object);
       row.relative -= velocityBefore(*other, contact.onObject);
+      remainder -= remainderAt(*other, contact.onObject);
       anyFree |= contact.onObject.isFree(*other->body);
     }
     if (!anyFree || isNaN(row.relative)) continue;
     const btScalar pushingOut = kPushingOut * std::min(sizeOf(*contact.body), sizeOf(*object));
-    row.gapVelocity = std::max(seenGap(contact.distance, contact) / seconds, -pushingOut);
-    warmStart(body, object->getWorldTransform(), seconds, row, origin);
+    const btScalar gap = contact.distance + contact.normal.dot(remainder);
+    row.gapVelocity = std::max(seenGap(gap, contact) / seconds, -pushingOut);
+    warmStart(body, remainder, object->getWorldTransform(), seconds, row, origin);
     add(row, origin);
     ++body.rowCount;
     if (other) ++other->rowCount;
@@ -311,7 +329,7 @@ void ContactRows::add(std::vector<PointJoint>& joints, SolverBodies& bodies, Rig
     row.constant = joint.constant;
     row.stiffness = joint.stiffness;
     row.highest = joint.maximum;
-    row.offsetVelocity = joint.offset / seconds;
+    row.offsetVelocity = (joint.offset + remainderAt(bodies.bodies()[index], joint.at)) / seconds;
     if (row.constant) row.impulse = joint.impulse;
     RowOrigin origin;
     origin.points[0] = joint.at;
@@ -346,9 +364,11 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
     row.ends[1].rigid = rigids.at(*contact.object, contact.position);
     row.relative = relativeVelocity(body, origin, row.ends[1].rigid, rigids, seconds);
     if (isNaN(row.relative)) return;
-    const btScalar gap = contact.distance + leadOf(row, *contact.object, rigids, seconds);
+    const btVector3 remainder = remainderAt(body, contact.at);
+    const btScalar lead = leadOf(row, *contact.object, rigids, seconds);
+    const btScalar gap = contact.distance + contact.normal.dot(remainder) + lead;
     row.gapVelocity = std::max(seenGap(gap, contact) / seconds, -pushingOut);
-    warmStart(body, contact.object->getWorldTransform(), seconds, row, origin);
+    warmStart(body, remainder, contact.object->getWorldTransform(), seconds, row, origin);
     this->add(row, origin);
   };
   for (PointContact& contact : *body.bulletsContacts) add(contact);
@@ -371,7 +391,7 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
     row.joined = true;
     row.normal.setValue(0, 1, 0);
     row.ends[1].rigid = rigids.at(*origin.object, origin.position);
-    row.offsetVelocity = (anchors[k].m_node->m_x - origin.position) / seconds;
+    row.offsetVelocity = (anchors[k].m_node->m_x + remainderAt(body, origin.points[0]) - origin.position) / seconds;
     row.relative = relativeVelocity(body, origin, row.ends[1].rigid, rigids, seconds);
     add(row, origin);
   }

@@ -56,8 +56,9 @@ struct SolvedBody {
   bool hadContacts = false;      ///< value of `hasContacts` in the step before
   bool deferSolve = false;       ///< its solve begins only when contacts are known
   std::vector<FixedNode> fixed;  ///< without pinned ones
-  double unseenSpeed = 0.0;      ///< the error of velocities that is not visible
-  bool solvedAgain = false;      ///< solved once more with the effects of contacts and other forces
+  std::vector<int> foreign;  ///< nodes that something else than the step places: anchors of Bullet's, the application
+  double unseenSpeed = 0.0;  ///< the error of velocities that is not visible
+  bool solvedAgain = false;  ///< solved once more with the effects of contacts and other forces
   bool velocityChanged = false;  ///< something other than elasticity has changed velocities, or will
 
   /// Null if the world is not known: the body is not elastic, or has been moved to another one since.

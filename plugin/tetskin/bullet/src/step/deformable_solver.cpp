@@ -13,6 +13,24 @@
 #include <cassert>
 
 namespace tetskin {
+namespace {
+
+/// counter  null where Bullet's own code solves: it moves sleeping bodies, too, if they have a velocity, so that in
+/// each
+///          step all bodies would count as moved
+void setMovesCounted(const btAlignedObjectArray<btSoftBody*>& bodies, const btSoftBodySolver* counter) {
+  for (int b = 0; b < bodies.size(); ++b) {
+    if (auto* own = bodyWithTrees(*bodies[b])) own->setMovesCountedBy(counter);
+  }
+}
+
+void countMoves(const btAlignedObjectArray<btSoftBody*>& bodies) {
+  for (int b = 0; b < bodies.size(); ++b) {
+    if (auto* own = bodyWithTrees(*bodies[b])) own->countMove();
+  }
+}
+
+}  // namespace
 
 DeformableSolver::DeformableSolver() : impl_(std::make_unique<Impl>(*this)) {
   m_useProjection = true;
@@ -63,6 +81,7 @@ void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& sof
   if (!(dt > 0)) return impl_->dropRemoved(softBodies);
   impl_->clock.restart();
   impl_->gather(softBodies, dt);
+  setMovesCounted(softBodies, impl_->solving ? this : nullptr);
   impl_->clock.end(&StepTimes::prediction);
   updateSoftBodies();
 }
@@ -155,8 +174,14 @@ void DeformableSolver::applyTransforms(btScalar dt) {
     }
   }
   impl.driven.beforeIntegration(m_softBodies);
+  for (SolvedBody& body : impl.bodies.bodies()) {
+    if (impl.driven.knows(*body.body)) impl.listForeignNodes(body);
+  }
   btDeformableBodySolver::applyTransforms(dt);
+  impl.refinePositions(dt);
   impl.driven.end(m_softBodies, dt);
+  setMovesCounted(m_softBodies, impl.solving ? this : nullptr);
+  countMoves(m_softBodies);
   impl.inStep = false;
   impl.rigids.paths().endStep();
 }

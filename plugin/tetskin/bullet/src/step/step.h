@@ -46,6 +46,13 @@ struct DeformableSolver::Impl {
   void finishContacts();
   void writeBack();
 
+  // Steps of the integration of positions.
+  /// Call it before Bullet moves the nodes, of which the application may have moved some within the step.
+  void listForeignNodes(SolvedBody& body) const;
+  /// Call it after Bullet has moved the nodes in its own precision: gives them the positions that the dynamics have.
+  void refinePositions(btScalar dt);
+  std::vector<bool> shakenByRounding() const;
+
   ForceList& forces() { return solver.m_objective->m_lf; }
   const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
   btScalar dt() const { return solver.m_dt; }

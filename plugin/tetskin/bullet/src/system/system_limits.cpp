@@ -24,13 +24,14 @@ const double kBullets = std::sqrt(static_cast<double>(SIMD_EPSILON));
 /// By how much the first pass reduces the residual, at most, and the passes after it: the rows change after each pass.
 constexpr double kFirstPass = 0.1, kLaterPass = 0.1;
 
-}  // namespace
-
-double SystemSolve::massOfAll() const {
-  double sum = 0.0;
-  for (const Body& body : bodies_) sum += body.matrix().totalMass();
-  return sum;
+/// The squared norm of impulses that change all velocities alike, over that by the masses: how far a stiffness spreads
+/// an impulse before it becomes velocity.
+double shareOfImpulses(const SolvedBody& body) {
+  const double mass = body.dynamics->matrix().totalMass();
+  return mass > 0.0 ? body.dynamics->squaredImpulses(1.0) / mass : 1.0;
 }
+
+}  // namespace
 
 double SystemSolve::toleranceWithForces(double tolerance) const {
   return system_.forces.empty() ? tolerance : std::min(tolerance, kWithForeignForces);
@@ -57,20 +58,19 @@ elastic_detail::SolveLimits SystemSolve::limitsOfBulletsForces() const {
 /// The strictest tolerance of all bodies of the system.
 elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   elastic_detail::SolveLimits limits;
-  limits.floor = 0.0;
   limits.iterations = 0;
   limits.tolerance = 1.0;
   bool changed = false, anyElastic = false, stiff = false;
-  double squaredStart = 0.0;
+  double squaredStart = 0.0, unseen = 0.0;
   for (const Body& one : bodies_) {
     const SolvedBody& body = one.solved;
-    limits.floor = std::max(limits.floor, body.unseenSpeed);
+    unseen += body.dynamics->squaredImpulses(body.unseenSpeed);
     limits.tolerance = std::min(limits.tolerance, body.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.settings->iterations);
     if (body.elastic && !body.deferSolve) limits.enough += body.solve->enough();
     changed |= !body.fixed.empty() || body.velocityChanged;
     stiff |= body.dynamics->isStiff();
-    squaredStart += body.dynamics->squaredSolution();
+    squaredStart += body.dynamics->squaredSolution() * shareOfImpulses(body);
     anyElastic |= body.elastic != nullptr;
   }
   if (!anyElastic) return limitsOfBulletsForces();
@@ -79,13 +79,14 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   limits.tolerance = tolerance;
   limits.enough *= fraction * fraction;  // the limits are squares
   assert(!(limits.tolerance < 0.0) && limits.tolerance <= 1.0);
-  // The residual may also be a fraction of the difference between the velocities and a rigid motion. Stiff bodies use
-  // this criterion only: the initial residual of a contact is proportional to the body's stiffness, and a fraction of
-  // it would move light nodes.
+  // The residual may also be a fraction of the impulses that give the velocities their difference to a rigid motion.
+  // Stiff bodies use this criterion only: the initial residual of a contact is proportional to the body's stiffness,
+  // and a fraction of it would move light nodes.
   if (changed || stiff) {
     limits.enough = std::max(limits.enough, limits.tolerance * limits.tolerance * squaredStart);
   }
   if (stiff) limits.tolerance = 0.0;
+  limits.enough = std::max(limits.enough, unseen);
   return limits;
 }
 
@@ -94,13 +95,13 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
 elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   elastic_detail::SolveLimits limits;
   limits.iterations = 0;
-  limits.floor = 0.0;
-  double byMatrix = 0.0, byMasses = 0.0, tolerance = 1.0;
+  double byMatrix = 0.0, byMasses = 0.0, share = 1.0, tolerance = 1.0;
   for (const Body& body : bodies_) {
     tolerance = std::min(tolerance, body.solved.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.solved.settings->iterations);
     byMatrix += body.byMatrix;
     byMasses += body.byMasses;
+    share = std::min(share, shareOfImpulses(body.solved));
   }
   for (const ComponentUnknown& component : components_) {
     byMasses += reduced_.segment<6>(component.first).dot(partsBefore_.segment<6>(component.first));
@@ -108,9 +109,12 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
     return row->joined && !(row->highest < BT_LARGE_FLOAT);
   });
+  // Of a stiff body, an error of velocities that is small by its masses is one of all the forces that act on it.
+  const double ofForces = std::max(tolerance * tolerance * share, kClosest * kClosest);
   tolerance = toleranceWithForces(std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0));
   tolerance = std::max(tolerance, kClosest);
-  limits.enough = tolerance * tolerance * std::max(byMatrix, byMasses);
+  const double squared = tolerance * tolerance;
+  limits.enough = std::max(squared * byMatrix, std::min(squared, ofForces) * byMasses);
   limits.tolerance = pass == 0 ? kFirstPass : kLaterPass;
   return limits;
 }

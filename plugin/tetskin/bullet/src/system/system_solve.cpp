@@ -176,7 +176,7 @@ bool SystemSolve::start(int pass) {
   auto& solve = *bodies_.front().solved.solve;
   const bool coupled = !system_.forces.empty() || reducedSize_ > 0 || joinsSoft_;
   solve.start(std::move(matrices), limits, coupled ? this : nullptr, threads_);
-  const double accepted = std::max(kAccepted * kAccepted * limits.enough, limits.floor * limits.floor * massOfAll());
+  const double accepted = kAccepted * kAccepted * limits.enough;
   double squared = solve.squaredResidual();
   if (reducedSize_ > 0) squared += reducedResidual_.dot(schurComplement_.solve(reducedResidual_));
   chooseMoving();

@@ -147,7 +147,6 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   elastic_detail::SolveLimits limitsWithoutRows() const;
   elastic_detail::SolveLimits limitsOfPass(int pass) const;
   double toleranceWithForces(double tolerance) const;
-  double massOfAll() const;
   btScalar searchLine();
   double slope(btScalar fraction, double linear, double quadratic) const;
   void moveBack(btScalar fraction);

@@ -57,10 +57,14 @@ struct TetWork {
   S* rotations = nullptr;        ///< quaternions w x y z, wide, by pack and point
   const S* assembled = nullptr;  ///< the rotations with which the matrix was assembled
   const S* points = nullptr;     ///< by slot; null: `alphas` are known
-  S* corners = nullptr;          ///< by tet and node
-  S* sums = nullptr;             ///< by slot: forces are added here; null: written to a tet's first corners, by node
-  S alpha = 0, flatAlpha = 0;    ///< the second one: where a tet is flat or inverted, if it is larger
-  S* alphas = nullptr;           ///< by pack and point: which of the two; not used without a larger second one
+  /// Rotations of the frames in which bodies are at rest, quaternions w x y z, by part: points are then displacements
+  /// from what they turn the rest positions to. Null: points are positions.
+  const S* frames = nullptr;
+  const std::uint32_t* partOf = nullptr;  ///< by slot; null: all tets are of part 0
+  S* corners = nullptr;                   ///< by tet and node
+  S* sums = nullptr;           ///< by slot: forces are added here; null: written to a tet's first corners, by node
+  S alpha = 0, flatAlpha = 0;  ///< the second one: where a tet is flat or inverted, if it is larger
+  S* alphas = nullptr;         ///< by pack and point: which of the two; not used without a larger second one
 };
 
 template <class S>

@@ -214,10 +214,6 @@ double ComponentMotion::radius() const {
   return mass_ > 0.0 ? std::sqrt(std::max(central_.trace(), 0.0) / mass_) : 0.0;
 }
 
-double ComponentMotion::reach() const {
-  return mass_ > 0.0 ? about_.norm() + std::sqrt(second_.trace() / mass_) : about_.norm();
-}
-
 double ComponentMotion::minInertia() const {
   const Matrix3d inertia = inertiaOf(Matrix3d::Identity(), central_);
   return std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues()[0]);

@@ -46,7 +46,7 @@ struct ComponentMoments {
   double second[6] = {};                                 ///< sum of m r r^T: xx xy xz yy yz zz
 
   template <class S>
-  void add(S nodeMass, const S* point, const S* velocity, const double* about) {
+  void add(S nodeMass, const double* point, const S* velocity, const double* about) {
     const auto m = static_cast<double>(nodeMass);
     const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
     const double mx = m * x, my = m * y, mz = m * z;
@@ -65,7 +65,7 @@ struct ComponentMomentum {
   double momentum[3] = {}, spin[3] = {};
 
   template <class S>
-  void add(S nodeMass, const S* point, const double* velocity, const double* about) {
+  void add(S nodeMass, const double* point, const double* velocity, const double* about) {
     const auto m = static_cast<double>(nodeMass);
     const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
     const double a = m * velocity[0], b = m * velocity[1], c = m * velocity[2];
@@ -78,8 +78,7 @@ struct ComponentMomentum {
 struct RigidVelocity {
   double about[3] = {}, velocity[3] = {}, field[9] = {};  ///< `field` is stored by rows
 
-  template <class S>
-  void at(const S* point, double out[3]) const {
+  void at(const double* point, double out[3]) const {
     const double x = point[0] - about[0], y = point[1] - about[1], z = point[2] - about[2];
     for (int i = 0; i < 3; ++i) out[i] = velocity[i] + field[3 * i] * x + field[3 * i + 1] * y + field[3 * i + 2] * z;
   }
@@ -106,8 +105,6 @@ class ComponentMotion {
   Eigen::Vector3d anchor() const;
   /// The root of the mean square of the distance from the centre of mass; 0 where there is no mass.
   double radius() const;
-  /// The distance from the origin to about the farthest node.
-  double reach() const;
   /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.
   double minInertia() const;
   /// The change of velocity per unit impulse, both at a point and in a direction, if the component moves as a rigid

@@ -36,18 +36,14 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, C
   coupling_ = coupling;
   partial_.assign(matrices_.size(), 0.0);
   sizes_.clear();
-  double mass = 0.0;
-  for (const BlockMatrix<S>* matrix : matrices_) {
-    sizes_.push_back(matrix->slotCount());
-    mass += matrix->totalMass();
-  }
+  for (const BlockMatrix<S>* matrix : matrices_) sizes_.push_back(matrix->slotCount());
   forEachMatrix(threads, [](std::size_t, BlockMatrix<S>& matrix, ParallelFor* inner) { return matrix.lower(inner); });
   rho_ = summed();
   // Below the last of these, products of residuals lose their digits, and the next step lengths would be arbitrary.
   constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
-  const double least = std::max({limits.floor * limits.floor * mass, limits.enough,
-                                 static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon)});
-  const double relative = limits.tolerance * limits.tolerance * (limits.initial > 0.0 ? limits.initial : rho_);
+  const double least =
+      std::max(limits.enough, static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon));
+  const double relative = limits.tolerance * limits.tolerance * (limits.acting > 0.0 ? limits.acting : rho_);
   enough_ = std::max(relative, least);
   target_ = std::max(std::min(relative, limits.reduction * limits.reduction * rho_), least);
   stopped_ = false;

@@ -11,12 +11,12 @@
 
 namespace tetskin::elastic_detail {
 
+/// All norms are the preconditioner's, of impulses: r . P^-1 r.
 struct SolveLimits {
-  double tolerance = 5e-3;  ///< of the residual relative to its initial value, in the preconditioner's norm
-  double initial = 0.0;     ///< that value, squared; 0: that at the start of the solve
+  double tolerance = 5e-3;  ///< of the residual relative to what acts
+  double acting = 0.0;      ///< the norm of what acts, squared; 0: that of the residual at the start of the solve
   double reduction = 1.0;   ///< of the residual relative to that at the start, in addition
-  double floor = 0.0;       ///< an error in velocity that always counts as converged
-  double enough = 0.0;      ///< a residual norm, squared as `enough()`, that always counts as converged
+  double enough = 0.0;      ///< a squared norm of the residual that always counts as converged
   int iterations = 200;     ///< bound of their number
 };
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kReduction = 0.1;
 /// Iterations of a solve from which on a guess is worth its cost.
 constexpr int kMany = 8;
-/// A guess that leaves more than this fraction of the residual is useless. After so many of them, one after the other,
+/// A guess that leaves more than this fraction of what acts is useless. After so many of them, one after the other,
 /// there are none for so many solves.
 constexpr double kUseless = 0.25;
 constexpr int kUselessGuesses = 8, kPause = 64;
@@ -34,11 +34,9 @@ void InitialGuess<S>::remember(const BlockMatrix<S>& matrix) {
 
 template <class S>
 void InitialGuess<S>::improve(BlockMatrix<S>& matrix, SolveLimits& limits, ParallelFor* threads) {
-  assert(limits.initial == 0.0);
-  initial_ = 0.0;
-  if (!used_ || known_ == 0) return;
+  improved_ = used_ && known_ > 0;
+  if (!improved_) return;
   assert(last_.size() == matrix.wideSize());
-  limits.initial = initial_ = matrix.squaredResidual(threads);
   limits.reduction = kReduction;
   start_.assign(matrix.solution(), matrix.solution() + matrix.wideSize());
   count_ = 0;
@@ -104,13 +102,13 @@ typename InitialGuess<S>::Factors InitialGuess<S>::bestFactors(BlockMatrix<S>& m
 }
 
 template <class S>
-void InitialGuess<S>::learn(double squared, int iterations) {
+void InitialGuess<S>::learn(double squared, double acting, int iterations) {
   if (!used_) {
     pause_ = std::max(pause_ - 1, 0);
     used_ = pause_ == 0 && iterations >= kMany;
     return;
   }
-  if (initial_ > 0.0) useless_ = squared > kUseless * kUseless * initial_ ? useless_ + 1 : 0;
+  if (improved_) useless_ = squared > kUseless * kUseless * acting ? useless_ + 1 : 0;
   if (useless_ < kUselessGuesses) return;
   used_ = false;
   useless_ = 0;
@@ -127,7 +125,6 @@ void InitialGuess<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
   stream(known);
   if (stream.restoring()) known_ = std::min(known, 2u);
   if (!used_) return;
-  matrix.visitWide(stream, matrix.solution());
   const auto visit = [&](Wide& solution) {
     if (stream.restoring()) solution.resize(matrix.wideSize());
     matrix.visitWide(stream, solution.data());

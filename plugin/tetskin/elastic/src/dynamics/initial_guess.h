@@ -27,20 +27,20 @@ class InitialGuess {
  public:
   /// Keeps the solution of a step, in the wide layout, for the next two. Cost O(nodes)
   void remember(const BlockMatrix<S>& matrix);
-  /// Replaces the matrix's solution x0, and its residual b - A x0. Pinned nodes keep x0. The tolerance becomes relative
-  /// to the residual at x0; beside it, the solve is to reduce the residual that is left: otherwise an error small
-  /// beside the impulses of a step, such as the last of a body's sag, would never be removed. Does nothing if it is not
-  /// used, or knows no solution. Cost: three products, about as much as two iterations
+  /// Replaces the matrix's solution x0, and its residual b - A x0. Pinned nodes keep x0. The solve is to reduce the
+  /// residual that is left, beside the tolerance: otherwise an error small beside the impulses of a step, such as the
+  /// last of a body's sag, would never be removed. Does nothing if it is not used, or knows no solution. Cost: three
+  /// products, about as much as two iterations
   void improve(BlockMatrix<S>& matrix, SolveLimits& limits, ParallelFor* threads);
 
   /// Whether it is worth its cost, according to the solves before.
   bool isUsed() const { return used_; }
   /// Call it after each solve.
-  /// squared     of the residual with which the solve began
+  /// squared     norm of the residual with which the solve began;  acting  of what acts, see SolveLimits
   /// iterations  that the solve took
-  void learn(double squared, int iterations);
+  void learn(double squared, double acting, int iterations);
 
-  /// Writes or reads what is known, and the matrix's solution, which is to be remembered.
+  /// Writes or reads what is known beside the matrix's solution, which is to be remembered.
   void visitState(StateStream& stream, BlockMatrix<S>& matrix);
 
  private:
@@ -58,9 +58,9 @@ class InitialGuess {
   std::array<Wide, kDirections> directions_, images_;
   std::size_t count_ = 0;  ///< of directions
   bool used_ = false;
-  double initial_ = 0.0;  ///< squared norm of the residual at x0, in this step; 0: not improved
-  int useless_ = 0;       ///< guesses, one after the other
-  int pause_ = 0;         ///< solves for which it is not used
+  bool improved_ = false;  ///< in this step
+  int useless_ = 0;        ///< guesses, one after the other
+  int pause_ = 0;          ///< solves for which it is not used
 };
 
 }  // namespace tetskin::elastic_detail

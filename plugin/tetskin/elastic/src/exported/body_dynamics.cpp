@@ -40,6 +40,14 @@ constexpr double kFlatAlpha = 200.0;
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
 constexpr double kNear = 1e-4;
 
+/// Calls visit(slot, first scalar in wide vectors) for all slots.
+template <class Visit>
+void bySlots(std::size_t slots, Visit&& visit) {
+  for (std::size_t chunk = 0; chunk < slots / kGroup; ++chunk) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) visit(kGroup * chunk + lane, kernels::kWideVector * chunk + lane);
+  }
+}
+
 /// Sums side by side, none of which waits for the one before.
 struct LaneSums {
   double lanes[kGroup] = {};
@@ -50,34 +58,41 @@ struct LaneSums {
 }  // namespace
 
 template <class S>
-BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes) : matrix_(nodes, rest), pinned_(nodes) {
-  findComponents(rest);
+BodyDynamics<S>::BodyDynamics(RestTets rest, std::size_t nodes)
+    : matrix_(nodes, rest),
+      pinned_(nodes),
+      partOf_(components(rest, matrix_)),
+      motions_(1 + *std::max_element(partOf_.begin(), partOf_.end())),
+      places_(rest.nodes, matrix_.pattern().slotOf, partOf_, motions_.size()),
+      stiffness_(motions_.size(), 0.0) {
   if (!rest.empty()) tets_.emplace(std::move(rest), matrix_.pattern().slotOf, matrix_.slotCount());
+  if (tets_ && places_.hasFrames()) {
+    tets_->setFrames(places_.frames(), motions_.size() > 1 ? partOf_.data() : nullptr);
+  }
   for (AlignedVector<S>* v : {&points_, &moved_, &velocities_, &relative_, &forces_}) {
     v->assign(4 * matrix_.slotCount(), S(0));
   }
-  for (AlignedVector<S>* v : {&rightSide_, &image_, &began_}) v->assign(matrix_.wideSize(), S(0));
+  for (AlignedVector<S>* v : {&rightSide_, &image_, &began_, &acting_}) v->assign(matrix_.wideSize(), S(0));
 }
 
-/// Slots without a node, which have no mass, count as part of the first component.
+/// The component of each slot. Slots without a node, which have no mass, count as part of the first one.
 template <class S>
-void BodyDynamics<S>::findComponents(const RestTets& rest) {
-  DisjointSets sets(nodeCount());
+std::vector<std::uint32_t> BodyDynamics<S>::components(const RestTets& rest, const BlockMatrix<S>& matrix) {
+  DisjointSets sets(matrix.nodeCount());
   const auto connect = [&](const auto& nodes) {
     for (const int n : nodes) sets.unite(nodes[0], n);
   };
   for (const Tet& tet : rest.tets) connect(tet);
   for (const RestQuadraticTet& tet : rest.quadratic) connect(tet.nodes);
-  partOf_.assign(matrix_.slotCount(), 0);
-  std::vector<std::uint32_t> numbers(nodeCount(), 0);  // numbers begin at 1
-  std::uint32_t components = 0;
-  for (std::size_t n = 0; n < nodeCount(); ++n) {
+  std::vector<std::uint32_t> partOf(std::max<std::size_t>(matrix.slotCount(), 1), 0);
+  std::vector<std::uint32_t> numbers(matrix.nodeCount(), 0);  // numbers begin at 1
+  std::uint32_t found = 0;
+  for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
     std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
-    if (number == 0) number = ++components;
-    partOf_[matrix_.slotOf(n)] = number - 1;
+    if (number == 0) number = ++found;
+    partOf[matrix.slotOf(n)] = number - 1;
   }
-  motions_.resize(components);
-  stiffness_.assign(components, 0.0);
+  return partOf;
 }
 
 template <class S>
@@ -171,12 +186,16 @@ void BodyDynamics<S>::chooseScheme(double seconds) {
 
 template <class S>
 void BodyDynamics<S>::probeForces(ParallelFor* threads) {
-  if (tets_) tets_->forces(moved_.data(), forces_.data(), threads);
+  if (!tets_) return;
+  places_.displacePoints(moved_);
+  tets_->forces(moved_.data(), forces_.data(), threads);
 }
 
 template <class S>
 double BodyDynamics<S>::probeEnergy(ParallelFor* threads) {
-  return tets_ ? tets_->energy(moved_.data(), threads) : 0.0;
+  if (!tets_) return 0.0;
+  places_.displacePoints(moved_);
+  return tets_->energy(moved_.data(), threads);
 }
 
 template <class S>
@@ -192,14 +211,17 @@ void BodyDynamics<S>::assembleIfNeeded(double seconds, double turnFraction, Para
                    tets_ ? tets_->ratio() : S(0), threads);
   alpha_ = alpha;
   changed_ = false;
+  findUnitImpulses(threads);
 }
 
-/// Calls visit(slot, first scalar in wide vectors) for all slots.
-template <class Visit>
-void bySlots(std::size_t slots, Visit&& visit) {
-  for (std::size_t chunk = 0; chunk < slots / kGroup; ++chunk) {
-    for (std::size_t lane = 0; lane < kGroup; ++lane) visit(kGroup * chunk + lane, kernels::kWideVector * chunk + lane);
-  }
+/// While the matrix is as it was assembled.
+template <class S>
+void BodyDynamics<S>::findUnitImpulses(ParallelFor* threads) {
+  const auto part = static_cast<S>(std::sqrt(1.0 / 3.0));
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) image_[wide + k * kGroup] = part * matrix_.massAt(slot);
+  });
+  unitImpulses_ = matrix_.squaredNorm(image_.data(), threads);
 }
 
 template <class S>
@@ -209,14 +231,15 @@ void BodyDynamics<S>::findMotions(double seconds) {
   for (std::size_t n = 0; pinned_ > 0 && n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n);
     if (matrix_.massAt(slot) != S(0)) continue;
-    const S *x = &points_[4 * slot], *v = &velocities_[4 * slot];
+    const double* x = places_.at(slot);
+    const S* v = &velocities_[4 * slot];
     pinned[partOf_[slot]].add(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(v[0], v[1], v[2]));
   }
   // Moments about the components' previous positions: this needs one pass only, and keeps the digits far from the
   // origin.
   std::vector<ComponentMoments> moments(motions_.size());
   const auto add = [&](std::size_t slot, ComponentMoments& sums, const Eigen::Vector3d& about) {
-    sums.add(matrix_.massAt(slot), &points_[4 * slot], &velocities_[4 * slot], about.data());
+    sums.add(matrix_.massAt(slot), places_.at(slot), &velocities_[4 * slot], about.data());
   };
   if (motions_.size() == 1) {  // nearly always: its sums stay in registers
     ComponentMoments sums;
@@ -237,42 +260,53 @@ void BodyDynamics<S>::findMotions(double seconds) {
 
 /// The velocities become those of the rigid motion, and `relative_` the difference to them. Forces do not depend on the
 /// position of a component: without its translation, points have the same rounding in each step, and differences in
-/// rounding are not taken for strain. Everything is relative to an anchor near the component, for which this precision
-/// suffices.
+/// rounding are not taken for strain. A displacement is turned with its frame.
 template <class S>
 void BodyDynamics<S>::moveRigidly(double seconds) {
-  assert(seconds > 0.0 && partOf_.size() == matrix_.slotCount());
+  assert(seconds > 0.0 && partOf_.size() >= matrix_.slotCount());
   struct Rigid {
-    S anchor[3], fromAnchor[3], velocity[3], field[9];
+    double about[3];
+    S velocity[3], field[9];
   };
   std::vector<Rigid> components;
+  std::vector<Eigen::Vector3d> anchors;
+  std::vector<Eigen::Matrix3d> turns;
   for (const ComponentMotion& motion : motions_) {
+    anchors.push_back(motion.anchor());
+    turns.push_back(motion.turn());
     const RigidVelocity exact = motion.velocities(seconds);
-    const Eigen::Vector3d anchor = motion.anchor();
     Rigid& component = components.emplace_back();
     for (int k = 0; k < 3; ++k) {
-      component.anchor[k] = static_cast<S>(anchor[k]);
-      component.fromAnchor[k] = static_cast<S>(exact.about[k] - anchor[k]);
+      component.about[k] = exact.about[k];
       component.velocity[k] = static_cast<S>(exact.velocity[k]);
     }
     for (int k = 0; k < 9; ++k) component.field[k] = static_cast<S>(exact.field[k]);
   }
+  places_.displace(anchors, moved_);
+  const bool framed = places_.hasFrames();
   const auto dt = static_cast<S>(seconds);
   for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
     const Rigid& component = components[partOf_[slot]];
-    S *x = &points_[4 * slot], *v = &velocities_[4 * slot], *moved = &moved_[4 * slot], *beside = &relative_[4 * slot];
-    const S position[3] = {x[0] - component.anchor[0], x[1] - component.anchor[1], x[2] - component.anchor[2]};
-    const S arm[3] = {position[0] - component.fromAnchor[0], position[1] - component.fromAnchor[1],
-                      position[2] - component.fromAnchor[2]};
+    const double* x = places_.at(slot);
+    S *v = &velocities_[4 * slot], *moved = &moved_[4 * slot], *beside = &relative_[4 * slot];
+    S arm[3], turning[3], turned[3];
+    for (std::size_t k = 0; k < 3; ++k) arm[k] = static_cast<S>(x[k] - component.about[k]);
+    const auto turn = [&](const S* from, S* to) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const S* row = component.field + 3 * k;
+        to[k] = row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
+      }
+    };
+    turn(arm, turning);
+    turn(framed ? moved : arm, turned);
     for (std::size_t k = 0; k < 3; ++k) {
-      const S turning =
-          component.field[3 * k] * arm[0] + component.field[3 * k + 1] * arm[1] + component.field[3 * k + 2] * arm[2];
-      moved[k] = position[k] + dt * turning;
-      const S rigid = component.velocity[k] + turning;
+      moved[k] += dt * turned[k];
+      const S rigid = component.velocity[k] + turning[k];
       beside[k] = v[k] - rigid;
       v[k] = rigid;
     }
   }
+  places_.turnFrames(turns);
 }
 
 /// The angle by which tets may rotate before the matrix is assembled anew, relative to that of a soft body.
@@ -284,6 +318,7 @@ double BodyDynamics<S>::allowedTurn() const {
 template <class S>
 void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
   assert(seconds > 0.0);
+  places_.take(points_);
   if (!tets_) {
     beginForces(seconds);
     return assembleIfNeeded(seconds, 1.0, threads);
@@ -307,9 +342,7 @@ void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
 template <class S>
 double BodyDynamics<S>::roundingSpeed(double seconds) const {
   constexpr double kFraction = 0.1;  // of the last digit
-  double reach = 0.0;
-  for (const ComponentMotion& motion : motions_) reach = std::max(reach, motion.reach());
-  return kFraction * static_cast<double>(std::numeric_limits<S>::epsilon()) * reach / seconds;
+  return kFraction * static_cast<double>(std::numeric_limits<S>::epsilon()) * places_.largestDisplacement() / seconds;
 }
 
 template <class S>
@@ -325,7 +358,6 @@ template <class S>
 void BodyDynamics<S>::startLater() {
   assert(forceSeconds_ > 0.0);
   S* solution = matrix_.solution();
-  squaredDeviation_ = 0.0;
   if (!tets_) {
     std::fill_n(solution, matrix_.wideSize(), S(0));
     std::fill(rightSide_.begin(), rightSide_.end(), S(0));
@@ -337,13 +369,13 @@ void BodyDynamics<S>::startLater() {
     const S mass = matrix_.massAt(slot);
     S* deviation = &relative_[4 * slot];
     for (std::size_t k = 0; k < 3; ++k) {
-      const S impulse = mass * deviation[k];
+      const S impulse = mass * deviation[k], elastic = dt * forces_[4 * slot + k];
       began_[wide + k * kGroup] = deviation[k];
-      rightSide_[wide + k * kGroup] = dt * forces_[4 * slot + k] + impulse;
-      if (stiff_ && mass != S(0)) {
-        squaredDeviation_ += static_cast<double>(impulse * deviation[k]);
-        deviation[k] = S(0);
-      }
+      rightSide_[wide + k * kGroup] = elastic + impulse;
+      // They are opposite at rest, where their sum is 0.
+      const bool free = mass != S(0);
+      acting_[wide + k * kGroup] = free ? elastic - mass * (deviation[k] - solution[wide + k * kGroup]) : S(0);
+      if (stiff_ && free) deviation[k] = S(0);
       solution[wide + k * kGroup] = deviation[k];
     }
   });
@@ -396,16 +428,20 @@ void BodyDynamics<S>::start(ParallelFor* threads) {
 }
 
 template <class S>
+double BodyDynamics<S>::squaredActing(ParallelFor* threads) {
+  return matrix_.squaredNorm(acting_.data(), threads);
+}
+
+template <class S>
 void BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
   assert(tets_ && maximum >= 0);
-  limits.enough = limits.tolerance * limits.tolerance * squaredDeviation_;
-  // Stiff bodies begin with 0.
-  const bool guesses = maximum > 0 && !stiff_;
+  limits.acting = squaredActing(threads);
+  const bool guesses = maximum > 0;
   if (guesses) guess_.improve(matrix_, limits, threads);
   gradient.start({&matrix_}, limits, nullptr, threads);
   const double squared = gradient.squaredResidual();
   gradient.iterate(maximum, threads);
-  if (guesses) guess_.learn(squared, gradient.iterations());
+  if (guesses) guess_.learn(squared, limits.acting, gradient.iterations());
 }
 
 template <class S>
@@ -478,7 +514,7 @@ std::vector<ComponentMomentum> BodyDynamics<S>::momentaNow() const {
     double velocity[3];
     for (std::size_t k = 0; k < 3; ++k) velocity[k] = static_cast<double>(v[k]) + solution[wide + k * kGroup];
     const std::uint32_t component = partOf_[slot];
-    now[component].add(matrix_.massAt(slot), &points_[4 * slot], velocity, motions_[component].about().data());
+    now[component].add(matrix_.massAt(slot), places_.at(slot), velocity, motions_[component].about().data());
   });
   return now;
 }
@@ -493,7 +529,7 @@ void BodyDynamics<S>::bendTurns(double seconds) {
     S v[3];
     for (std::size_t k = 0; k < 3; ++k) v[k] = velocities_[4 * slot + k] + solution[wide + k * kGroup];
     const std::uint32_t component = partOf_[slot];
-    moments[component].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[component].about().data());
+    moments[component].add(matrix_.massAt(slot), places_.at(slot), v, motions_[component].about().data());
   });
   std::vector<RigidVelocity> chords;
   for (std::size_t k = 0; k < motions_.size(); ++k) {
@@ -502,7 +538,7 @@ void BodyDynamics<S>::bendTurns(double seconds) {
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     if (matrix_.massAt(slot) == S(0)) return;
     double v[3];
-    chords[partOf_[slot]].at(&points_[4 * slot], v);
+    chords[partOf_[slot]].at(places_.at(slot), v);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
   });
 }
@@ -511,13 +547,15 @@ template <class S>
 bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const {
   assert(component < componentCount());
   double mass = 0.0, centroid[3] = {};
+  S x[3];
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n);
     if (partOf_[slot] != component) continue;
     if (matrix_.massAt(slot) == S(0)) return false;
     const auto m = static_cast<double>(matrix_.massAt(slot));
     mass += m;
-    for (std::size_t k = 0; k < 3; ++k) centroid[k] += m * static_cast<double>(moved_[4 * slot + k]);
+    places_.fromDisplacement(slot, &moved_[4 * slot], x);
+    for (std::size_t k = 0; k < 3; ++k) centroid[k] += m * static_cast<double>(x[k]);
   }
   if (!(mass > 0.0)) return false;
   for (AlignedVector<S>& motion : motions) motion.resize(4 * matrix_.slotCount(), S(0));
@@ -525,8 +563,9 @@ bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&mot
     const std::size_t slot = matrix_.slotOf(n);
     if (partOf_[slot] != component) continue;
     S arm[3];
+    places_.fromDisplacement(slot, &moved_[4 * slot], x);
     for (std::size_t k = 0; k < 3; ++k) {
-      arm[k] = moved_[4 * slot + k] - static_cast<S>(centroid[k] / mass);
+      arm[k] = x[k] - static_cast<S>(centroid[k] / mass);
       motions[k][4 * slot + k] = S(1);
     }
     for (std::size_t k = 0; k < 3; ++k) {  // about axis k
@@ -544,14 +583,14 @@ void BodyDynamics<S>::projectToRigidMotion() {
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     double v[3];
     for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<double>(solution[wide + k * kGroup]);
-    own[partOf_[slot]].add(matrix_.massAt(slot), &points_[4 * slot], v, motions_[partOf_[slot]].about().data());
+    own[partOf_[slot]].add(matrix_.massAt(slot), places_.at(slot), v, motions_[partOf_[slot]].about().data());
   });
   std::vector<RigidVelocity> rigid;
   for (std::size_t k = 0; k < motions_.size(); ++k) rigid.push_back(motions_[k].withMomentum(own[k]));
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     if (matrix_.massAt(slot) == S(0)) return;
     double v[3];
-    rigid[partOf_[slot]].at(&points_[4 * slot], v);
+    rigid[partOf_[slot]].at(places_.at(slot), v);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] = static_cast<S>(v[k]);
   });
 }
@@ -560,7 +599,7 @@ template <class S>
 Eigen::Vector3d BodyDynamics<S>::placeOf(const HeldPoint<S>& point) const {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < point.nodeCount; ++k) {
-    const S* x = &points_[4 * matrix_.slotOf(static_cast<std::size_t>(point.nodes[k]))];
+    const double* x = places_.at(matrix_.slotOf(static_cast<std::size_t>(point.nodes[k])));
     place += static_cast<double>(point.weights[k]) * Eigen::Vector3d(x[0], x[1], x[2]);
   }
   return place;
@@ -585,7 +624,7 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n), component = partOf_[slot];
     if (matrix_.massAt(slot) == S(0)) continue;
-    const S* x = &points_[4 * slot];
+    const double* x = places_.at(slot);
     const std::array<double, 3> from = impulse(n);
     const Eigen::Vector3d given(from[0], from[1], from[2]);
     impulses[component] += given;
@@ -607,7 +646,7 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     if (matrix_.massAt(slot) == S(0)) return;
     double v[3];
-    excess[partOf_[slot]].at(&points_[4 * slot], v);
+    excess[partOf_[slot]].at(places_.at(slot), v);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(v[k]);
   });
 }
@@ -628,12 +667,15 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
   stream(untouched_);
   stream(lastSeconds_);
   for (ComponentMotion& motion : motions_) motion.visitState(stream);
+  places_.visitState(stream);
   const bool turned = tets_ && tets_->visitState(stream, static_cast<S>(alpha), !changed);
+  if (tets_) matrix_.visitWide(stream, matrix_.solution());
   guess_.visitState(stream, matrix_);
   if (stream.restoring()) {
     if (!changed && (changed_ || turned || alpha != alpha_)) {
       matrix_.assemble(tets_ ? tets_->cornersAgain(static_cast<S>(alpha), nullptr) : nullptr,
                        tets_ ? tets_->ratio() : S(0), nullptr);
+      findUnitImpulses(nullptr);
     }
     alpha_ = alpha;
     changed_ = changed;
@@ -647,10 +689,9 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
 }
 
 template <class S>
-void BodyDynamics<S>::arrive(std::size_t node, const S* point, const S* velocity) {
+void BodyDynamics<S>::arrive(std::size_t node, const S* velocity) {
   const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
   for (std::size_t k = 0; k < 3; ++k) {
-    points_[4 * slot + k] = point[k] - length_ * velocity[k];
     velocities_[4 * slot + k] = velocity[k] - matrix_.solution()[wide + k * kGroup];
   }
 }

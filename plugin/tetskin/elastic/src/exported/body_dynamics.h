@@ -18,6 +18,7 @@
 #include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 #include <tetskin/elastic/src/dynamics/initial_guess.h>
+#include <tetskin/elastic/src/dynamics/node_places.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <array>
@@ -45,6 +46,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   /// rest  may be empty: a body without elasticity, which has masses only
   BodyDynamics(RestTets rest, std::size_t nodes);
+  BodyDynamics(BodyDynamics&&) = default;  // parts of it refer to others
 
   BlockMatrix<S>& matrix() { return matrix_; }
   const BlockMatrix<S>& matrix() const { return matrix_; }
@@ -77,17 +79,33 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// mass  0: the node is pinned
   void setMass(std::size_t node, S mass);
 
-  /// A node's state, 4 scalars each, which the caller fills before `predict`.
+  /// A node's state, 4 scalars each, which the caller fills before `predict`. Where the point is what `advance` has
+  /// returned, the node's own position has more digits.
   S* point(std::size_t node) { return &points_[4 * matrix_.slotOf(node)]; }
   S* velocity(std::size_t node) { return &velocities_[4 * matrix_.slotOf(node)]; }
   /// The elastic force on a node, of the last `probeForces` or `predict`.
   const S* force(std::size_t node) const { return &forces_[4 * matrix_.slotOf(node)]; }
 
-  /// A node's position, 4 scalars, for `probeForces` and `probeEnergy`: they leave the state as it is. The caller fills
-  /// it between steps.
+  /// A node's position, 4 scalars, for `probeForces` and `probeEnergy`: they leave the state as it is, and the
+  /// positions undefined. The caller fills all of them between steps.
   S* probe(std::size_t node) { return &moved_[4 * matrix_.slotOf(node)]; }
   void probeForces(ParallelFor* threads);
   double probeEnergy(ParallelFor* threads);
+
+  /// Moves a node by a velocity at the end of a step, and returns its point.
+  const S* advance(std::size_t node, double seconds, const S* by) {
+    const std::size_t slot = matrix_.slotOf(node);
+    places_.advance(slot, seconds, by);
+    places_.round(slot, &points_[4 * slot]);
+    return &points_[4 * slot];
+  }
+
+  /// The node's position minus its point.
+  void remainder(std::size_t node, S* out) const {
+    const std::size_t slot = matrix_.slotOf(node);
+    const double* x = places_.at(slot);
+    for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<S>(x[k] - static_cast<double>(points_[4 * slot + k]));
+  }
 
   /// True if the node is where the last step has brought it, and as fast, but for less than one sees.
   bool continues(std::size_t node, const S* point, const S* velocity) const {
@@ -95,9 +113,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
     for (std::size_t k = 0; k < 3; ++k) {
       const S reached = velocities_[4 * slot + k] + matrix_.solution()[wide + k * kernels::kGroup];
       if (!(std::abs(length_ * (velocity[k] - reached)) <= near_)) return false;
-      if (!(std::abs(point[k] - points_[4 * slot + k] - length_ * reached) <= near_)) return false;
     }
-    return true;
+    return places_.isAt(slot, point, near_);
   }
   /// True if the last step is remembered for the next one.
   bool remembers() const { return history_.isKnown(); }
@@ -119,9 +136,14 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void start(ParallelFor* threads);
   /// Like `start`, but without the residual: `restart` must follow.
   void startLater();
-  /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations.
-  /// limits  the tolerance is relative to the residual without elasticity; `enough` is replaced
+  /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations. What acts are the
+  /// elastic impulses, and what has changed velocities since the last step: at rest, both are those of the weight.
+  /// limits  `acting` is replaced
   void solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
+  /// The square of the norm of what acts, see SolveLimits, of the last `start`.
+  double squaredActing(ParallelFor* threads);
+  /// The same of impulses that change all velocities by this speed.
+  double squaredImpulses(double speed) const { return speed * speed * unitImpulses_; }
   /// True if the body counted as stiff in the last `predict`.
   bool isStiff() const { return stiff_; }
   /// The stiffness factor of the last `predict`: dt (dt + damping) times the sum of V (2 mu + lambda) over the least
@@ -137,7 +159,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double squaredChange() const;
   /// The square of the solution's norm with respect to the matrix, as `restart` has computed it.
   double squaredByMatrix() const;
-  /// A speed that hardly changes a position within the step, because of rounding.
+  /// A speed that hardly changes a displacement within the step, because of rounding.
   double roundingSpeed(double seconds) const;
   /// The change of velocity per unit impulse, both at a point and in a direction, if the node's component moves as a
   /// rigid body. World space, of the last `predict`.
@@ -176,18 +198,19 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// outdated   while saving: the masses of the nodes are no longer those of the matrix
   /// continues  while saving: true for all nodes, see `continues`
   void visitState(StateStream& stream, bool outdated, bool continues);
-  /// Call it for each node after reading: the node is where the last step has brought it.
-  void arrive(std::size_t node, const S* point, const S* velocity);
+  /// Call it for each node after reading: the last step has brought it to this velocity.
+  void arrive(std::size_t node, const S* velocity);
 
  private:
   bool mayRemember() const { return tets_ && !stiff_ && untouched_ >= kUntouched; }
   void keep(const AlignedVector<S>& impulses, double seconds);
   void beginForces(double seconds);
   void chooseScheme(double seconds);
-  void findComponents(const RestTets& rest);
+  static std::vector<std::uint32_t> components(const RestTets& rest, const BlockMatrix<S>& matrix);
   void findMotions(double seconds);
   void moveRigidly(double seconds);
   void assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads);
+  void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
   std::vector<ComponentMomentum> momentaNow() const;
   Eigen::Vector3d placeOf(const HeldPoint<S>& point) const;
@@ -195,9 +218,11 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   BlockMatrix<S> matrix_;
   std::optional<CorotatedTets<S>> tets_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
-      forces_;                          ///< by slot; moved_: x0, relative to its component
+      forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces
   AlignedVector<S> rightSide_, image_;  ///< in the wide layout
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
+  AlignedVector<S> acting_;             ///< in the wide layout: impulses, see `solve`
+  double unitImpulses_ = 0.0;           ///< `squaredImpulses` of 1, by the matrix without rows
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
   bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false, deterministic_ = false;
@@ -216,9 +241,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::size_t pinned_;                    ///< number of pinned nodes
   std::vector<std::uint32_t> partOf_;     ///< by slot: number of its component
   std::vector<ComponentMotion> motions_;  ///< by component, of the last `predict`
+  NodePlaces<S> places_;
   std::vector<double> stiffness_;      ///< by component: sum of V (2 mu + lambda) over its tets, linear and quadratic
   double stiffnessOverInertia_ = 0.0;  ///< times dt^2: how much rotation is taken for strain; the largest
-  double squaredDeviation_ = 0.0;
   InitialGuess<S> guess_;
 };
 

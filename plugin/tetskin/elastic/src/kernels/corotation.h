@@ -13,6 +13,10 @@
 //   energy = V (mu E : E + lambda / 2 tr(E)^2),  force on node a = -V R (2 mu E + lambda tr(E)) g_a
 // which is the gradient of the energy where R is that maximum: S is then symmetric. A tet that is turned inside out
 // also has such a rotation.
+//
+// Where points are displacements from a frame Q, with G their gradient, F = Q + G. In this sum, a strain below the last
+// digit of 1 is lost, so that E is computed without it, from the vector v of the quaternion of R^T Q:
+//   E = sym(R^T G) + 2 (v v^T - (v . v) 1)
 #pragma once
 
 #include <tetskin/elastic/src/kernels/wide.h>
@@ -292,12 +296,74 @@ TETSKIN_INLINE WideMatrix<S, W> stressOf(const WideMatrix<S, W>& strain, const L
            shear * e[6], shear * e[7], shear * e[8] + pressure}};
 }
 
-/// sym(S) - 1.
+/// The frames of W tets, see above; without frames, all of it is 0, and G is F.
 template <class S, int W>
-TETSKIN_INLINE WideMatrix<S, W> symmetricStrain(const WideMatrix<S, W>& s) {
+struct WideFrames {
+  Quaternions<S, W> q;
+  WideMatrix<S, W> rotation;
+  Lanes<S, W> one;  ///< what is to be subtracted from the diagonal of sym(R^T G)
+};
+
+template <class S, int W>
+TETSKIN_INLINE WideFrames<S, W> framesOf(const Quaternions<S, W>& q) {
+  return WideFrames<S, W>{q, rotationOf<S, W>(q), Lanes<S, W>{}};
+}
+
+/// The frame of all tets, if there is but one.
+template <class S, int W, class Work>
+TETSKIN_INLINE WideFrames<S, W> commonFrame(const Work& work) {
+  if (!work.frames) {
+    WideFrames<S, W> none{};
+    none.one = all<S, W>(1);
+    return none;
+  }
+  const S* q = work.frames;
+  return framesOf<S, W>({all<S, W>(q[0]), all<S, W>(q[1]), all<S, W>(q[2]), all<S, W>(q[3])});
+}
+
+/// common  see `commonFrame`
+template <class S, int W, class Work, class Pack>
+TETSKIN_INLINE WideFrames<S, W> framesAt(const Work& work, const Pack& pack, int lane, const WideFrames<S, W>& common) {
+  if (!work.frames || !work.partOf) return common;
+  std::uint32_t parts[W];
+  for (int i = 0; i < W; ++i) parts[i] = work.partOf[pack.nodes[0][lane + i]];
+  const WidePoints<S, W> q = pointsAt<S, W>(work.frames, parts);
+  return framesOf<S, W>({q.x, q.y, q.z, q.w});
+}
+
+/// F of a tet that has collapsed to a point, but for the rounding of G + Q: it has no rotation of its own.
+template <class S>
+constexpr S kCollapsed = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-13);
+
+/// F
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const WideMatrix<S, W>& g, const WideFrames<S, W>& frame) {
   using V = Lanes<S, W>;
-  const V xy = S(0.5) * (s.at[1] + s.at[3]), xz = S(0.5) * (s.at[2] + s.at[6]), yz = S(0.5) * (s.at[5] + s.at[7]);
-  return {{s.at[0] - S(1), xy, xz, xy, s.at[4] - S(1), yz, xz, yz, s.at[8] - S(1)}};
+  WideMatrix<S, W> f;
+  V squared{};
+  for (int k = 0; k < 9; ++k) {
+    f.at[k] = g.at[k] + frame.rotation.at[k];
+    squared += f.at[k] * f.at[k];
+  }
+  const auto collapsed = (squared < kCollapsed<S> * kCollapsed<S>)&(frame.one < S(0.5));
+  for (V& x : f.at) x = collapsed ? V{} : x;
+  return f;
+}
+
+/// E
+template <class S, int W>
+TETSKIN_INLINE WideMatrix<S, W> strainOf(const Quaternions<S, W>& q, const WideMatrix<S, W>& r,
+                                         const WideMatrix<S, W>& g, const WideFrames<S, W>& frame) {
+  using V = Lanes<S, W>;
+  const Quaternions<S, W>& p = frame.q;
+  const V x = q.w * p.x - p.w * q.x - (q.y * p.z - q.z * p.y), y = q.w * p.y - p.w * q.y - (q.z * p.x - q.x * p.z);
+  const V z = q.w * p.z - p.w * q.z - (q.x * p.y - q.y * p.x);
+  const V xx = S(2) * x * x, yy = S(2) * y * y, zz = S(2) * z * z;
+  const WideMatrix<S, W> s = transposedProduct<S, W>(r, g);
+  const V xy = S(0.5) * (s.at[1] + s.at[3]) + S(2) * x * y, xz = S(0.5) * (s.at[2] + s.at[6]) + S(2) * x * z;
+  const V yz = S(0.5) * (s.at[5] + s.at[7]) + S(2) * y * z;
+  return {{s.at[0] - (yy + zz) - frame.one, xy, xz, xy, s.at[4] - (xx + zz) - frame.one, yz, xz, yz,
+           s.at[8] - (xx + yy) - frame.one}};
 }
 
 template <class S, int W>
@@ -312,17 +378,17 @@ TETSKIN_INLINE Lanes<S, W> determinantOf(const WideMatrix<S, W>& matrix) {
 }
 
 /// Updates the rotations of W points.
-/// f            deformation gradients
+/// g            gradients of points
 /// shear, bulk  2 mu V and lambda V
 template <class S, int W>
-TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const WideMatrix<S, W>& f, S* rotations, const S* assembled,
-                                                 const Lanes<S, W>& shear, const Lanes<S, W>& bulk, bool withEnergy,
-                                                 WideFindings<S, W>& findings) {
+TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const WideMatrix<S, W>& g, const WideFrames<S, W>& frame, S* rotations,
+                                                 const S* assembled, const Lanes<S, W>& shear, const Lanes<S, W>& bulk,
+                                                 bool withEnergy, WideFindings<S, W>& findings) {
   Quaternions<S, W> q = quaternions<S, W>(rotations);
   WideMatrix<S, W> r, s;
-  turnToMaximum<S, W>(f, q, r, s);
+  turnToMaximum<S, W>(deformationGradient<S, W>(g, frame), q, r, s);
   keepRotations<S, W>(q, rotations, assembled, findings);
-  const WideMatrix<S, W> strain = symmetricStrain<S, W>(s);
+  const WideMatrix<S, W> strain = strainOf<S, W>(q, r, g, frame);
   return {r, stressOf<S, W>(strain, traceOf<S, W>(strain), shear, bulk, withEnergy, findings)};
 }
 
@@ -350,7 +416,7 @@ constexpr S kFlat = S(0.1);
 
 /// What multiplies the stiffness in the matrix.
 /// at        index in `alphas`
-/// gradient  returns the deformation gradients
+/// gradient  returns F
 template <class S, int W, class Pack, class Gradient>
 TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S, Pack>& work, std::size_t at, Gradient&& gradient) {
   if (!(work.flatAlpha > work.alpha)) return all<S, W>(work.alpha);

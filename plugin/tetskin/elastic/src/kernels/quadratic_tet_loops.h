@@ -54,8 +54,8 @@ TETSKIN_INLINE WideVector<S, W> weightedNodes(const WideVector<S, W> x[10], cons
 }
 
 template <class S, int W>
-TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const QuadraticPack<S>& pack, int lane,
-                                                    const WideVector<S, W> x[10], const Lanes<S, W> weights[4]) {
+TETSKIN_INLINE WideMatrix<S, W> gradientOf(const QuadraticPack<S>& pack, int lane, const WideVector<S, W> x[10],
+                                           const Lanes<S, W> weights[4]) {
   using V = Lanes<S, W>;
   const WideVector<S, W> h0 = weightedNodes<S, W>(x, weights, 0);
   WideMatrix<S, W> f{};
@@ -164,6 +164,7 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
   using Pack = QuadraticPack<S>;
   alignas(64) S own[4 * Pack::kNodes * W];
   WideFindings<S, W> findings;
+  const WideFrames<S, W> common = commonFrame<S, W>(work);
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const Pack& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
@@ -171,12 +172,14 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
       nodesFromFirst<S, W>(pack, work.points, lane, x);
       const std::size_t first = 4 * kGroup * Pack::kPoints * p + static_cast<std::size_t>(lane);
       V weights[Pack::kPoints][4];
+      const WideFrames<S, W> frame = framesAt<S, W>(work, pack, lane, common);
+      WideMatrix<S, W> gradients[Pack::kPoints];
       TurnedPoints<S, W> at[Pack::kPoints];
       for (std::size_t point = 0; point < Pack::kPoints; ++point) {
         weightsAt<S, W>(pack, point, lane, weights[point]);
         at[point].q = quaternions<S, W>(work.rotations + first + 4 * kGroup * point);
-        turnToMaximum<S, W>(deformationGradient<S, W>(pack, lane, x, weights[point]), at[point].q, at[point].r,
-                            at[point].s);
+        gradients[point] = gradientOf<S, W>(pack, lane, x, weights[point]);
+        turnToMaximum<S, W>(deformationGradient<S, W>(gradients[point], frame), at[point].q, at[point].r, at[point].s);
       }
       const V lost = lostTets<S, W>(at);
       V wholeTrace{};
@@ -187,7 +190,7 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
       for (std::size_t point = 0; point < Pack::kPoints; ++point) {
         keepRotations<S, W>(at[point].q, work.rotations + first + 4 * kGroup * point,
                             work.assembled + first + 4 * kGroup * point, findings);
-        WideMatrix<S, W> strain = symmetricStrain<S, W>(at[point].s);
+        WideMatrix<S, W> strain = strainOf<S, W>(at[point].q, at[point].r, gradients[point], frame);
         V trace = traceOf<S, W>(strain);
         if (anyLost) {
           for (int k = 0; k < 9; ++k) at[point].s.at[k] = at[point].s.at[k] - S(k % 4 == 0 ? 1 : 0);
@@ -212,7 +215,7 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
 /// The vectors of the nodes at one of the points.
 template <class S, int W>
 TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& work, std::size_t p, std::size_t point,
-                                          int lane, WideVector<S, W> nodes[10]) {
+                                          int lane, const WideFrames<S, W>& common, WideVector<S, W> nodes[10]) {
   using V = Lanes<S, W>;
   using Pack = QuadraticPack<S>;
   const Pack& pack = work.packs[p];
@@ -222,7 +225,8 @@ TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& wo
   const V alpha = alphaOf<S, W>(work, first + static_cast<std::size_t>(lane), [&] {
     WideVector<S, W> x[10];
     nodesFromFirst<S, W>(pack, work.points, lane, x);
-    return deformationGradient<S, W>(pack, lane, x, weights);
+    return deformationGradient<S, W>(gradientOf<S, W>(pack, lane, x, weights),
+                                     framesAt<S, W>(work, pack, lane, common));
   });
   const V factor = squareRoots<S, W>(alpha * (S(0.5) * wide<S, W>(pack.shear + lane)));
   const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * first + lane));
@@ -235,10 +239,13 @@ TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& wo
 template <class S, int W>
 void quadraticRotatedGradients(const TetWork<S, QuadraticPack<S>>& work) {
   using Pack = QuadraticPack<S>;
+  const WideFrames<S, W> common = commonFrame<S, W>(work);
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     for (int lane = 0; lane < kGroup; lane += W) {
       WideVector<S, W> v[4][10];
-      for (std::size_t point = 0; point < 4; ++point) rotatedShapeGradients<S, W>(work, p, point, lane, v[point]);
+      for (std::size_t point = 0; point < 4; ++point) {
+        rotatedShapeGradients<S, W>(work, p, point, lane, common, v[point]);
+      }
       S* to = work.corners + kCorners<Pack> * (kGroup * p + static_cast<std::size_t>(lane));
       const auto putNext = [&](const WidePoints<S, W>& fourPoints) {
         putPoints<S, W>(fourPoints, to, kCorners<Pack>);

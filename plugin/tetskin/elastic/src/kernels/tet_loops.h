@@ -8,8 +8,9 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
+/// The gradients of points.
 template <class S, int W>
-TETSKIN_INLINE WideMatrix<S, W> deformationGradient(const TetPack<S>& pack, const S* points, int lane) {
+TETSKIN_INLINE WideMatrix<S, W> gradientOf(const TetPack<S>& pack, const S* points, int lane) {
   using V = Lanes<S, W>;
   const WideVector<S, W> x0 = vectorsAt<S, W>(points, pack.nodes[0] + lane);
   V edges[9];
@@ -48,13 +49,14 @@ TetFindings<S> forces(const TetWork<S, TetPack<S>>& work, bool withEnergy) {
   constexpr std::size_t kScalars = kCorners<TetPack<S>>;
   alignas(64) S own[kScalars * W];
   WideFindings<S, W> findings;
+  const WideFrames<S, W> common = commonFrame<S, W>(work);
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
       const std::size_t at = 4 * kGroup * p + static_cast<std::size_t>(lane);
       const RotatedStress<S, W> stress = rotatedStress<S, W>(
-          deformationGradient<S, W>(pack, work.points, lane), work.rotations + at, work.assembled + at,
-          wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
+          gradientOf<S, W>(pack, work.points, lane), framesAt<S, W>(work, pack, lane, common), work.rotations + at,
+          work.assembled + at, wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
       S* const corners = work.sums ? own : work.corners + kScalars * (kGroup * p + static_cast<std::size_t>(lane));
       putCorners<S, W>(pack, lane, corners, [&](const V& gx, const V& gy, const V& gz) {
         const WideVector<S, W> v = stress(gx, gy, gz);
@@ -69,12 +71,15 @@ TetFindings<S> forces(const TetWork<S, TetPack<S>>& work, bool withEnergy) {
 template <class S, int W>
 void rotatedGradients(const TetWork<S, TetPack<S>>& work) {
   using V = Lanes<S, W>;
+  const WideFrames<S, W> common = commonFrame<S, W>(work);
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
       const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
-      const V alpha = alphaOf<S, W>(work, kGroup * p + static_cast<std::size_t>(lane),
-                                    [&] { return deformationGradient<S, W>(pack, work.points, lane); });
+      const V alpha = alphaOf<S, W>(work, kGroup * p + static_cast<std::size_t>(lane), [&] {
+        return deformationGradient<S, W>(gradientOf<S, W>(pack, work.points, lane),
+                                         framesAt<S, W>(work, pack, lane, common));
+      });
       const V mu = S(0.5) * wide<S, W>(pack.shear + lane), factor = squareRoots<S, W>(alpha * mu);
       putCorners<S, W>(pack, lane, work.corners + kCorners<TetPack<S>> * (kGroup * p + static_cast<std::size_t>(lane)),
                        [&](const V& gx, const V& gy, const V& gz) {

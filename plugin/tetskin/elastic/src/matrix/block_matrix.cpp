@@ -18,7 +18,7 @@ namespace {
 
 /// Least mass of a node relative to the trace of its diagonal block of alpha K: a number of last digits of it.
 template <class S>
-constexpr S kMinMass = 16 * std::numeric_limits<S>::epsilon();
+constexpr S kMinMass = 4 * std::numeric_limits<S>::epsilon();
 
 /// The inverse of a symmetric positive matrix: xx xy xz yy yz zz.
 template <class S>
@@ -324,10 +324,11 @@ void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) co
 }
 
 template <class S>
-double BlockMatrix<S>::lowerInto(S* wide, ParallelFor* threads) {
+double BlockMatrix<S>::lowerInto(const S* impulses, S* wide, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>(deterministic_);
   forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
     auto part = work(first, last);
+    part.residual = const_cast<S*>(impulses);  // this kernel only reads it
     part.rest = wide;
     partial_[range] = table.lower(part);
   });
@@ -336,12 +337,12 @@ double BlockMatrix<S>::lowerInto(S* wide, ParallelFor* threads) {
 
 template <class S>
 double BlockMatrix<S>::lower(ParallelFor* threads) {
-  return lowerInto(residual_.data(), threads);
+  return lowerInto(residual_.data(), residual_.data(), threads);
 }
 
 template <class S>
-double BlockMatrix<S>::squaredResidual(ParallelFor* threads) {
-  return lowerInto(rest_.data(), threads);
+double BlockMatrix<S>::squaredNorm(const S* impulses, ParallelFor* threads) {
+  return lowerInto(impulses, rest_.data(), threads);
 }
 
 template <class S>

@@ -110,8 +110,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// Multiplies A with points, 4 scalars per slot.
   void multiply(const S* points, S* wide, ParallelFor* threads) const;
 
-  /// The square of the residual's norm, as `lower` returns it; the residual stays as it is.
-  double squaredResidual(ParallelFor* threads);
+  /// The square of the norm of impulses in the wide layout, as `lower` returns that of the residual.
+  double squaredNorm(const S* impulses, ParallelFor* threads);
   /// Computes difference = first - second, in the wide layout, 0 at pinned nodes, and A times it.
   /// second  null: 0
   void multiplyDifference(const S* first, const S* second, S* difference, S* image, ParallelFor* threads);
@@ -142,7 +142,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void forwards(ParallelFor* threads, Kernel&& kernel) const;
   template <class Kernel>
   void backwards(ParallelFor* threads, Kernel&& kernel) const;
-  double lowerInto(S* wide, ParallelFor* threads);
+  double lowerInto(const S* impulses, S* wide, ParallelFor* threads);
   double summed() const;
 
   bool deterministic_ = false;

@@ -132,6 +132,8 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.assembled = packed.assembled.data();
   work.corners = corners_.data() + 4 * packed.firstCorner;
   work.alphas = packed.alphas.data();
+  work.frames = frames_;
+  work.partOf = partOf_;
   return work;
 }
 

@@ -29,6 +29,12 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// See `elasticInUse`.
   void setDeterministic(bool on) { deterministic_ = on; }
 
+  /// From now on, points are displacements; see TetWork for both. Not owned.
+  void setFrames(const S* frames, const std::uint32_t* partOf) {
+    frames_ = frames;
+    partOf_ = partOf;
+  }
+
   /// Elastic forces at `points`, both 4 scalars per slot; updates the tets' rotations.
   void forces(const S* points, S* out, ParallelFor* threads);
   /// The elastic energy at `points`.
@@ -90,6 +96,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   std::size_t slots_ = 0;
   bool deterministic_ = false;
   const S* points_ = nullptr;  ///< of the last `forces`
+  const S* frames_ = nullptr;
+  const std::uint32_t* partOf_ = nullptr;
   S ratio_ = 0;
   S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: it has no such value
   S maxTurned_ = 0;      ///< squared difference of quaternions

@@ -7,6 +7,7 @@
 #include <tetskin/elastic/src/base/elastic_kernels.h>
 #include <tetskin/elastic/src/tets/rest_quadratic_tets.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct RestTets {
   std::vector<std::array<double, 9>> gradients;  ///< by rows: of the weights of nodes 1, 2 and 3, rest space
   std::vector<double> volumes;                   ///< above 0: volume times the factor of the stiffness
   std::vector<RestQuadraticTet> quadratic;
+  /// Nodes at rest, rest space: the tets have these shapes, to the last digit. Empty: not known.
+  std::vector<Eigen::Vector3d> nodes;
 
   std::size_t count() const { return tets.size(); }
   bool empty() const { return tets.empty() && quadratic.empty(); }
@@ -42,5 +45,13 @@ struct RestTets {
 /// Cost            O(T); O(64 T) where quadratic tets are filled in part
 TETSKIN_ELASTIC_API RestTets restTets(const Cage& cage, const std::vector<QuadraticTet>& quadratic = {},
                                       const std::vector<double>& stiffnessScale = {});
+
+/// Finds nodes at rest by the shapes of linear tets, each component from a node of its own; nodes of no tet are at 0.
+/// Where the shapes do not fit together, `takeRestShapes` finds that out. Cost O(T)
+TETSKIN_ELASTIC_API void findRestNodes(RestTets& linear, std::size_t nodes);
+
+/// Gives linear tets the shapes that their nodes have, in double, where all of them have these shapes already, but for
+/// a share of a tet's size. Otherwise the tets stay as they are, without nodes, and false is returned. Cost O(T)
+TETSKIN_ELASTIC_API bool takeRestShapes(RestTets& linear, double tolerance);
 
 }  // namespace tetskin::elastic_detail
