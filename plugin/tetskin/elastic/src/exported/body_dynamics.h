@@ -46,7 +46,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   /// rest  may be empty: a body without elasticity, which has masses only
   BodyDynamics(RestTets rest, std::size_t nodes);
-  BodyDynamics(BodyDynamics&&) = default;  // parts of it refer to others
+  BodyDynamics(BodyDynamics&&) noexcept = default;  // parts of it refer to others
 
   BlockMatrix<S>& matrix() { return matrix_; }
   const BlockMatrix<S>& matrix() const { return matrix_; }
