@@ -196,6 +196,13 @@ struct DeformableBody::Impl final : BodyOwner {
   }
 };
 
+/// In float's digits, from the first node on: the last digits of a cage may differ from one processor to another.
+static std::vector<Eigen::Vector3d> roundedNodes(std::vector<Eigen::Vector3d> nodes) {
+  const Eigen::Vector3d first = nodes.front().cast<float>().cast<double>();
+  for (Eigen::Vector3d& p : nodes) p = first + (p - first).cast<float>().cast<double>();
+  return nodes;
+}
+
 DeformableBody::DeformableBody(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBodyDynamicsWorld& world, const Cage& cage,
@@ -216,7 +223,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   const bool corotated = options.forceModel == ForceModel::Corotated;
   Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
   if (!rest.ok()) return rest.status();
-  rest.value().nodes = cage.mesh.nodes;
+  rest.value().nodes = roundedNodes(cage.mesh.nodes);
   Result<std::vector<QuadraticShape>> quadratic =
       corotated ? quadraticShapes(cage, given.stiffnessScale) : std::vector<QuadraticShape>();
   if (!quadratic.ok()) return quadratic.status();
