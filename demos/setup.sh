@@ -9,7 +9,7 @@ demo_packages=(libbenchmark-dev python3-matplotlib)
 # What the page needs that is run in browsers; it needs none of the libraries, but their headers.
 live_packages=(emscripten nodejs cmake ninja-build libeigen3-dev libtinygltf-dev nlohmann-json3-dev libjs-three python3)
 test_packages=(libgtest-dev)
-check_packages=(clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen libegl-dev libgl1-mesa-dri
+check_packages=(ccache clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen libegl-dev libgl1-mesa-dri
   qemu-user-static python3-venv python3-dev debootstrap)
 # Another browser of its kind will do: Ubuntu has none as a package.
 if ! command -v chromium-browser google-chrome >/dev/null; then check_packages+=(chromium); fi

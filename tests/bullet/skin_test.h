@@ -17,6 +17,16 @@ namespace tetskin::test {
 /// Tolerance for positions of a body about 1 in size.
 constexpr double kRounding = 2e-6;
 
+/// A skin's positions, 3 numbers per vertex.
+using Surface = std::vector<btScalar>;
+inline Surface surfaceOf(const SoftBodySkin& skin) {
+  Surface all;
+  for (std::size_t v = 0; v < skin.positions().size(); ++v) {
+    all.insert(all.end(), skin.positions()[v], skin.positions()[v] + 3);
+  }
+  return all;
+}
+
 /// A body made from a lattice cage, at rest and in no world, and a sphere that sticks out of it.
 class SkinTest : public testing::Test {
  protected:

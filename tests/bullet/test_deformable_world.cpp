@@ -5,6 +5,7 @@
 #include <tetskin/bullet/deformable_world.h>
 
 #include <memory>
+#include <vector>
 
 #include "deformable_test.h"
 
@@ -45,6 +46,93 @@ TEST(DeformableWorld, ABodySlidesAlongAPlaneAnyFar) {
   EXPECT_GT(low.x(), 15);
   EXPECT_NEAR(low.y(), 0, 0.05);
   world.removeRigidBody(&floor);
+}
+
+/// A cube of this size that lies on a floor, a plane through the origin if none is given.
+class LyingCube {
+ public:
+  explicit LyingCube(double size, btCollisionShape* shape = nullptr, double top = 0.0)
+      : floor_(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape ? shape : &plane_)) {
+    floor_.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, static_cast<btScalar>(-top), 0)));
+    world_.addRigidBody(&floor_);
+    TetMesh cage = latticeCage(3, 3, 3, size / 3);
+    for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.1 * size;
+    body_ = DeformableBody::add(world_, cage).value();
+  }
+  ~LyingCube() { world_.removeRigidBody(&floor_); }
+  LyingCube(const LyingCube&) = delete;
+  LyingCube& operator=(const LyingCube&) = delete;
+
+  tetskin::DeformableWorld& world() { return world_; }
+  btSoftBody& body() { return body_->body(); }
+  void step(double seconds, int steps = 1) {
+    const auto whole = static_cast<btScalar>(seconds);
+    world_.stepSimulation(whole, steps, whole / static_cast<btScalar>(steps));
+  }
+
+ private:
+  btStaticPlaneShape plane_{btVector3(0, 1, 0), 0};
+  btRigidBody floor_;
+  tetskin::DeformableWorld world_;
+  std::unique_ptr<DeformableBody> body_;
+};
+
+/// Within a step of 1/60 s, gravity moves the smallest of these by eleven times its size.
+TEST(DeformableWorld, BodiesOfAnySizeLandAndFallAsleep) {
+  for (const double size : {2.5e-4, 5e-4, 1e-3, 2e-3, 5e-3, 2e-2, 0.1, 1.0}) {
+    for (const int steps : {1, 4}) {
+      LyingCube cube(size);
+      int frames = 0;
+      for (; frames < 480 && cube.body().isActive(); ++frames) cube.step(1.0 / 60.0, steps);
+      EXPECT_LT(frames, 480) << size << ' ' << steps;
+      EXPECT_NEAR(lowest(cube.body()), 0.03 * size, 0.04 * size) << size << ' ' << steps;
+    }
+  }
+}
+
+/// An application that was stopped passes the time in which it was as one step.
+TEST(DeformableWorld, WhatLiesOnAFloorStaysThereInAnyStep) {
+  btStaticPlaneShape plane(btVector3(0, 1, 0), 0);
+  btBoxShape box(btVector3(4, btScalar(0.5), 4));
+  btTriangleMesh triangles;
+  triangles.addTriangle(btVector3(-4, 0, -4), btVector3(-4, 0, 4), btVector3(4, 0, 4));
+  triangles.addTriangle(btVector3(-4, 0, -4), btVector3(4, 0, 4), btVector3(4, 0, -4));
+  btBvhTriangleMeshShape mesh(&triangles, true);
+  for (btCollisionShape* shape : std::vector<btCollisionShape*>{&plane, &box, &mesh}) {
+    for (const double seconds : {0.1, 0.5, 2.0}) {
+      constexpr double kSize = 0.5;
+      LyingCube cube(kSize, shape, shape == &box ? 0.5 : 0.0);
+      cube.body().setActivationState(DISABLE_DEACTIVATION);
+      for (int frame = 0; frame < 120; ++frame) cube.step(1.0 / 60.0, 4);
+      const double before = lowest(cube.body());
+      for (const int steps : {1, 4}) {
+        cube.step(seconds, steps);
+        EXPECT_NEAR(lowest(cube.body()), before, 0.01 * kSize) << shape->getName() << ' ' << seconds << ' ' << steps;
+        EXPECT_LT(rmsSpeed(cube.body()), 0.02) << shape->getName() << ' ' << seconds << ' ' << steps;
+      }
+    }
+  }
+}
+
+TEST(DeformableWorld, StepsAreDividedWhereABodyIsTooSmallForThemAlone) {
+  struct Steps {
+    int count = 0;
+    btScalar seconds = 0;
+  };
+  const auto count = [](btDynamicsWorld* world, btScalar seconds) {
+    auto& steps = *static_cast<Steps*>(world->getWorldUserInfo());
+    ++steps.count;
+    steps.seconds += seconds;
+  };
+  for (const double size : {0.1, 1e-3}) {
+    LyingCube cube(size);
+    Steps steps;
+    cube.world().setInternalTickCallback(count, &steps);
+    for (int frame = 0; frame < 10; ++frame) cube.step(1.0 / 60.0, 4);
+    if (size == 0.1) EXPECT_EQ(steps.count, 40);
+    if (size == 1e-3) EXPECT_EQ(steps.count, 80);
+    EXPECT_NEAR(steps.seconds, 10.0 / 60.0, 1e-4) << size;
+  }
 }
 
 TEST(DeformableWorld, StepsAsAWorldOfTheSameObjectsDoes) {

@@ -12,15 +12,8 @@ namespace tetskin {
 namespace {
 
 using test::kRounding;
-using Surface = std::vector<btScalar>;
-
-Surface surfaceOf(const SoftBodySkin& skin) {
-  Surface all;
-  for (std::size_t v = 0; v < skin.positions().size(); ++v) {
-    all.insert(all.end(), skin.positions()[v], skin.positions()[v] + 3);
-  }
-  return all;
-}
+using test::Surface;
+using test::surfaceOf;
 
 /// Largest deviation of a surface from the one that is the fraction `alpha` of the way between two others.
 double distance(const Surface& surface, const Surface& before, const Surface& after, double alpha) {

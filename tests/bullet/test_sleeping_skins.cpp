@@ -4,6 +4,7 @@
 // A skin is where its body is, whenever it is updated, although it skips sleeping bodies. Each test compares it with a
 // second skin of the body that skips nothing.
 #include "deformable_test.h"
+#include "skin_test.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
 
@@ -135,15 +136,6 @@ std::unique_ptr<HeldBar> make() {
   return std::make_unique<Bar>();
 }
 using Maker = std::unique_ptr<HeldBar> (*)();
-
-using Surface = std::vector<btScalar>;
-Surface surfaceOf(const SoftBodySkin& skin) {
-  Surface all;
-  for (std::size_t v = 0; v < skin.positions().size(); ++v) {
-    all.insert(all.end(), skin.positions()[v], skin.positions()[v] + 3);
-  }
-  return all;
-}
 
 class SleepingSkin : public testing::TestWithParam<Maker> {
  protected:
@@ -451,13 +443,17 @@ TEST_F(SkinOfACountedBody, IsWhereItsBodyIsThoughThatHasBeenInAnotherWorldMeanwh
   const Surface before = surfaceOf(skin);
   btSoftBody& body = scene.body();
   EmptyWorld bullets;
+  // Bullet moves a body in the tree of the world that m_worldInfo names.
+  btSoftBodyWorldInfo* const info = body.m_worldInfo;
   scene.saved()->removeSoftBody(&body);
+  body.m_worldInfo = &bullets.deformable().getWorldInfo();
   bullets.deformable().addSoftBody(&body);
   btDeformableGravityForce gravity(btVector3(0, -10, 0));
   bullets.deformable().addForce(&body, &gravity);
   body.forceActivationState(ACTIVE_TAG);
   step(bullets, 5);
   bullets.deformable().removeSoftBody(&body);
+  body.m_worldInfo = info;
   scene.saved()->addSoftBody(&body);
   body.forceActivationState(ISLAND_SLEEPING);
   EXPECT_EQ(skin.update(), StatusCode::Ok);

@@ -127,6 +127,21 @@ Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   return invalid(text);
 }
 
+/// With as many digits as Bullet has: the last ones of a double may differ from one processor to another. Where GCC 12
+/// joins two conversions to float and back in a vector, it leaves them out; so this is Veltkamp's splitting.
+double inBulletsDigits(double x) {
+  if (sizeof(btScalar) == sizeof(double)) return x;
+  const double high = x * 536870913.0;  // 2^29 + 1
+  return high - (high - x);
+}
+
+/// In Bullet's digits, from the first node on.
+std::vector<Eigen::Vector3d> roundedNodes(std::vector<Eigen::Vector3d> nodes) {
+  const Eigen::Vector3d first = nodes.front().unaryExpr(&inBulletsDigits);
+  for (Eigen::Vector3d& p : nodes) p = first + (p - first).unaryExpr(&inBulletsDigits);
+  return nodes;
+}
+
 }  // namespace
 
 /// The members of a DeformableBody, in such an order that forces are destroyed before the body on which they act.
@@ -195,13 +210,6 @@ struct DeformableBody::Impl final : BodyOwner {
                                              std::to_string(masses.size()) + " nodes"};
   }
 };
-
-/// In float's digits, from the first node on: the last digits of a cage may differ from one processor to another.
-static std::vector<Eigen::Vector3d> roundedNodes(std::vector<Eigen::Vector3d> nodes) {
-  const Eigen::Vector3d first = nodes.front().cast<float>().cast<double>();
-  for (Eigen::Vector3d& p : nodes) p = first + (p - first).cast<float>().cast<double>();
-  return nodes;
-}
 
 DeformableBody::DeformableBody(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 

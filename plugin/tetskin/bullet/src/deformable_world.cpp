@@ -6,9 +6,47 @@
 #include <tetskin/bullet/src/step/step.h>
 #include <tetskin/bullet/src/step/watched_detection.h>
 
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
 namespace tetskin {
 
 using namespace bullet_detail;
+
+namespace {
+
+/// The longest side of the box around the nodes; once it is long enough, at least so much.
+btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
+  assert(body.m_nodes.size() > 0);
+  btVector3 low = body.m_nodes[0].m_x, high = low;
+  btScalar size = 0;
+  for (int n = 1; n < body.m_nodes.size() && size < enough; ++n) {
+    low.setMin(body.m_nodes[n].m_x);
+    high.setMax(body.m_nodes[n].m_x);
+    size = (high - low)[(high - low).maxAxis()];
+  }
+  return size;
+}
+
+/// Into how many steps one of this length is divided, so that gravity moves no soft body that is awake by more than a
+/// share of its size in each: a contact is searched where a body would be without it, and one that is deeper in the
+/// ground there trembles, or falls through.
+int partsOf(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds) {
+  constexpr btScalar kMostFall = btScalar(0.06), kMostParts = 64;
+  const btScalar enough = world.getGravity().length() * seconds * seconds / kMostFall;
+  if (!(enough < BT_LARGE_FLOAT)) return 1;  // no length of a step
+  btScalar smallest = enough;
+  const auto& bodies = world.getSoftBodyArray();
+  for (int b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b]->isActive() || bodies[b]->m_nodes.size() < 2) continue;
+    smallest = std::min(smallest, sizeUpTo(*bodies[b], enough));
+  }
+  if (!(smallest > 0)) return 1;
+  return static_cast<int>(std::min(std::ceil(btSqrt(enough / smallest)), kMostParts));
+}
+
+}  // namespace
 
 struct DeformableWorldObjects::Impl {
   Impl() : dispatcher(configuration, detects), broadphase(detects) {
@@ -42,7 +80,13 @@ DeformableWorld::~DeformableWorld() = default;
 /// the application's forces after the last one.
 int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
   const Running simulation(impl_->deformableSolver.impl_->inSimulation);
-  return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+  const btScalar seconds = maxSubSteps > 0 ? fixedTimeStep : timeStep;
+  const int parts = partsOf(*this, seconds);
+  if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+  // A step of the caller's own length is all of it, although rounding may have made the parts a little longer.
+  constexpr btScalar kRounding = 4 * SIMD_EPSILON;
+  const btScalar part = seconds / static_cast<btScalar>(parts) * (1 - kRounding);
+  return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, std::max(maxSubSteps, 1) * parts, part);
 }
 
 DeformableSolver& DeformableWorld::deformableSolver() {

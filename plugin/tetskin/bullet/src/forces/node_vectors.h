@@ -31,6 +31,15 @@ inline btVector3 fromWide(const btScalar* wide) {
   return {wide[0], wide[kernels::kGroup], wide[2 * kernels::kGroup]};
 }
 
+/// A velocity without components too small to move a position within the step: far from the origin, contacts at rounded
+/// positions would keep such velocities forever.
+inline btVector3 movingComponent(const btVector3& from, btVector3 velocity, btScalar dt) {
+  for (int k = 0; k < 3; ++k) {
+    if (from[k] + dt * velocity[k] == from[k]) velocity[k] = 0;
+  }
+  return velocity;
+}
+
 /// A symmetric matrix from its upper triangle, row by row.
 inline btMatrix3x3 symmetricMatrix(const btScalar d[6]) {
   return {d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]};

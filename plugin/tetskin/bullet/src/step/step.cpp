@@ -11,7 +11,7 @@
 //                               solve           goes on where nothing was touched; otherwise again, with all of that
 //                               finishContacts  reports the impulses of contacts
 //                               writeBack       velocities
-//   applyTransforms             positions, by Bullet
+//   applyTransforms             positions, by Bullet, and then in double: see step_positions.cpp
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
@@ -106,15 +106,6 @@ void clearContacts(btSoftBody& body) {
   if (auto* own = bodyWithTrees(body)) own->pointContacts().clear();
 }
 
-/// A velocity without components too small to move a position within the step: far from the origin, contacts at rounded
-/// positions would keep such velocities forever.
-btVector3 movingComponent(const btVector3& from, btVector3 velocity, btScalar dt) {
-  for (int k = 0; k < 3; ++k) {
-    if (from[k] + dt * velocity[k] == from[k]) velocity[k] = 0;
-  }
-  return velocity;
-}
-
 /// Runs a task for each body: small bodies in parallel; a large one is itself divided among threads.
 /// task  (SolvedBody&, ParallelFor* inner)
 template <class Task>
@@ -148,16 +139,6 @@ void staggerHeld(const SolvedBody& solved, btScalar dt) {
     const btSoftBody::Node& node = solved.body->m_nodes[n];
     toPoint(node.m_vn + share * (node.m_v - node.m_vn), dynamics.velocity(static_cast<std::size_t>(n)));
   }
-}
-
-/// False if the application has appended nodes within the step.
-bool hasItsNodes(const SolvedBody& solved) {
-  return solved.dynamics->nodeCount() == static_cast<std::size_t>(solved.body->m_nodes.size());
-}
-
-/// True if something has moved the node since the step began.
-bool isElsewhere(const btSoftBody::Node& node, const btScalar* point) {
-  return node.m_x.x() != point[0] || node.m_x.y() != point[1] || node.m_x.z() != point[2];
 }
 
 std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) {
@@ -428,6 +409,7 @@ void DeformableSolver::Impl::writeBack() {
     writeVelocities(body);
     listForeignNodes(body);
   });
+  findShaken();
   stillness.judge(bodies, rigids, dt());
   hidden.hide(bodies.bodies(), dt());
 }
@@ -442,59 +424,6 @@ void DeformableSolver::Impl::writeVelocities(SolvedBody& body) const {
     if (node.m_im > 0) node.m_v = v - node.m_splitv;
     const btVector3 seen = rounded ? movingComponent(node.m_x, node.m_v, dt()) : node.m_v;
     body.body->m_maxSpeedSquared = std::max(body.body->m_maxSpeedSquared, seen.length2());
-  }
-}
-
-// ---- positions
-
-void DeformableSolver::Impl::listForeignNodes(SolvedBody& body) const {
-  body.foreign.clear();
-  if (!body.elastic || !hasItsNodes(body)) return;
-  for (int n = 0; n < body.body->m_nodes.size(); ++n) {
-    const btSoftBody::Node& node = body.body->m_nodes[n];
-    if (node.m_battach || isElsewhere(node, body.dynamics->point(static_cast<std::size_t>(n)))) {
-      body.foreign.push_back(n);
-    }
-  }
-}
-
-/// By body: whether it touches a soft one so far from the origin that the rounding of positions, at which such contacts
-/// are found, shakes it.
-std::vector<bool> DeformableSolver::Impl::shakenByRounding() const {
-  constexpr btScalar kVisible = btScalar(1e-5);  // of its size
-  std::vector<bool> shaken(bodies.bodies().size(), false);
-  for (const ContactRow& row : rows.rows()) {
-    if (!row.ends[0].isSoft() || !row.ends[1].isSoft() || row.joined) continue;
-    for (const RowEnd& end : row.ends) {
-      const btSoftBody& body = *bodies.bodies()[end.body].body;
-      const btVector3 far = body.m_bounds[0].absolute() + body.m_bounds[1].absolute();
-      shaken[end.body] = SIMD_EPSILON * far[far.maxAxis()] > kVisible * sizeOf(body);
-    }
-  }
-  return shaken;
-}
-
-/// With the velocities that Bullet has used: it bounds them.
-void DeformableSolver::Impl::refinePositions(btScalar dt) {
-  if (!solving) return;
-  const std::vector<bool> shaken = shakenByRounding();
-  for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
-    const SolvedBody& solved = bodies.bodies()[b];
-    if (!solved.elastic || !hasItsNodes(solved)) continue;
-    auto foreign = solved.foreign.begin();
-    for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
-      if (foreign != solved.foreign.end() && *foreign == n) {
-        ++foreign;
-        continue;
-      }
-      btSoftBody::Node& node = solved.body->m_nodes[n];
-      const auto at = static_cast<std::size_t>(n);
-      btVector3 v = node.m_v + node.m_splitv;
-      if (shaken[b]) v = movingComponent(fromPoint(solved.dynamics->point(at)), v, dt);
-      btScalar by[3];
-      toPoint(v, by);
-      node.m_x = node.m_q = fromPoint(solved.dynamics->advance(at, static_cast<double>(dt), by));
-    }
   }
 }
 

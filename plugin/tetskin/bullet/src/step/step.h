@@ -46,12 +46,14 @@ struct DeformableSolver::Impl {
   void finishContacts();
   void writeBack();
 
-  // Steps of the integration of positions.
+  // Steps of the integration of positions; implemented in step_positions.cpp.
   /// Call it before Bullet moves the nodes, of which the application may have moved some within the step.
   void listForeignNodes(SolvedBody& body) const;
   /// Call it after Bullet has moved the nodes in its own precision: gives them the positions that the dynamics have.
   void refinePositions(btScalar dt);
-  std::vector<bool> shakenByRounding() const;
+  /// Call it when rows are final: marks bodies that touch a soft one so far from the origin that rounding of positions,
+  /// at which such contacts are found, shakes them.
+  void findShaken();
 
   ForceList& forces() { return solver.m_objective->m_lf; }
   const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
