@@ -129,8 +129,7 @@ TEST(DeformableWorld, StepsAreDividedWhereABodyIsTooSmallForThemAlone) {
     Steps steps;
     cube.world().setInternalTickCallback(count, &steps);
     for (int frame = 0; frame < 10; ++frame) cube.step(1.0 / 60.0, 4);
-    if (size == 0.1) EXPECT_EQ(steps.count, 40);
-    if (size == 1e-3) EXPECT_EQ(steps.count, 80);
+    EXPECT_EQ(steps.count, size == 0.1 ? 40 : 80) << size;
     EXPECT_NEAR(steps.seconds, 10.0 / 60.0, 1e-4) << size;
   }
 }
