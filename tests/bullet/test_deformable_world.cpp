@@ -55,7 +55,7 @@ class LyingCube {
       : floor_(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape ? shape : &plane_)) {
     floor_.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, static_cast<btScalar>(-top), 0)));
     world_.addRigidBody(&floor_);
-    TetMesh cage = latticeCage(3, 3, 3, size / 3);
+    TetMesh cage = latticeCage(2, 2, 2, size / 2);
     for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.1 * size;
     body_ = DeformableBody::add(world_, cage).value();
   }
@@ -79,7 +79,7 @@ class LyingCube {
 
 /// Within a step of 1/60 s, gravity moves the smallest of these by eleven times its size.
 TEST(DeformableWorld, BodiesOfAnySizeLandAndFallAsleep) {
-  for (const double size : {2.5e-4, 5e-4, 1e-3, 2e-3, 5e-3, 2e-2, 0.1, 1.0}) {
+  for (const double size : {2.5e-4, 1e-3, 5e-3, 0.1}) {
     for (const int steps : {1, 4}) {
       LyingCube cube(size);
       int frames = 0;
