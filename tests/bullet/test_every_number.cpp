@@ -80,8 +80,8 @@ class Beam {
   std::unique_ptr<DeformableBody> body_;
 };
 
-/// All cells with the environment variable TETSKIN_TEST_WHOLE_TABLES; otherwise each thirteenth, and fewer in builds that
-/// are not optimized.
+/// All cells with the environment variable TETSKIN_TEST_WHOLE_TABLES; otherwise some, and fewer in builds that are not
+/// optimized.
 bool isSkipped(int cell) {
 #ifdef NDEBUG
   constexpr int kEach = 13;

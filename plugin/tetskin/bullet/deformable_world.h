@@ -173,9 +173,9 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
 
-  /// As of Bullet, but steps in which gravity moves a soft body by more than 6 % of its size are divided, into up to 64:
-  /// after a hitch, or with a body of some millimetres. What acts per step, such as a tick callback, is called in each
-  /// part with its length. Within it, the world can be neither saved nor restored.
+  /// As of Bullet, but steps in which gravity moves a soft body by more than 6 % of its size are divided, into at most
+  /// 64: after a hitch, or with a body of some millimetres. A tick callback is called in each part, with its length.
+  /// Within it, the world can be neither saved nor restored.
   /// Returns  the number of steps, parts counted
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
