@@ -11,7 +11,7 @@ selection.py record BUILD MINUTES LOG  after it has passed: notes in tests/last_
 
 BUILD is configured with an (empty) file BUILD/.cmake/api/v1/query/codemodel-v2: which file belongs to which target, and
 which target uses which, is then what CMake says. In BUILD/changes:
-  everything   only if all counts as changed: why
+  everything   only if all is tested that tests/run --all tests, since no commit is known at which it passed: why
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
@@ -34,7 +34,8 @@ LAST = "tests/last_full_run"
 # Files that are not compiled, and that --change tests in full, as it does pages, style and plots.
 READ = re.compile(r"[.](md|csv|png|svg|jpg|html|js|css)$|^(LICENSE|[.]gitignore|[.]editorconfig|tests/pages/.*[.]txt)$|"
                   r"^demos/plots/.*[.]py$")
-# What makes the tests: if it has changed, anything may have. Of tests/, all but sources and the lists of those.
+# What makes the tests: if it has changed, all libraries count as changed. Of tests/, all but sources and the lists of
+# those.
 ORDINARY_TEST = re.compile(r"^tests/[^/]+/([^/]+[.](cpp|h|js|md)|CMakeLists[.]txt)$|^tests/[^/]+[.]md$|^tests/pages/.*[.]txt$")
 MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|platforms))/|^demos/(setup[.]sh|run)$|"
                        r"[.]cmake([.]in)?$|"
@@ -171,7 +172,7 @@ def tests_with(header):
 
 
 def selected(graph, files):
-    """The targets that changed, by file; or why everything counts as changed."""
+    """The targets that changed, by file; or why all libraries count as changed."""
     changed = {}
     for file in files:
         if PYTHON.search(file) or WEB.search(file):
@@ -218,9 +219,8 @@ def select(build):
     graph, files = Graph(build), differing(commit)
     changed, why = selected(graph, files)
     if why:
-        write(build, why, [], [])
-        print(f"Everything counts as changed since {commit[:12]}: {why}.")
-        return
+        changed = {why: set(graph.folder)}
+        print(f"All libraries count as changed since {commit[:12]}: {why}.")
     own = set().union(*changed.values()) if changed else set()
     everyone = graph.with_users(own)
     folders = graph.test_folders(everyone)
