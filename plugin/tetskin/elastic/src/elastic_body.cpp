@@ -204,11 +204,11 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   for (const double a : acceleration) squared += a * a;
   const double unseen = std::min(1e-3, 0.2 * limits.tolerance) * pushed * std::sqrt(squared);
   limits.enough = p.dynamics.squaredImpulses(std::max(unseen, p.dynamics.roundingSpeed(seconds)));
-  p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
+  const int iterations = p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
   p.dynamics.remember(seconds);
   p.dynamics.removeMomentum();
   p.write(seconds);
-  return p.solve.iterations();
+  return iterations;
 }
 
 template <class Scalar>

@@ -252,8 +252,7 @@ void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelF
   limits.tolerance = body.settings->tolerance;
   limits.iterations = body.settings->iterations;
   limits.enough = body.dynamics->squaredImpulses(body.unseenSpeed);
-  body.dynamics->solve(*body.solve, limits, maximum, inner);
-  body.iterations = body.solve->iterations();
+  body.iterations = body.dynamics->solve(*body.solve, limits, maximum, inner);
 }
 
 void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
@@ -382,8 +381,9 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
       first.dynamics->restart(inner);
       solveAlone(first, first.settings->iterations, inner);
     } else {
+      const int before = first.solve->iterations();
       first.solve->iterate(first.settings->iterations, inner);
-      first.iterations = first.solve->iterations();
+      first.iterations += first.solve->iterations() - before;
     }
   }
   if (first.elastic && !again) system.converged = first.solve->squaredResidual() <= first.solve->enough();

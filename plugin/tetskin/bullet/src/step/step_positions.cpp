@@ -61,6 +61,7 @@ void DeformableSolver::Impl::refinePositions(btScalar dt) {
       btSoftBody::Node& node = solved.body->m_nodes[n];
       const auto at = static_cast<std::size_t>(n);
       btVector3 v = node.m_v + node.m_splitv;
+      if (node.m_im == btScalar(0) && v.isZero()) continue;
       if (solved.shaken) v = movingComponent(fromPoint(solved.dynamics->point(at)), v, dt);
       btScalar by[3];
       toPoint(v, by);

@@ -91,8 +91,11 @@ template <class S>
 bool NodePlaces<S>::isAt(std::size_t slot, const S* point, S near) const {
   S own[3];
   round(slot, own);
+  const double* x = at(slot);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!(std::abs(point[k] - own[k]) <= near)) return false;
+    if (point[k] == own[k]) continue;
+    const double rounding = std::abs(static_cast<double>(own[k]) - x[k]);
+    if (!(std::abs(static_cast<double>(point[k]) - x[k]) <= rounding + static_cast<double>(near))) return false;
   }
   return true;
 }

@@ -40,7 +40,7 @@ class NodePlaces {
   void take(const AlignedVector<S>& points);
   /// A node's position.
   const double* at(std::size_t slot) const { return &places_[3 * slot]; }
-  /// True if the caller's position is that of the node, but for `near`.
+  /// True if the caller's position is that of the node, but for `near`: of two roundings that are as near, either.
   bool isAt(std::size_t slot, const S* point, S near) const;
   /// Moves a node along a velocity.
   void advance(std::size_t slot, double seconds, const S* velocity) {

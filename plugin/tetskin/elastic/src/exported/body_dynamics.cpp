@@ -37,6 +37,11 @@ constexpr double kFeelsTurns = 1.0;
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
 
+/// Least bound of the iterations of a solve that is continued in two levels: a lower one says that it is to be cheap.
+constexpr int kPatience = 50;
+/// Number of solves after which the conjugate gradient is tried alone again.
+constexpr int kTwoLevelSolves = 240;
+
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
 constexpr double kNear = 1e-4;
 
@@ -433,15 +438,40 @@ double BodyDynamics<S>::squaredActing(ParallelFor* threads) {
 }
 
 template <class S>
-void BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
+int BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
   assert(tets_ && maximum >= 0);
   limits.acting = squaredActing(threads);
   const bool guesses = maximum > 0;
   if (guesses) guess_.improve(matrix_, limits, threads);
+  if (guesses && twoLevelSolves_ > 0) return solveInTwoLevels(gradient, limits, threads);
   gradient.start({&matrix_}, limits, nullptr, threads);
   const double squared = gradient.squaredResidual();
   gradient.iterate(maximum, threads);
-  if (guesses) guess_.learn(squared, limits.acting, gradient.iterations());
+  const int iterations = gradient.iterations();
+  if (guesses) guess_.learn(squared, limits.acting, iterations);
+  const bool ended = iterations < limits.iterations || gradient.squaredResidual() <= gradient.enough();
+  if (ended || limits.iterations < kPatience) return iterations;
+  twoLevelSolves_ = kTwoLevelSolves;
+  return iterations + solveInTwoLevels(gradient, limits, threads);
+}
+
+template <class S>
+int BodyDynamics<S>::solveInTwoLevels(ConjugateGradient<S>& gradient, SolveLimits limits, ParallelFor* threads) {
+  assert(tets_ && twoLevelSolves_ > 0);
+  --twoLevelSolves_;
+  if (!twoLevelSolve_) twoLevelSolve_ = std::make_unique<TwoLevelGradient<S>>(tets_->rest(), matrix_);
+  std::vector<double> points(3 * matrix_.slotCount());
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) std::copy_n(places_.at(slot), 3, &points[3 * slot]);
+  const double relative = limits.tolerance * limits.tolerance * limits.acting;
+  const double target = std::max({relative, limits.enough, static_cast<double>(std::numeric_limits<S>::min())});
+  const S* corners = tets_->cornersAgain(static_cast<S>(alpha_), threads);
+  const int iterations = twoLevelSolve_->solve(matrix_, {tets_->rest(), corners, static_cast<double>(tets_->ratio())},
+                                               rightSide_.data(), points, target, limits.iterations, threads);
+  // What is left is measured, and stays.
+  limits.reduction = 1.0;
+  limits.iterations = 0;
+  gradient.start({&matrix_}, limits, nullptr, threads);
+  return iterations;
 }
 
 template <class S>
@@ -671,6 +701,7 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
   const bool turned = tets_ && tets_->visitState(stream, static_cast<S>(alpha), !changed);
   if (tets_) matrix_.visitWide(stream, matrix_.solution());
   guess_.visitState(stream, matrix_);
+  stream(twoLevelSolves_);
   if (stream.restoring()) {
     if (!changed && (changed_ || turned || alpha != alpha_)) {
       matrix_.assemble(tets_ ? tets_->cornersAgain(static_cast<S>(alpha), nullptr) : nullptr,

@@ -19,11 +19,13 @@
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 #include <tetskin/elastic/src/dynamics/initial_guess.h>
 #include <tetskin/elastic/src/dynamics/node_places.h>
+#include <tetskin/elastic/src/dynamics/two_level_gradient.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace tetskin::elastic_detail {
@@ -138,8 +140,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void startLater();
   /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations. What acts are the
   /// elastic impulses, and what has changed velocities since the last step: at rest, both are those of the weight.
+  /// Where the conjugate gradient does not come to an end, it is solved in two levels, for some steps from then on.
+  /// Returns the number of iterations.
   /// limits  `acting` is replaced
-  void solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
+  int solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
   /// The square of the norm of what acts, see SolveLimits, of the last `start`.
   double squaredActing(ParallelFor* threads);
   /// The same of impulses that change all velocities by this speed.
@@ -210,6 +214,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void findMotions(double seconds);
   void moveRigidly(double seconds);
   void assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads);
+  int solveInTwoLevels(ConjugateGradient<S>& gradient, SolveLimits limits, ParallelFor* threads);
   void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
   std::vector<ComponentMomentum> momentaNow() const;
@@ -245,6 +250,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::vector<double> stiffness_;      ///< by component: sum of V (2 mu + lambda) over its tets, linear and quadratic
   double stiffnessOverInertia_ = 0.0;  ///< times dt^2: how much rotation is taken for strain; the largest
   InitialGuess<S> guess_;
+  int twoLevelSolves_ = 0;  ///< number of solves in two levels until the conjugate gradient is tried alone again
+  std::unique_ptr<TwoLevelGradient<S>> twoLevelSolve_;  ///< null until it is used
 };
 
 }  // namespace tetskin::elastic_detail

@@ -324,6 +324,15 @@ void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) co
 }
 
 template <class S>
+double BlockMatrix<S>::precondition(const S* impulses, S* velocities, ParallelFor* threads) {
+  assert(impulses && velocities && impulses != residual_.data());
+  const double squared = lowerInto(impulses, residual_.data(), threads);
+  backward(S(0), threads);
+  std::copy(step_.begin(), step_.end(), velocities);
+  return squared;
+}
+
+template <class S>
 double BlockMatrix<S>::lowerInto(const S* impulses, S* wide, ParallelFor* threads) {
   const auto& table = kernels::elasticInUse<S>(deterministic_);
   forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {

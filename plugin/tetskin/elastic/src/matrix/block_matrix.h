@@ -110,6 +110,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// Multiplies A with points, 4 scalars per slot.
   void multiply(const S* points, S* wide, ParallelFor* threads) const;
 
+  /// Computes velocities = P^-1 impulses, both in the wide layout, with the preconditioner of sweeps; returns the
+  /// square of the impulses' norm. Replaces `residual`.
+  double precondition(const S* impulses, S* velocities, ParallelFor* threads);
   /// The square of the norm of impulses in the wide layout, as `lower` returns that of the residual.
   double squaredNorm(const S* impulses, ParallelFor* threads);
   /// Computes difference = first - second, in the wide layout, 0 at pinned nodes, and A times it.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The matrix alpha K of a body as what it is the sum of: strains of tets, in double precision. Rounding of a matrix of
+// floats resists rotations, and more than bending does in a beam that is 50 times as long as thick; strains of a
+// rotation are none.
+#pragma once
+
+#include <tetskin/elastic/src/tets/rest_tets.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace tetskin::elastic_detail {
+
+/// Where a tet is integrated: a linear one at one point, a quadratic one at four. A motion v of the nodes has there the
+/// gradient G = sum_n v_n a_n^T, and node n gets (ratio tr(G) + G + G^T) a_n.
+struct StiffnessPoint {
+  const std::uint32_t* slots = nullptr;      ///< of the tet's nodes
+  const Eigen::Vector3d* vectors = nullptr;  ///< a, by node
+  std::size_t nodes = 0;
+};
+
+/// What a matrix was assembled from.
+template <class S>
+struct MatrixSource {
+  const RestTets& rest;
+  const S* corners;  ///< see CorotatedTets::cornersForMatrix
+  double ratio;      ///< lambda / mu
+};
+
+class TetStiffness {
+ public:
+  /// slotOf  by node
+  TetStiffness(const RestTets& rest, const std::vector<std::uint32_t>& slotOf);
+
+  /// The same tets as before. Cost O(T)
+  template <class S>
+  void take(const MatrixSource<S>& source);
+
+  /// Adds alpha K times velocities to impulses, both 3 scalars per slot. Cost O(T)
+  void addProduct(const std::vector<double>& velocities, std::vector<double>& impulses) const;
+  /// The impulses per gradient G at a point: ratio tr(G) + G + G^T.
+  Eigen::Matrix3d stress(const Eigen::Matrix3d& gradient) const;
+
+  std::size_t pointCount() const { return counts_.size(); }
+  StiffnessPoint point(std::size_t k) const {
+    return {&slots_[firstSlots_[k]], &vectors_[firstVectors_[k]], counts_[k]};
+  }
+
+ private:
+  std::vector<std::uint32_t> slots_;                               ///< of all tets' nodes
+  std::vector<std::uint32_t> firstSlots_, firstVectors_, counts_;  ///< by point
+  std::vector<Eigen::Vector3d> vectors_;
+  double ratio_ = 0.0;
+};
+
+}  // namespace tetskin::elastic_detail
