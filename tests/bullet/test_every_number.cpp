@@ -35,10 +35,14 @@ struct Shape {
   double aspect = kLong, width = 1.0 / kLong;  ///< width: over the length
 };
 
+enum class Held { Pinned, Anchored };
+
 /// A beam, or a plate, that is held at its left end.
 class Beam {
  public:
-  Beam(const Numbers& numbers, bool quadratic, double gravity = kGravity, const Shape& shape = {}) : numbers_(numbers) {
+  Beam(const Numbers& numbers, bool quadratic, double gravity = kGravity, const Shape& shape = {},
+       Held held = Held::Pinned)
+      : numbers_(numbers) {
     const double edge = numbers.length / shape.along;
     cage_.mesh = latticeCage(shape.along, 1, shape.across, edge);
     for (Eigen::Vector3d& node : cage_.mesh.nodes) {
@@ -51,8 +55,12 @@ class Beam {
     options.youngsModulus = numbers.stiffness * kDensity * kGravity * numbers.length;
     options.density = kDensity;
     options.stiffnessDamping = numbers.damping;
-    options.pinned = [edge](const Eigen::Vector3d& rest) { return rest.x() < 1e-6 * edge; };
+    const auto isHeld = [edge](const Eigen::Vector3d& rest) { return rest.x() < 1e-6 * edge; };
+    if (held == Held::Pinned) options.pinned = isHeld;
     body_ = DeformableBody::add(world_, cage_, options).value();
+    for (int n = 0; n < body().m_nodes.size() && held == Held::Anchored; ++n) {
+      if (isHeld(cage_.mesh.nodes[static_cast<std::size_t>(n)])) body().appendDeformableAnchor(n, &wall_);
+    }
     const auto place = static_cast<btScalar>(numbers.place);
     body().translate(btVector3(place, 0, place));
   }
@@ -86,6 +94,8 @@ class Beam {
  private:
   Numbers numbers_;
   Cage cage_;
+  btBoxShape shape_{btVector3(1, 1, 1)};
+  btRigidBody wall_{0, nullptr, &shape_};  // anchors alone meet it
   tetskin::DeformableWorld world_;
   std::unique_ptr<DeformableBody> body_;
 };
@@ -159,6 +169,17 @@ TEST(EveryNumber, SlenderBeamsAndThinPlatesSagByTheory) {
         (void)beam.settle(6.0);
         EXPECT_NEAR(beam.scaledSag() / theory, c.expected, 0.012) << c.shape.aspect << ' ' << sag << ' ' << damping;
       }
+    }
+  }
+}
+
+TEST(EveryNumber, ABeamOnAnchorsSagsLikeAPinnedOne) {
+  for (const double damping : {0.02, 0.3}) {
+    for (const double stiffness : {3e4, 1e5}) {
+      Beam pinned({stiffness, damping}, true), anchored({stiffness, damping}, true, kGravity, {}, Held::Anchored);
+      (void)pinned.settle(4.0);
+      (void)anchored.settle(4.0);
+      EXPECT_NEAR(anchored.sag() / pinned.sag(), 1.0, 0.01) << damping << ' ' << stiffness;
     }
   }
 }

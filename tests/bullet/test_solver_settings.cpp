@@ -280,7 +280,7 @@ TEST(DeformableSolver, IteratesWithAnchorsAsOftenAsItIsAllowedTo) {
     return most;
   };
   EXPECT_LE(iterationsPerSolve(50), 51);
-  EXPECT_GT(iterationsPerSolve(1000), 220);
+  EXPECT_GT(iterationsPerSolve(1000), 80);
 }
 
 /// Rays find a body wherever it has gone, although its trees are not refitted in each step.

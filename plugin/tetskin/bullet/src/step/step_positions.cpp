@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The positions at the end of a step. Bullet moves the nodes in its own precision; they are then given the positions
-// that the dynamics have in double, except where something else has moved them.
+// that the dynamics have in double, except where something else has moved them. Bullet puts anchored nodes where their
+// anchors are; they get their own positions, too, so that an anchor that holds a weight is at rest: otherwise its nodes
+// would fall back in each step, and the damping of their velocity would push what hangs on them.
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/step/step.h>
 
@@ -29,9 +31,7 @@ void DeformableSolver::Impl::listForeignNodes(SolvedBody& body) const {
   if (!body.elastic || !hasItsNodes(body)) return;
   for (int n = 0; n < body.body->m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body.body->m_nodes[n];
-    if (node.m_battach || isElsewhere(node, body.dynamics->point(static_cast<std::size_t>(n)))) {
-      body.foreign.push_back(n);
-    }
+    if (isElsewhere(node, body.dynamics->point(static_cast<std::size_t>(n)))) body.foreign.push_back(n);
   }
 }
 

@@ -147,6 +147,8 @@ struct ElasticTable {
   void (*assemble)(const RowWork<S>&);
   /// Computes rest = A stepPoints.
   void (*multiply)(const RowWork<S>&);
+  /// The same by differences between neighbours, of rows as they were assembled.
+  void (*multiplyByDifferences)(const RowWork<S>&);
   void (*backward)(const RowWork<S>&);
   S (*forward)(const RowWork<S>&);
   S (*advance)(const RowWork<S>&);

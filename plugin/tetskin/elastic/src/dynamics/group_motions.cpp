@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/cross_matrix.h>
 #include <tetskin/elastic/src/dynamics/group_motions.h>
 #include <tetskin/elastic/src/modes/aggregates.h>
 
@@ -67,9 +68,8 @@ void GroupMotions::findArms(const std::vector<double>& masses, const std::vector
 GroupMotions::Motions GroupMotions::motionsAt(std::size_t slot) const {
   const Eigen::Vector3d& arm = arms_[slot];
   Motions motions;
-  motions << 1, 0, 0, 0, arm.z(), -arm.y(),  //
-      0, 1, 0, -arm.z(), 0, arm.x(),         //
-      0, 0, 1, arm.y(), -arm.x(), 0;
+  motions.leftCols<3>().setIdentity();
+  motions.rightCols<3>() = -crossMatrix(arm);
   return motions;
 }
 

@@ -17,6 +17,7 @@ constexpr ElasticTable<S> elasticTable() {
           sum<S>,
           assemble<S, W>,
           multiply<S, W>,
+          multiplyByDifferences<S, W>,
           backward<S, W>,
           forward<S, W>,
           advance<S, W>,

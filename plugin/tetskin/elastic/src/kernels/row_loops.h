@@ -98,9 +98,18 @@ TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int
   }
 }
 
+/// A mass below the last digits of its stiffness would be lost in the diagonal block, and the matrix would not be
+/// positive: it is raised to the fraction `minMass` of the stiffness.
+/// trace  of the sum of the row's other blocks
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> effectiveMass(const RowWork<S>& work, const Lanes<S, W>& real, const Lanes<S, W>& trace) {
+  const Lanes<S, W> minimum = -work.minMass * trace;
+  const auto light = (real > S(0)) & (real < minimum);
+  return light ? minimum : real;
+}
+
 /// The diagonal block of a row is the sum of its mass and its off-diagonal blocks, so that a body moves as a whole
-/// without resistance. A mass below the last digits of its stiffness would be lost in that sum, and the matrix would
-/// not be positive: it is raised to the fraction `minMass` of the stiffness.
+/// without resistance.
 template <class S, int W>
 void assemble(const RowWork<S>& work) {
   using V = Lanes<S, W>;
@@ -116,10 +125,8 @@ void assemble(const RowWork<S>& work) {
           rowSum[k] += block[k];
         }
       }
-      const V real = wide<S, W>(work.masses + kGroup * c + lane);
-      const V minimum = -work.minMass * (rowSum[0] + rowSum[4] + rowSum[8]);
-      const auto light = (real > S(0)) & (real < minimum);
-      const V mass = light ? minimum : real;
+      const V trace = rowSum[0] + rowSum[4] + rowSum[8];
+      const V mass = effectiveMass<S, W>(work, wide<S, W>(work.masses + kGroup * c + lane), trace);
       const V d[6] = {mass - rowSum[0], S(-0.5) * (rowSum[1] + rowSum[3]), S(-0.5) * (rowSum[2] + rowSum[6]),
                       mass - rowSum[4], S(-0.5) * (rowSum[5] + rowSum[7]), mass - rowSum[8]};
       for (int k = 0; k < 6; ++k) put<S, W>(d[k], work.diagonal + kWideSymmetric * c + k * kGroup + lane);
@@ -139,6 +146,36 @@ void multiply(const RowWork<S>& work) {
       const auto d =
           symmetricTimes<S, W>(work.diagonal + kWideSymmetric * c + lane, vectorsAt<S, W>(work.stepPoints, own));
       put<S, W>({v.x + d.x, v.y + d.y, v.z + d.z}, work.rest + kWideVector * c + lane);
+    }
+  }
+}
+
+/// The same as `multiply` but for rounding, of rows that nothing was added to: M v_i + sum_j A_ij (v_j - v_i). What a
+/// product of float resists a translation by is rounding of the stiffness, and may be more than the mass.
+template <class S, int W>
+void multiplyByDifferences(const RowWork<S>& work) {
+  using V = Lanes<S, W>;
+  for (std::size_t c = work.firstChunk; c < work.lastChunk; ++c) {
+    for (int lane = 0; lane < kGroup; lane += W) {
+      std::uint32_t slots[W];
+      for (int i = 0; i < W; ++i)
+        slots[i] = static_cast<std::uint32_t>(kGroup * c) + static_cast<std::uint32_t>(lane + i);
+      const auto own = vectorsAt<S, W>(work.stepPoints, slots);
+      WideVector<S, W> total{V{}, V{}, V{}};
+      V trace{};
+      for (std::size_t e = work.starts[2 * c]; e < work.starts[2 * c + 2]; ++e) {
+        const auto other =
+            vectorsAt<S, W>(work.stepPoints, work.neighbours + kGroup * e + static_cast<std::size_t>(lane));
+        const V x = other.x - own.x, y = other.y - own.y, z = other.z - own.z;
+        const S* block = work.blocks + kWideBlock * e + lane;
+        const auto at = [&](int k) { return wide<S, W>(block + k * kGroup); };
+        total = {total.x + (at(0) * x + at(1) * y + at(2) * z), total.y + (at(3) * x + at(4) * y + at(5) * z),
+                 total.z + (at(6) * x + at(7) * y + at(8) * z)};
+        trace += at(0) + at(4) + at(8);
+      }
+      const V mass = effectiveMass<S, W>(work, wide<S, W>(work.masses + kGroup * c + lane), trace);
+      put<S, W>({mass * own.x + total.x, mass * own.y + total.y, mass * own.z + total.z},
+                work.rest + kWideVector * c + lane);
     }
   }
 }

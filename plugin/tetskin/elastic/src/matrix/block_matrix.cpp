@@ -159,6 +159,7 @@ void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads) {
 
 template <class S>
 void BlockMatrix<S>::free() {
+  changed_ = false;
   diagonal_ = freeDiagonal_;
   inverse_ = freeInverse_;
   for (const std::uint32_t k : used_) {
@@ -225,6 +226,7 @@ std::optional<std::uint32_t> BlockMatrix<S>::couplingOf(std::size_t first, std::
 template <class S>
 void BlockMatrix<S>::couple(std::uint32_t number, const S block[6]) {
   assert(number < couplings_.size());
+  changed_ = true;
   Coupling& coupling = couplings_[number];
   if (!coupling.used) {
     if (massAt(coupling.first) == S(0) || massAt(coupling.second) == S(0)) return;
@@ -244,6 +246,7 @@ template <class S>
 void BlockMatrix<S>::resist(std::size_t node, const S block[6]) {
   assert(node < nodeCount());
   if (mass(node) == S(0)) return;
+  changed_ = true;
   const std::size_t slot = slotOf(node);
   S* d = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
   for (std::size_t k = 0; k < 6; ++k) d[k * kGroup] += block[k];
@@ -319,7 +322,8 @@ void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) co
     auto part = work(first, last);
     part.stepPoints = const_cast<S*>(points);
     part.rest = wide;
-    table.multiply(part);
+    part.minMass = kMinMass<S>;
+    changed_ ? table.multiply(part) : table.multiplyByDifferences(part);
   });
 }
 

@@ -107,7 +107,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// The node's diagonal block.
   void diagonal(std::size_t node, S out[6]) const;
 
-  /// Multiplies A with points, 4 scalars per slot.
+  /// Multiplies A with points, 4 scalars per slot. Where A is as it was assembled, a translation meets its masses and
+  /// nothing else, to the last digit.
   void multiply(const S* points, S* wide, ParallelFor* threads) const;
 
   /// Computes velocities = P^-1 impulses, both in the wide layout, with the preconditioner of sweeps; returns the
@@ -149,6 +150,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   double summed() const;
 
   bool deterministic_ = false;
+  bool changed_ = false;  ///< by `resist` or `couple`
   void setInverse(std::size_t slot, const S inverse[6]);
   /// Index of the first scalar of the block of two slots, which is one of nine per lane of a group.
   std::optional<std::size_t> blockOf(std::size_t slot, std::size_t neighbour) const;
