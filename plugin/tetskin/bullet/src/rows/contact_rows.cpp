@@ -27,9 +27,11 @@ constexpr btScalar kFallsAtRest = 2;
 /// offset of what sticks grows until it suffices. But 100 takes 19 iterations per step in stop/equal steps/k50, where
 /// this value takes 4.
 constexpr btScalar kTangentShare = btScalar(0.3);
-/// D of joints and anchors over effective masses. With 1000, a beam 50 times as long as thick that sags by a thousandth
-/// of its length hangs lower by a twentieth of that, as its anchors give way; with 1e5, one in float does not converge.
-constexpr double kAnchorStiffness = 1e4;
+/// D of joints and anchors over effective masses, to what is free to move and to what is not. What hangs on a soft body
+/// is pushed by the residual of a solve, and by more with a higher D. A beam 16 times as long as thick that sags by a
+/// thousandth of its length hangs lower by 1.5 % of that on its anchors; with 1000, by 8 %; with 1e5, slender ones in
+/// float do not converge.
+constexpr double kJointStiffness = 1000.0, kMountStiffness = 1e4;
 /// Body's sizes per second: bound of the velocity at which penetrating bodies are pushed apart.
 constexpr btScalar kPushingOut = 1;
 /// Rounding of a position, in units of the last digit.
@@ -426,7 +428,10 @@ void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& 
     }
     const double mass = effectiveMass(bodies, row, origins_[r], rigids);
     // A higher stiffness makes no visible difference, and the residual left by the solve would push with it.
-    const double times = row.joined ? kAnchorStiffness : kStiffness * stiffening(bodies, row, seconds);
+    const bool mounted = !row.ends[1].isSoft() && row.ends[1].rigid.unknown < 0;
+    const double times = !row.joined ? kStiffness * stiffening(bodies, row, seconds)
+                         : mounted   ? kMountStiffness
+                                     : kJointStiffness;
     const auto maximum = static_cast<btScalar>(times * mass) / fraction;
     row.stiffness = row.stiffness > 0 ? std::min(row.stiffness, maximum) : maximum;
     row.tangentStiffness = kTangentShare * row.stiffness;
