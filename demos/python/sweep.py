@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import gc
 import hashlib
 import itertools
 import logging
@@ -374,6 +375,7 @@ def connected(options: argparse.Namespace) -> Iterator[Client]:
         with LocalCluster(**local, silence_logs=logging.ERROR) as cluster, Client(cluster) as client:
             yield client
         return
+    gc.collect()  # a client that could not be made, and is collected while another one starts, waits for it for ever
     try:
         client = Client(options.scheduler, timeout=options.timeout)
     except (OSError, ValueError) as error:
