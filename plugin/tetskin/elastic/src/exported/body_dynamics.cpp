@@ -178,6 +178,16 @@ void BodyDynamics<S>::beginForces(double seconds) {
   chooseScheme(seconds);
 }
 
+template <class S>
+bool BodyDynamics<S>::continues(std::size_t node, const S* point, const S* velocity) const {
+  const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const S reached = velocities_[4 * slot + k] + matrix_.solution()[wide + k * kGroup];
+    if (!(std::abs(length_ * (velocity[k] - reached)) <= near_)) return false;
+  }
+  return places_.isAt(slot, point, near_);
+}
+
 /// A deviation from rigid motion does not last for a step of a stiff body, so that there is nothing to remember.
 template <class S>
 void BodyDynamics<S>::chooseScheme(double seconds) {

@@ -110,14 +110,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   }
 
   /// True if the node is where the last step has brought it, and as fast, but for less than one sees.
-  bool continues(std::size_t node, const S* point, const S* velocity) const {
-    const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const S reached = velocities_[4 * slot + k] + matrix_.solution()[wide + k * kernels::kGroup];
-      if (!(std::abs(length_ * (velocity[k] - reached)) <= near_)) return false;
-    }
-    return places_.isAt(slot, point, near_);
-  }
+  bool continues(std::size_t node, const S* point, const S* velocity) const;
   /// True if the last step is remembered for the next one.
   bool remembers() const { return history_.isKnown(); }
   /// Call it before `predict` where the body has not come here by its last step.
