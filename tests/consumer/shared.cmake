@@ -34,7 +34,7 @@ foreach(library core bullet cage contact elastic io reduced threads touch)
   set(shown " [TWVDRBu] ([a-z ]+ for )?([A-Za-z:]+ )?tetskin::")
   # Bodies in Bullet's worlds are stepped by these.
   if(library STREQUAL elastic)
-    string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|restTets|restQuadraticTets)[^\n]*" ""
+    string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|restTets|restQuadraticTets|findRestNodes|takeRestShapes)[^\n]*" ""
       names "${names}")
   endif()
   # A class that bullet derives from: its type information is repeated there.
