@@ -3,6 +3,7 @@
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/dynamics/two_level_gradient.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>

@@ -35,7 +35,6 @@ Aggregates aggregate(const Lists<>& neighbours, int maximum) {
     }
     seed = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
   }
-  assert(std::find(result.indices.begin(), result.indices.end(), -1) == result.indices.end());
   return result;
 }
 

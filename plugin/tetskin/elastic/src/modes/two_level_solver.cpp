@@ -11,6 +11,7 @@
 #include <tetskin/elastic/src/modes/two_level_solver.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cassert>
 
 namespace tetskin::elastic_detail {
@@ -66,6 +67,7 @@ Eigen::Index makeOrthonormal(Motions& motions) {
 SparseRows motionsOf(const Aggregates& groups, const std::vector<Eigen::Vector3d>& nodes,
                      const std::vector<char>& free) {
   assert(groups.indices.size() == nodes.size() && free.size() == nodes.size());
+  assert(std::find(groups.indices.begin(), groups.indices.end(), -1) == groups.indices.end());
   const Lists<> members = packLists(static_cast<std::size_t>(groups.count), [&](auto&& add) {
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       if (free[n]) add(static_cast<std::size_t>(groups.indices[n]), static_cast<std::uint32_t>(n));
