@@ -32,6 +32,11 @@ constexpr btScalar kTangentShare = btScalar(0.3);
 /// thousandth of its length hangs lower by 1.5 % of that on its anchors; with 1000, by 8 %; with 1e5, slender ones in
 /// float do not converge.
 constexpr double kJointStiffness = 1000.0, kMountStiffness = 1e4;
+/// Share by which the usual length of steps follows each step: with a tenth, what rests under steps of 4 to 30 ms in
+/// random order moves visibly; with a thousandth, it takes a minute to follow a change.
+constexpr double kFollowed = 0.01;
+/// Most by which a step that is no usual one makes contacts stiffer or softer: more would take many iterations.
+constexpr double kOthers = 25.0;
 /// Body's sizes per second: bound of the velocity at which penetrating bodies are pushed apart.
 constexpr btScalar kPushingOut = 1;
 /// Rounding of a position, in units of the last digit.
@@ -198,27 +203,34 @@ void warmStart(const SolvedBody& body, const btVector3& remainder, const btTrans
 
 /// Inverse effective mass of an end's point in a direction: that of its nodes by themselves, plus that of the rigid
 /// motion of their component.
+/// seconds  length of the step for which it is
 double compliance(const SolvedBody& body, const CarriedPoint& point, const btVector3& position,
-                  const btVector3& direction) {
+                  const btVector3& direction, double seconds) {
   assert(point.count > 0);
+  const double stiffer = body.dynamics->alphaFor(seconds) / body.dynamics->alpha();
   double sum = 0.0;
   for (std::uint32_t k = 0; k < point.count; ++k) {
     btScalar inverse[6];
     body.dynamics->matrix().freeInverse(static_cast<std::size_t>(point.nodes[k]), inverse);
-    sum +=
-        static_cast<double>(point.weights[k] * point.weights[k] * direction.dot(symmetricMatrix(inverse) * direction));
+    auto own = static_cast<double>(direction.dot(symmetricMatrix(inverse) * direction));
+    if (stiffer != 1.0 && own > 0.0) {
+      const auto mass = static_cast<double>(body.dynamics->matrix().mass(static_cast<std::size_t>(point.nodes[k])));
+      own = 1.0 / (mass + stiffer * std::max(1.0 / own - mass, 0.0));
+    }
+    sum += static_cast<double>(point.weights[k] * point.weights[k]) * own;
   }
   const auto node = static_cast<std::size_t>(point.nodes[0]);
   return sum + body.dynamics->rigidCompliance(node, numbersOf(position), numbersOf(direction));
 }
 
+/// seconds  length of the step for which it is
 double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const RowOrigin& origin,
-                     const RigidUnknowns& rigids) {
+                     const RigidUnknowns& rigids, double seconds) {
   const auto along = [&](const btVector3& direction) {
     double sum = 0.0;
     for (std::size_t e = 0; e < 2; ++e) {
       const RowEnd& end = row.ends[e];
-      sum += end.isSoft() ? compliance(bodies.bodies()[end.body], origin.points[e], origin.position, direction)
+      sum += end.isSoft() ? compliance(bodies.bodies()[end.body], origin.points[e], origin.position, direction, seconds)
                           : rigids.compliance(end.rigid, direction);
     }
     return sum;
@@ -252,15 +264,20 @@ FrictionAnchor frictionAnchorOf(const ContactRow& row, const RowOrigin& origin, 
   return kept;
 }
 
+/// The speed at which a point would go into the object, beside what gravity adds in the step.
+btScalar approach(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
+  const btDiscreteDynamicsWorld* world = bodies.bodies()[row.ends[0].body].world();
+  const btScalar falls = world ? world->getGravity().length() * seconds : btScalar(0);
+  return -row.normal.dot(row.relative) - row.gapVelocity - kFallsAtRest * falls;
+}
+
 /// The factor of a contact's D by which the way towards the object violates the gap no more than is seen.
 double stiffening(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
   assert(!row.joined && row.ends[0].isSoft());
   btScalar size = sizeOf(*bodies.bodies()[row.ends[0].body].body);
   if (row.ends[1].isSoft()) size = std::min(size, sizeOf(*bodies.bodies()[row.ends[1].body].body));
-  const btDiscreteDynamicsWorld* world = bodies.bodies()[row.ends[0].body].world();
-  const btScalar falls = world ? world->getGravity().length() * seconds : btScalar(0);
-  const btScalar towards = -row.normal.dot(row.relative) - row.gapVelocity - kFallsAtRest * falls;
-  const auto way = static_cast<double>(towards * seconds), seen = kStiffness * kViolation * static_cast<double>(size);
+  const auto way = static_cast<double>(approach(bodies, row, seconds) * seconds);
+  const double seen = kStiffness * kViolation * static_cast<double>(size);
   return way > seen ? std::min(way / seen, kMostStiffening) : 1.0;
 }
 
@@ -399,40 +416,64 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
   }
 }
 
-/// Nodes that several rows share get no stiffer than with one row.
-void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds) {
-  std::vector<std::vector<btScalar>> loads(bodies.bodies().size());
+void ContactRows::followStep(btScalar seconds) {
+  const auto now = static_cast<double>(seconds);
+  usualStep_ += (usualStep_ > 0.0 ? kFollowed : 1.0) * (now - usualStep_);
+}
+
+/// Rows that are near, and do not touch, are more in longer steps.
+void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
+  loads_.resize(bodies.bodies().size());
+  for (std::size_t b = 0; b < loads_.size(); ++b) {
+    loads_[b].assign(bodies.bodies()[b].rowCount > 0 ? bodies.bodies()[b].dynamics->nodeCount() : 0, 0);
+  }
   for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const ContactRow& row = rows_[r];
+    if (row.joined || !row.ends[0].isSoft() || !(row.gapVelocity < 0 || approach(bodies, row, seconds) > 0)) continue;
     for (std::size_t e = 0; e < 2; ++e) {
-      const RowEnd& end = rows_[r].ends[e];
-      if (rows_[r].joined || !end.isSoft()) continue;
-      std::vector<btScalar>& load = loads[end.body];
-      load.resize(bodies.bodies()[end.body].dynamics->nodeCount(), 0);
+      if (!row.ends[e].isSoft()) continue;
+      std::vector<btScalar>& load = loads_[row.ends[e].body];
+      load.resize(bodies.bodies()[row.ends[e].body].dynamics->nodeCount(), 0);
       const CarriedPoint& point = origins_[r].points[e];
       for (std::uint32_t k = 0; k < point.count; ++k) {
         load[static_cast<std::size_t>(point.nodes[k])] += std::abs(point.weights[k]);
       }
     }
   }
+}
+
+/// The largest sum of weights at a node of the row, at least 1.
+btScalar ContactRows::sharing(std::size_t row) const {
+  btScalar most = 1;
+  for (std::size_t e = 0; e < 2 && !rows_[row].joined; ++e) {
+    if (!rows_[row].ends[e].isSoft()) continue;
+    const std::vector<btScalar>& load = loads_[rows_[row].ends[e].body];
+    const CarriedPoint& point = origins_[row].points[e];
+    for (std::uint32_t k = 0; k < point.count && !load.empty(); ++k) {
+      if (std::abs(point.weights[k]) < kSmallWeight) continue;
+      most = std::max(most, load[static_cast<std::size_t>(point.nodes[k])]);
+    }
+  }
+  return most;
+}
+
+/// Nodes that several rows share get no stiffer than with one row.
+void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds) {
+  const auto now = static_cast<double>(seconds);
+  followStep(seconds);
+  listLoads(bodies, seconds);
+  const double steps = now / usualStep_, asUsual = std::min(std::max(steps * steps, 1.0 / kOthers), kOthers);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     ContactRow& row = rows_[r];
     if (row.constant) continue;
-    btScalar fraction = 1;
-    for (std::size_t e = 0; e < 2; ++e) {
-      if (row.joined || !row.ends[e].isSoft()) continue;
-      const CarriedPoint& point = origins_[r].points[e];
-      for (std::uint32_t k = 0; k < point.count; ++k) {
-        if (std::abs(point.weights[k]) < kSmallWeight) continue;
-        fraction = std::max(fraction, loads[row.ends[e].body][static_cast<std::size_t>(point.nodes[k])]);
-      }
-    }
-    const double mass = effectiveMass(bodies, row, origins_[r], rigids);
+    const double mass = effectiveMass(bodies, row, origins_[r], rigids, now);
+    const double usualMass = now == usualStep_ ? mass : effectiveMass(bodies, row, origins_[r], rigids, usualStep_);
     // A higher stiffness makes no visible difference, and the residual left by the solve would push with it.
     const bool mounted = !row.ends[1].isSoft() && row.ends[1].rigid.unknown < 0;
     const double times = !row.joined ? kStiffness * stiffening(bodies, row, seconds)
                          : mounted   ? kMountStiffness
                                      : kJointStiffness;
-    const auto maximum = static_cast<btScalar>(times * mass) / fraction;
+    const auto maximum = static_cast<btScalar>(times * usualMass * asUsual) / sharing(r);
     row.stiffness = row.stiffness > 0 ? std::min(row.stiffness, maximum) : maximum;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);

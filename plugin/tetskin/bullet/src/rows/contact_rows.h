@@ -7,6 +7,7 @@
 #include <tetskin/bullet/src/base/row_source.h>
 #include <tetskin/bullet/src/rows/contact_row.h>
 #include <tetskin/bullet/src/rows/solver_bodies.h>
+#include <tetskin/core/src/base/state/state_stream.h>
 
 #include <vector>
 
@@ -22,6 +23,8 @@ class ContactRows {
   void add(std::vector<PointJoint>& joints, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
   /// Call it when all of these are there.
   void setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
+  /// Writes or reads what it remembers beside what is in the bodies.
+  void visitState(StateStream& stream) { stream(usualStep_); }
   /// Adds any other row, such as one of rigid bodies alone.
   void add(const ContactRow& row, const RowOrigin& origin);
   /// Stores what the next step begins with, and reports the impulses to the contacts.
@@ -38,6 +41,14 @@ class ContactRows {
   void addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
   void addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
 
+  void followStep(btScalar seconds);
+  void listLoads(const SolverBodies& bodies, btScalar seconds);
+  btScalar sharing(std::size_t row) const;
+
+  /// Seconds: a step's usual length, which follows the steps slowly. 0: there was none. What bears a weight gives way
+  /// as in such a step, whatever the present one: otherwise, each change of the step would be a push.
+  double usualStep_ = 0.0;
+  std::vector<std::vector<btScalar>> loads_;  ///< by body and node: weights of the rows that touch, in this step
   std::vector<ContactRow> rows_;
   std::vector<RowOrigin> origins_;  ///< by row
 };

@@ -321,26 +321,29 @@ void PointCollider::finishPatch(const ContactPatch& patch, std::size_t first) {
   }
 }
 
-/// Chooses points of the patch: first the deepest one, and then the ones farthest from those already chosen. Points
-/// that touched in the step before get an advantage, so that the choice does not change from step to step: a resting
-/// body sticks at these points.
+/// Chooses points of the patch: first the deepest one, then those that bear a weight already, and then the ones
+/// farthest from those already chosen. Points that touched in the step before get an advantage, so that the choice does
+/// not change from step to step: a resting body sticks at these points.
 void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) {
   assert(first <= touches_.size());
   if (touches_.size() - first <= 2) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto lead = [&](const PointContact& touch) {
-    const bool known = std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
-    return known ? kSpacing * slack_ : btScalar(0);
+  const auto isKnown = [&](const PointContact& touch) {
+    return std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
   };
+  const auto lead = [&](const PointContact& touch) { return isKnown(touch) ? kSpacing * slack_ : btScalar(0); };
+  // In a longer step, more points are near; those that bear a weight must not change with that.
+  const auto bears = [&](const PointContact& touch) { return touch.distance < 0 && isKnown(touch); };
   chosen_.clear();
   auto next = std::min_element(begin, touches_.end(), [&](const PointContact& a, const PointContact& b) {
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
   // The patch lies or slides on a plane. A patch that falls onto one does not qualify: points between the chosen ones
-  // would penetrate.
+  // would penetrate. At rest, gravity alone moves a point by half of the speculation.
+  const btScalar calm = kCalmFall * slack_ + btScalar(0.5) * speculation_;
   const bool flat = std::all_of(begin, touches_.end(), [&](const PointContact& touch) {
-    return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < kCalmFall * slack_;
+    return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < calm;
   });
   const std::size_t few = first < kManyTouches ? kMinTouches : 2;
   const std::size_t enough = flat ? few : (patch.isTriangle() ? kTriangleTouches : kMaxTouches);
@@ -352,8 +355,9 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
     for (auto at = begin; at != touches_.end(); ++at) {
       btScalar& apart = apart_[static_cast<std::size_t>(at - begin)];
       apart = std::min(apart, (at->position - chosen_.back().position).length());
-      const btScalar gain = apart + lead(*at) - kDepthsWorth * at->predicted;
-      if (apart <= enoughApart() || gain <= maximum) continue;
+      const bool stays = bears(*at);
+      const btScalar gain = stays ? BT_LARGE_FLOAT : apart + lead(*at) - kDepthsWorth * at->predicted;
+      if (apart <= (stays ? btScalar(0) : enoughApart()) || gain <= maximum) continue;
       maximum = gain;
       next = at;
     }

@@ -120,6 +120,7 @@ void visitSolver(WorldStream& stream, DeformableSolver& solver) {
   DeformableSolver::Impl& impl = *solver.impl_;
   impl.visitFlags(stream);
   impl.bodies.visitState(stream);
+  impl.rows.visitState(stream);
   impl.driven.visitState(stream);
   impl.loads.visitState(stream);
   impl.sleepers.visitState(stream);
