@@ -264,10 +264,14 @@ FrictionAnchor frictionAnchorOf(const ContactRow& row, const RowOrigin& origin, 
   return kept;
 }
 
+btScalar gravityOn(const SolvedBody& body) {
+  const btDiscreteDynamicsWorld* world = body.world();
+  return world ? world->getGravity().length() : btScalar(0);
+}
+
 /// The speed at which a point would go into the object, beside what gravity adds in the step.
 btScalar approach(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
-  const btDiscreteDynamicsWorld* world = bodies.bodies()[row.ends[0].body].world();
-  const btScalar falls = world ? world->getGravity().length() * seconds : btScalar(0);
+  const btScalar falls = gravityOn(bodies.bodies()[row.ends[0].body]) * seconds;
   return -row.normal.dot(row.relative) - row.gapVelocity - kFallsAtRest * falls;
 }
 
@@ -416,12 +420,19 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
   }
 }
 
+/// False if the point neither is as near as the way that gravity adds in a usual step, nor comes near.
+bool ContactRows::mayTouch(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) const {
+  const auto usual = static_cast<btScalar>(usualStep_);
+  const btScalar near = kFallsAtRest * gravityOn(bodies.bodies()[row.ends[0].body]) * usual * usual;
+  return row.gapVelocity * seconds < near || approach(bodies, row, seconds) > 0;
+}
+
 void ContactRows::followStep(btScalar seconds) {
   const auto now = static_cast<double>(seconds);
   usualStep_ += (usualStep_ > 0.0 ? kFollowed : 1.0) * (now - usualStep_);
 }
 
-/// Rows that are near, and do not touch, are more in longer steps.
+/// Of rows that do not touch, those that are as near as in a usual step: in longer ones, there are more.
 void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
   loads_.resize(bodies.bodies().size());
   for (std::size_t b = 0; b < loads_.size(); ++b) {
@@ -429,7 +440,7 @@ void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
   }
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const ContactRow& row = rows_[r];
-    if (row.joined || !row.ends[0].isSoft() || !(row.gapVelocity < 0 || approach(bodies, row, seconds) > 0)) continue;
+    if (row.joined || !row.ends[0].isSoft() || !mayTouch(bodies, row, seconds)) continue;
     for (std::size_t e = 0; e < 2; ++e) {
       if (!row.ends[e].isSoft()) continue;
       std::vector<btScalar>& load = loads_[row.ends[e].body];

@@ -42,13 +42,14 @@ class ContactRows {
   void addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
 
   void followStep(btScalar seconds);
+  bool mayTouch(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) const;
   void listLoads(const SolverBodies& bodies, btScalar seconds);
   btScalar sharing(std::size_t row) const;
 
   /// Seconds: a step's usual length, which follows the steps slowly. 0: there was none. What bears a weight gives way
   /// as in such a step, whatever the present one: otherwise, each change of the step would be a push.
   double usualStep_ = 0.0;
-  std::vector<std::vector<btScalar>> loads_;  ///< by body and node: weights of the rows that touch, in this step
+  std::vector<std::vector<btScalar>> loads_;  ///< by body and node: weights of the rows that may touch in this step
   std::vector<ContactRow> rows_;
   std::vector<RowOrigin> origins_;  ///< by row
 };
