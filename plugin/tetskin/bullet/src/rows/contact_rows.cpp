@@ -207,7 +207,7 @@ void warmStart(const SolvedBody& body, const btVector3& remainder, const btTrans
 double compliance(const SolvedBody& body, const CarriedPoint& point, const btVector3& position,
                   const btVector3& direction, double seconds) {
   assert(point.count > 0);
-  const double stiffer = body.dynamics->alphaFor(seconds) / body.dynamics->alpha();
+  const double stiffer = body.dynamics->alphaRatio(seconds);
   double sum = 0.0;
   for (std::uint32_t k = 0; k < point.count; ++k) {
     btScalar inverse[6];

@@ -168,10 +168,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void restart(ParallelFor* threads);
 
   double alpha() const { return alpha_; }
-  /// What alpha would be in a step of this length, by backward Euler's scheme, if the last one was such a step.
-  double alphaFor(double seconds) const {
+  /// What alpha would be over what it is, if the last step had this length, by backward Euler's scheme.
+  double alphaRatio(double seconds) const {
     const double now = lastSeconds_ * (lastSeconds_ + damping_);
-    return now > 0.0 ? alpha_ * (seconds * (seconds + damping_) / now) : alpha_;
+    return now > 0.0 ? seconds * (seconds + damping_) / now : 1.0;
   }
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
   /// scalars per slot. Writes those of the component's nodes alone: several components may share the vectors, which are
