@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/rows/kinematic_paths.h>
+#include <tetskin/bullet/src/search/kinematic_paths.h>
 
 #include "deformable_test.h"
 

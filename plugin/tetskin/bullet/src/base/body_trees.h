@@ -22,6 +22,7 @@
 namespace tetskin::bullet_detail {
 
 class BodyContacts;
+class KinematicPaths;
 class WorldStream;
 
 /// Builds all three trees by median splits, for any number of components, with boxes that fit the nodes' current
@@ -88,6 +89,10 @@ class BodyWithTrees : public btSoftBody {
   const btSoftBodySolver* nodesSolver() const { return nodesSolver_; }
   void setNodesSolver(const btSoftBodySolver* solver) { nodesSolver_ = solver; }
 
+  /// Where kinematic bodies come from, of the world whose steps search for contacts; expired if nothing tells.
+  const std::weak_ptr<const KinematicPaths>& kinematicPaths() const { return kinematicPaths_; }
+  void setKinematicPaths(std::weak_ptr<const KinematicPaths> paths) { kinematicPaths_ = std::move(paths); }
+
   /// The points that must stay outside of objects in this step: a search adds them, the solver reads them, and clears
   /// them when a step begins.
   PointContacts& pointContacts() { return pointContacts_; }
@@ -136,6 +141,7 @@ class BodyWithTrees : public btSoftBody {
   std::shared_ptr<NodeMoves> moves_ = std::make_shared<NodeMoves>();
   PointContacts pointContacts_;
   std::weak_ptr<BodyContacts> surfaceContacts_;
+  std::weak_ptr<const KinematicPaths> kinematicPaths_;
   std::shared_ptr<BodyContacts> nodeContacts_;
   btScalar contactSize_ = 0;
   std::vector<btVector3> createdAt_;

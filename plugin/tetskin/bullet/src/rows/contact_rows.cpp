@@ -118,8 +118,8 @@ btVector3 relativeVelocity(const SolvedBody& body, const RowOrigin& origin, cons
   return velocityBefore(body, origin.points[0]) - rigids.velocityAt(rigid, *origin.object, seconds);
 }
 
-/// When contacts are detected, a kinematic body is already at the position where the step takes it. The gap found then
-/// is smaller than at the beginning of the step by how much the body moves: this difference.
+/// When Bullet detects contacts, a kinematic body is already at the position where the step takes it. The gap found
+/// there is smaller than at the beginning of the step by how much the body moves: this difference.
 btScalar leadOf(const ContactRow& row, const btCollisionObject& object, RigidUnknowns& rigids, btScalar seconds) {
   if (!rigids.isLed(object)) return 0;
   return seconds * row.normal.dot(rigids.velocityAt(row.ends[1].rigid, object, seconds));
@@ -378,7 +378,7 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
   readBulletsContacts(*body.body, own ? own->speculation() : btScalar(0), *body.bulletsContacts);
   if (own) own->setSpeculation(0);
   const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
-  const auto add = [&](PointContact& contact) {
+  const auto add = [&](PointContact& contact, bool atStart) {
     contact.impulse.setZero();
     if (!contact.object || !contact.object->hasContactResponse() || !isFinite(contact)) return;
     if (!contact.at.isFree(*body.body)) return;
@@ -388,15 +388,16 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
     row.relative = relativeVelocity(body, origin, row.ends[1].rigid, rigids, seconds);
     if (isNaN(row.relative)) return;
     const btVector3 remainder = remainderAt(body, contact.at);
-    const btScalar lead = leadOf(row, *contact.object, rigids, seconds);
+    const bool found = atStart && rigids.paths().knowsStart(*contact.object);
+    const btScalar lead = found ? btScalar(0) : leadOf(row, *contact.object, rigids, seconds);
     const btScalar gap = contact.distance + contact.normal.dot(remainder) + lead;
     row.gapVelocity = std::max(seenGap(gap, contact) / seconds, -pushingOut);
-    warmStart(body, remainder, contact.object->getWorldTransform(), seconds, row, origin);
+    warmStart(body, remainder, rigids.startOf(*contact.object), seconds, row, origin);
     this->add(row, origin);
   };
-  for (PointContact& contact : *body.bulletsContacts) add(contact);
+  for (PointContact& contact : *body.bulletsContacts) add(contact, false);
   if (!own) return;
-  for (PointContact& contact : own->pointContacts()) add(contact);
+  for (PointContact& contact : own->pointContacts()) add(contact, true);
 }
 
 void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
@@ -408,7 +409,7 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
     RowOrigin origin;
     origin.points[0].add(indexIn(*body.body, anchors[k].m_node), 1);
     origin.object = anchors[k].m_cti.m_colObj;
-    origin.position = origin.object->getWorldTransform() * anchors[k].m_local;
+    origin.position = rigids.startOf(*origin.object) * anchors[k].m_local;
     ContactRow row;
     row.ends[0].body = index;
     row.joined = true;

@@ -87,7 +87,7 @@ class RigidRowCollector {
 
   RigidPoint pointOf(const btCollisionObject& object, const btVector3& position) {
     const bool room = rigids_.list().size() < kMaxUnknowns || rigids_.find(object) >= 0;
-    if (room && object.isActive()) return rigids_.at(object, position);
+    if (room && object.isActive() && !object.isKinematicObject()) return rigids_.at(object, position);
     RigidPoint point;
     point.arm = position - object.getWorldTransform().getOrigin();
     return point;

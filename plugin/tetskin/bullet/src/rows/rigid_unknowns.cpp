@@ -143,7 +143,7 @@ int RigidUnknowns::addLinkPoint(const btCollisionObject& object, const btVector3
 
 RigidPoint RigidUnknowns::at(const btCollisionObject& object, const btVector3& position) {
   RigidPoint point;
-  point.arm = position - object.getWorldTransform().getOrigin();
+  point.arm = position - startOf(object).getOrigin();
   if (!movesFreely(object)) return point;
   point.unknown = add(object);
   if (linkOf(object)) point.jacobian = addLinkPoint(object, position);
@@ -172,21 +172,25 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
 btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity,
                                    btScalar seconds) const {
   assert(body.isKinematicObject());
-  const KinematicPath* path = paths_.find(body);
+  const KinematicPath* path = paths_->find(body);
   if (!path || !path->isKnown) return velocity;
-  const btTransform now = path->now();
-  const btVector3 turned = now.getBasis() * (path->before.getBasis().transpose() * arm);
-  const btVector3 carried = (now.getOrigin() - path->before.getOrigin() + turned - arm) / seconds;
+  const auto way = [&](const btTransform& to) {
+    const btVector3 turned = to.getBasis() * (path->before.getBasis().transpose() * arm);
+    return to.getOrigin() - path->before.getOrigin() + turned - arm;
+  };
+  const btVector3 carried = way(path->now()) / seconds;
   if (path->done > 1) return carried;
   // If the difference is larger, the body was put there, or it is a different one.
-  const btScalar maximum = kUnseenTurn * arm.length() / seconds + kUnseenShare * velocity.length();
-  return (carried - velocity).length() <= maximum ? carried : velocity;
+  const btScalar frame = static_cast<btScalar>(path->steps) * seconds;
+  const btVector3 expected = body.getVelocityInLocalPoint(arm) + bend(body.getAngularVelocity(), arm, frame);
+  const btScalar maximum = kUnseenTurn * arm.length() / frame + kUnseenShare * expected.length();
+  return (way(path->to) / frame - expected).length() <= maximum ? carried : velocity;
 }
 
 bool RigidUnknowns::isLed(const btCollisionObject& object) const {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (!body || !body->isKinematicObject()) return false;
-  const KinematicPath* path = paths_.find(*body);
+  const KinematicPath* path = paths_->find(*body);
   return !path || path->done <= path->steps;
 }
 

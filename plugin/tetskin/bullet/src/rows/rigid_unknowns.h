@@ -12,9 +12,10 @@
 #pragma once
 
 #include <LinearMath/btTransform.h>
-#include <tetskin/bullet/src/rows/kinematic_paths.h>
+#include <tetskin/bullet/src/search/kinematic_paths.h>
 
 #include <Eigen/Core>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -61,9 +62,12 @@ class RigidUnknowns {
   /// in the step.
   btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
 
+  /// Where the object is when the step begins.
+  const btTransform& startOf(const btCollisionObject& object) const { return paths_->startOf(object); }
   /// True if the object is kinematic, and moves in this step: Bullet has it where the step ends.
   bool isLed(const btCollisionObject& object) const;
-  KinematicPaths& paths() { return paths_; }
+  KinematicPaths& paths() { return *paths_; }
+  const std::shared_ptr<KinematicPaths>& sharedPaths() const { return paths_; }
 
   /// What tells bodies apart: the rigid body, or the multibody of a link.
   static const void* keyOf(const btCollisionObject& object);
@@ -91,7 +95,7 @@ class RigidUnknowns {
   std::vector<RigidUnknown> unknowns_;
   std::unordered_map<const void*, int> indices_;  ///< index in the list, by rigid body or multibody
   std::vector<Jacobian> jacobians_;
-  KinematicPaths paths_;
+  std::shared_ptr<KinematicPaths> paths_ = std::make_shared<KinematicPaths>();
 };
 
 }  // namespace tetskin::bullet_detail

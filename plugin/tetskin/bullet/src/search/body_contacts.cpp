@@ -6,6 +6,7 @@
 #include <tetskin/bullet/src/base/contact_filter.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
+#include <tetskin/bullet/src/search/kinematic_paths.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 
 #include <algorithm>
@@ -66,10 +67,12 @@ btScalar beyondBox(const btCollisionShape& shape, const ShapePath& path) {
 }
 
 /// The path of a shape on the object: a child of a compound has a transform within it.
-ShapePath pathOf(const btCollisionObjectWrapper& rigid) {
+/// paths  null outside of steps
+ShapePath pathOf(const btCollisionObjectWrapper& rigid, const KinematicPaths* paths) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   const btTransform position = object.getWorldTransform().inverse() * rigid.getWorldTransform();
-  return {rigid.getWorldTransform(), predictedOf(object) * position};
+  const bool starts = paths && paths->knowsStart(object);
+  return {starts ? paths->startOf(object) * position : rigid.getWorldTransform(), predictedOf(object) * position};
 }
 
 }  // namespace
@@ -89,7 +92,9 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
   if (!dispatcher_ && (body_.m_cfg.collisions & btSoftBody::fCollision::SDF_RDN) == 0) return;
-  const Met met{&object, rigid.getCollisionShape(), pathOf(rigid)};
+  const std::shared_ptr<const KinematicPaths> paths =
+      body_.speculation() > 0 ? body_.kinematicPaths().lock() : nullptr;
+  const Met met{&object, rigid.getCollisionShape(), pathOf(rigid, paths.get())};
   if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
   waiting_.push_back(met);
 }

@@ -346,7 +346,9 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
     return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < calm;
   });
   const std::size_t few = first < kManyTouches ? kMinTouches : 2;
-  const std::size_t enough = flat ? few : (patch.isTriangle() ? kTriangleTouches : kMaxTouches);
+  const std::size_t usual = flat ? few : (patch.isTriangle() ? kTriangleTouches : kMaxTouches);
+  const auto bearing = static_cast<std::size_t>(std::count_if(begin, touches_.end(), bears));
+  const std::size_t enough = std::min(std::max(usual, bearing), kMaxTouches);
   const auto enoughApart = [&] { return chosen_.size() < kMinTouches ? btScalar(0) : kSpacing * slack_; };
   for (;;) {
     chosen_.push_back(*next);

@@ -21,6 +21,7 @@ void DeformableSolver::Impl::prepareSearch(SolvedBody& body) const {
   auto* own = bodyWithTrees(*body.body);
   if (!own) return;
   own->setSearchWaits(threads != nullptr);
+  own->setKinematicPaths(rigids.sharedPaths());
   own->setNodesSolver(body.byBullet ? nullptr : static_cast<const btSoftBodySolver*>(&solver));
   if (body.byBullet) return;
   const auto& contacts = own->nodeContacts();

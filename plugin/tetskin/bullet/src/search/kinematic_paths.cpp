@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btTransformUtil.h>
 #include <tetskin/bullet/src/base/world_stream.h>
-#include <tetskin/bullet/src/rows/kinematic_paths.h>
+#include <tetskin/bullet/src/search/kinematic_paths.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
 
 #include <algorithm>
@@ -27,16 +27,22 @@ btScalar sineBetween(const btTransform& from, const btTransform& to) {
   return btVector3(turn[2][1] - turn[1][2], turn[0][2] - turn[2][0], turn[1][0] - turn[0][1]).length() / 2;
 }
 
-/// Bullet's slerp returns the first rotation if the two differ by less than 7e-4 radians, in float: an arc cosine.
-btQuaternion between(const btQuaternion& from, const btQuaternion& to, btScalar fraction) {
-  constexpr btScalar kStraight = btScalar(0.9999);  // cosine of half the angle up to which the arc is straight
-  const btScalar cosine = from.dot(to);
-  const btQuaternion end = cosine < 0 ? -to : to;
-  if (btFabs(cosine) >= kStraight) return (from + (end - from) * fraction).normalized();
-  const double angle = 2.0 * arcSine(std::min(1.0, 0.5 * static_cast<double>((end - from).length())));
-  const double part = static_cast<double>(fraction), sine = sineAndCosine(angle).sine;
-  return from * static_cast<btScalar>(sineAndCosine((1.0 - part) * angle).sine / sine) +
-         end * static_cast<btScalar>(sineAndCosine(part * angle).sine / sine);
+/// The rotation vector that takes one rotation to another, of at most half a turn.
+btVector3 rotationVector(const btTransform& from, const btTransform& to) {
+  btQuaternion turn = to.getRotation() * from.getRotation().inverse();
+  if (turn.w() < 0) turn = -turn;
+  const btVector3 sine(turn.x(), turn.y(), turn.z());
+  const auto length = static_cast<double>(sine.length());
+  if (!(length > 0.0)) return {0, 0, 0};
+  return sine * static_cast<btScalar>(2.0 * arcSine(std::min(length, 1.0)) / length);
+}
+
+btQuaternion turnedBy(const btQuaternion& rotation, const btVector3& vector) {
+  const auto angle = static_cast<double>(vector.length());
+  if (!(angle > 0.0)) return rotation;
+  const SineAndCosine half = sineAndCosine(0.5 * angle);
+  const btVector3 part = vector * static_cast<btScalar>(half.sine / angle);
+  return (btQuaternion(part.x(), part.y(), part.z(), static_cast<btScalar>(half.cosine)) * rotation).normalized();
 }
 
 /// Seconds in which the body's velocity takes it from one transform to the other; 0 if it does not.
@@ -51,14 +57,14 @@ btScalar timeOf(const btTransform& from, const btTransform& to, const btRigidBod
   return angle / rate;
 }
 
-/// The number of steps in which the body moves from one transform to the other; 1 if it cannot be told.
+/// The number of steps in which the body moves from one transform to the other; 0 if it cannot be told.
 /// last  steps between the two moves before, for turns that are too small; 0: not known
 int stepsOf(const btTransform& from, const btTransform& to, const btRigidBody& body, btScalar seconds, int last) {
   const bool onlyTurns = body.getLinearVelocity().isZero() && from.getOrigin() == to.getOrigin();
   if (onlyTurns && sineBetween(from, to) < kSeenTurn) return last > 0 && last <= kMaxSteps ? last : 1;
   const btScalar steps = timeOf(from, to, body) / seconds, whole = std::round(steps);
   const bool isWhole = std::abs(steps - whole) <= kWholeStep && whole >= 1 && whole <= kMaxSteps;
-  return isWhole ? static_cast<int>(whole) : 1;
+  return isWhole ? static_cast<int>(whole) : 0;
 }
 
 }  // namespace
@@ -67,13 +73,41 @@ btTransform KinematicPath::now() const {
   assert(done >= 1 && steps >= 1);
   if (done >= steps) return to;
   const btScalar fraction = static_cast<btScalar>(done) / static_cast<btScalar>(steps);
-  return btTransform(between(from.getRotation(), to.getRotation(), fraction),
-                     from.getOrigin().lerp(to.getOrigin(), fraction));
+  return btTransform(turnedBy(from.getRotation(), turns.at(fraction)), from.getOrigin() + moves.at(fraction));
+}
+
+void KinematicPath::leadTo(const btTransform& place, int frame, btScalar seconds) {
+  assert(frame >= 0 && seconds > 0);
+  if (done > steps) motion = turning = {};  // it has stood
+  // What the body did before tells nothing if it has stood for long, or has been moved once alone.
+  last = last > 0 || done > 1 ? done : 0;
+  from = before;
+  to = place;
+  steps = std::max(frame, 1);
+  done = 1;
+  wasPut = frame == 0;
+  if (wasPut) {
+    motion = turning = {};
+    return;
+  }
+  const btScalar duration = static_cast<btScalar>(steps) * seconds;
+  moves = motion.next(to.getOrigin() - from.getOrigin(), duration);
+  turns = turning.next(rotationVector(from, to), duration);
 }
 
 const KinematicPath* KinematicPaths::find(const btRigidBody& body) const {
   const auto found = paths_.find(&body);
   return found == paths_.end() ? nullptr : &found->second;
+}
+
+bool KinematicPaths::knowsStart(const btCollisionObject& object) const {
+  const btRigidBody* body = object.isKinematicObject() ? btRigidBody::upcast(&object) : nullptr;
+  const KinematicPath* path = body ? find(*body) : nullptr;
+  return path && path->isKnown && !path->wasPut;
+}
+
+const btTransform& KinematicPaths::startOf(const btCollisionObject& object) const {
+  return knowsStart(object) ? find(*btRigidBody::upcast(&object))->before : object.getWorldTransform();
 }
 
 const KinematicPath& KinematicPaths::advance(const btRigidBody& body, btScalar seconds) {
@@ -83,6 +117,7 @@ const KinematicPath& KinematicPaths::advance(const btRigidBody& body, btScalar s
   KinematicPath& path = found->second;
   path.seen = step_;
   path.isKnown = !isNew;
+  path.wasPut = false;
   if (isNew) {
     path.from = path.to = path.before = to;
     return path;
@@ -92,13 +127,8 @@ const KinematicPath& KinematicPaths::advance(const btRigidBody& body, btScalar s
     if (path.done <= kMaxSteps) ++path.done;
     return path;
   }
-  // What the body did before tells nothing if it has stood for long, or has been moved once alone.
   const int last = path.last > 0 || path.done > 1 ? path.done : 0;
-  path.from = path.before;
-  path.to = to;
-  path.steps = stepsOf(path.from, to, body, seconds, last);
-  path.last = last;
-  path.done = 1;
+  path.leadTo(to, stepsOf(path.before, to, body, seconds, last), seconds);
   return path;
 }
 
@@ -152,6 +182,17 @@ void KinematicPaths::visitState(WorldStream& stream) {
     stream(path.steps);
     stream(path.done);
     stream(path.last);
+    for (FrameCurve* curve : {&path.moves, &path.turns}) {
+      stream(curve->way);
+      stream(curve->early);
+      stream(curve->late);
+    }
+    for (FrameMotion* motion : {&path.motion, &path.turning}) {
+      stream(motion->velocity);
+      stream(motion->mean);
+      stream(motion->before);
+      stream(motion->seconds);
+    }
     if (path.steps < 1 || path.done < 1) stream.fail();
     if (stream.restoring()) path.seen = step_;
   });

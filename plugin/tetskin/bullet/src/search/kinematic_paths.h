@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to RigidUnknowns: where kinematic bodies are in each step of a frame. Bullet moves a body that the
+// Internal to DeformableSolver: where kinematic bodies are in each step of a frame. Bullet moves a body that the
 // application moves once per frame to its final transform in the frame's first step, and gives it its velocity in all
-// of them.
+// of them. Here it moves along a curve whose velocity is continuous.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransform.h>
+#include <tetskin/bullet/src/base/frame_curve.h>
 
 #include <unordered_map>
 #include <vector>
@@ -24,10 +25,16 @@ struct KinematicPath {
   int done = 1;          ///< steps that have begun since the application has moved it, including this one
   int last = 0;          ///< steps between the two moves before; 0: not known
   bool isKnown = false;  ///< its transform before this step is known
+  bool wasPut = false;   ///< in this step, it was put at another place
+  FrameCurve moves, turns;           ///< of the frame: of the origin, and the rotation vector from `from`
+  FrameMotion motion, turning;       ///< of the frames so far
   unsigned seen = 0;     ///< number of the last step in which the body was kinematic
 
   /// The transform at the end of this step.
   btTransform now() const;
+  /// Takes the body to another place, on a way that continues its motion.
+  /// frame  number of steps; 0: it was put there
+  void leadTo(const btTransform& place, int frame, btScalar seconds);
 };
 
 class KinematicPaths {
@@ -38,6 +45,10 @@ class KinematicPaths {
   /// Call it when the step ends: puts the bodies back to where the application has them.
   void endStep();
 
+  /// Where an object is when the step begins. Bullet has kinematic ones where it ends already.
+  const btTransform& startOf(const btCollisionObject& object) const;
+  /// True if the object is kinematic, and its transform when the step begins is known.
+  bool knowsStart(const btCollisionObject& object) const;
   /// The path of a kinematic body in this step; null if it has not been seen.
   const KinematicPath* find(const btRigidBody& body) const;
   /// Takes the path of a kinematic body to this step.

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What an application moves once per frame, between its places: a curve whose velocity continues that of the frame
+// before, and ends with the one that the last three frames let expect. On straight paths between the places, velocities
+// would jump with each frame, in a single step: what is held would be torn off, or creep.
+//
+// A cubic in Hermite's form; its end velocity is that of the parabola through the last three places. For motions whose
+// third differences are not small (the application stops it at once, or its places are noisy), nothing is expected.
+#pragma once
+
+#include <LinearMath/btVector3.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace tetskin::bullet_detail {
+
+/// The way from the beginning of a frame, of positions in m or of rotation vectors in radians.
+struct FrameCurve {
+  btVector3 way{0, 0, 0};    ///< in the whole frame
+  btVector3 early{0, 0, 0};  ///< by how much more it would be at the velocity of the beginning
+  btVector3 late{0, 0, 0};   ///< by how much more it would be at the velocity of the end
+
+  /// fraction  of the frame's time, 0 to 1
+  btVector3 at(btScalar fraction) const {
+    assert(fraction >= 0 && fraction <= 1);
+    const btScalar left = 1 - fraction;
+    return fraction * way + (fraction * left) * (left * early - fraction * late);
+  }
+};
+
+/// What is known of the frames before. All zero: it stands.
+struct FrameMotion {
+  btVector3 velocity{0, 0, 0};                ///< at the end of the last frame, per second
+  btVector3 mean{0, 0, 0}, before{0, 0, 0};   ///< mean velocities of the last frame and of the one before
+  btScalar seconds = 0;                       ///< of the last frame
+
+  /// The curve of the next frame.
+  FrameCurve next(const btVector3& way, btScalar duration) {
+    assert(duration > 0);
+    const btVector3 now = way / duration;
+    const bool smooth = isSmooth(now);
+    FrameCurve curve;
+    curve.way = way;
+    curve.early = velocity * duration - way;
+    // Of a motion that is not smooth: no overshoot, as far as its places allow it (Fritsch and Carlson's bound).
+    const btScalar most = 2 * way.length(), early = curve.early.length();
+    if (!smooth && early > most) curve.early *= most / early;
+    velocity = smooth ? now + (now - mean) * (duration / (duration + seconds)) : now;
+    curve.late = velocity * duration - way;
+    before = mean;
+    mean = now;
+    seconds = duration;
+    return curve;
+  }
+
+ private:
+  bool isSmooth(const btVector3& now) const {
+    constexpr btScalar kSmooth = btScalar(0.75);  // a swing of at least seven frames
+    const btScalar fastest = std::max({now.length2(), mean.length2(), before.length2()});
+    return (now - 2 * mean + before).length2() <= kSmooth * kSmooth * fastest;
+  }
+};
+
+}  // namespace tetskin::bullet_detail
