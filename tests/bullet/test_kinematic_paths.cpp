@@ -47,7 +47,12 @@ class KinematicPath : public testing::Test {
   KinematicPaths paths;
 };
 
-TEST_F(KinematicPath, IsEvenThroughAllStepsOfAFrame) {
+/// The share of its first frame's way that a body which stood has made.
+btScalar firstWay(btScalar fraction) {
+  return fraction - fraction * (1 - fraction) * (1 - fraction);
+}
+
+TEST_F(KinematicPath, BeginsAtRestAndIsEvenThroughAllStepsOfLaterFrames) {
   const std::pair<btVector3, btScalar> motions[] = {{btVector3(btScalar(0.1), 0, btScalar(0.2)), btScalar(0)},
                                                     {btVector3(0, 0, 0), btScalar(0.3)},
                                                     {btVector3(0, btScalar(-0.1), 0), btScalar(0.02)}};
@@ -61,7 +66,8 @@ TEST_F(KinematicPath, IsEvenThroughAllStepsOfAFrame) {
         if (step % steps == 0) move(way, angle, static_cast<btScalar>(steps));
         const auto& path = paths.advance(body, kPathStep);
         const auto frames = [steps = steps](int count) {
-          return static_cast<btScalar>(count) / static_cast<btScalar>(steps);
+          const btScalar made = static_cast<btScalar>(count) / static_cast<btScalar>(steps);
+          return made < 1 ? firstWay(made) : made;
         };
         EXPECT_TRUE(path.isKnown);
         EXPECT_EQ(path.steps, steps);
@@ -92,11 +98,11 @@ TEST_F(KinematicPath, OfASmallTurnTakesAsManyStepsAsTheFrameBefore) {
   paths.advance(body, kPathStep);
   for (int step = 0; step < 16; ++step) {
     if (step % 4 == 0) move(btVector3(0, 0, 0), step < 8 ? btScalar(0.2) : small, 4);
-    const btScalar turned = paths.advance(body, kPathStep).steps == 4 ? btScalar(step % 4 + 1) / 4 : 1;
-    const btScalar before =
-        btScalar(0.2) * btScalar(std::min(step / 4, 2)) + small * btScalar(std::max(step / 4 - 2, 0));
-    expectAt(paths.find(body)->now(), btVector3(0, 0, 0), before + turned * (step < 8 ? btScalar(0.2) : small));
-    EXPECT_EQ(paths.find(body)->steps, 4) << step;
+    EXPECT_EQ(paths.advance(body, kPathStep).steps, 4) << step;
+    if (step % 4 < 3) continue;
+    const int frames = step / 4 + 1;
+    expectAt(paths.find(body)->now(), btVector3(0, 0, 0),
+             btScalar(0.2) * btScalar(std::min(frames, 2)) + small * btScalar(std::max(frames - 2, 0)));
   }
 }
 
@@ -108,8 +114,10 @@ TEST_F(KinematicPath, IsShownOnlyWithinTheStep) {
   move(way, 0, 4);
   for (int step = 1; step <= 4; ++step) {
     paths.beginStep(worlds, kPathStep);
-    expectAt(body.getWorldTransform(), btScalar(step) / 4 * way, 0);
-    expectAt(body.getInterpolationWorldTransform(), btScalar(step) / 4 * way, 0);
+    expectAt(body.getWorldTransform(), firstWay(btScalar(step) / 4) * way, 0);
+    expectAt(body.getInterpolationWorldTransform(), firstWay(btScalar(step) / 4) * way, 0);
+    expectAt(paths.startOf(body), firstWay(btScalar(step - 1) / 4) * way, 0);
+    EXPECT_TRUE(paths.knowsStart(body));
     paths.endStep();
     expectAt(body.getWorldTransform(), way, 0);
     expectAt(body.getInterpolationWorldTransform(), way, 0);
@@ -117,6 +125,48 @@ TEST_F(KinematicPath, IsShownOnlyWithinTheStep) {
   body.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
   paths.beginStep(worlds, kPathStep);
   EXPECT_EQ(paths.find(body), nullptr);
+}
+
+TEST_F(KinematicPath, OfABodyThatTurnsAroundAnAxleIsNearACircle) {
+  const btScalar turn = btScalar(0.4), radius = 2;
+  const auto at = [&](btScalar angle) {
+    const btQuaternion rotation(axis, angle);
+    const btVector3 arm = radius * axis.cross(btVector3(0, 0, 1)).normalized();
+    return btTransform(rotation * start.getRotation(), start.getOrigin() + quatRotate(rotation, arm) - arm);
+  };
+  paths.advance(body, kPathStep);
+  for (int step = 0; step < 40; ++step) {
+    const auto frames = static_cast<btScalar>(step / 4);
+    if (step % 4 == 0) {
+      const btTransform from = body.getWorldTransform(), to = at((frames + 1) * turn);
+      place(to);
+      body.setLinearVelocity((to.getOrigin() - from.getOrigin()) / (4 * kPathStep));
+      body.setAngularVelocity(axis * (turn / (4 * kPathStep)));
+    }
+    const btTransform now = paths.advance(body, kPathStep).now();
+    if (step < 12) continue;
+    const btTransform wanted = at((frames + static_cast<btScalar>(step % 4 + 1) / 4) * turn);
+    // On straight paths, it would be off by 0.04.
+    EXPECT_LT((now.getOrigin() - wanted.getOrigin()).length(), 0.008) << step;
+    for (int k = 0; k < 3; ++k) EXPECT_LT((now.getBasis()[k] - wanted.getBasis()[k]).length(), 1e-4) << step;
+  }
+}
+
+TEST_F(KinematicPath, OfABodyThatIsPutElsewhereBeginsThere) {
+  paths.advance(body, kPathStep);
+  for (int frame = 0; frame < 3; ++frame) {
+    move(btVector3(1, 0, 0), 0, 1);
+    paths.advance(body, kPathStep);
+    EXPECT_TRUE(paths.knowsStart(body));
+  }
+  place(btTransform(start.getRotation(), start.getOrigin() + btVector3(0, 50, 0)));
+  body.setLinearVelocity(btVector3(0, 0, 0));
+  paths.advance(body, kPathStep);
+  EXPECT_FALSE(paths.knowsStart(body));
+  expectAt(paths.startOf(body), btVector3(0, 50, 0), 0);
+  paths.advance(body, kPathStep);
+  EXPECT_TRUE(paths.knowsStart(body));
+  expectAt(paths.find(body)->now(), btVector3(0, 50, 0), 0);
 }
 
 TEST_F(KinematicPath, ABodyThatIsMovedWithinTheStepStaysThere) {

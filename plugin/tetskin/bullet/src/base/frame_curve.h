@@ -28,6 +28,13 @@ struct FrameCurve {
     const btScalar left = 1 - fraction;
     return fraction * way + (fraction * left) * (left * early - fraction * late);
   }
+
+  template <class Stream>
+  void visitState(Stream& stream) {
+    stream(way);
+    stream(early);
+    stream(late);
+  }
 };
 
 /// What is known of the frames before. All zero: it stands.
@@ -53,6 +60,14 @@ struct FrameMotion {
     mean = now;
     seconds = duration;
     return curve;
+  }
+
+  template <class Stream>
+  void visitState(Stream& stream) {
+    stream(velocity);
+    stream(mean);
+    stream(before);
+    stream(seconds);
   }
 
  private:

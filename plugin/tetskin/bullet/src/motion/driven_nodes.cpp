@@ -12,6 +12,8 @@ namespace {
 
 /// Seconds. A node that is moved again after a longer pause begins a new motion.
 constexpr btScalar kMaxFrame = btScalar(0.1);
+/// Intervals: a node that is moved again after more than these has stood.
+constexpr btScalar kStood = btScalar(1.5);
 /// Fraction of a step's path: a node nearer than this to its target has arrived. Bullet may have bounded its velocity.
 constexpr btScalar kArrived = btScalar(1e-3);
 
@@ -40,20 +42,31 @@ void stop(btSoftBody& body, const std::vector<DrivenNode>& nodes) {
 /// Records what the application has done since the last step.
 void notice(const btSoftBody::Node& node, DrivenNode& driven) {
   if (node.m_q != driven.target) {  // the body was translated, rotated or scaled
-    driven.position = driven.target = node.m_q;
+    driven.position = driven.target = driven.from = node.m_q;
     driven.left = 0;
+    driven.curve = {};
+    driven.motion = {};
   }
   if (!wasMoved(node)) return;
+  if (driven.sinceMoved > kStood * driven.interval) driven.motion = {};
   if (driven.sinceMoved > 0 && driven.sinceMoved <= kMaxFrame) driven.interval = driven.sinceMoved;
   driven.target = node.m_x;
   driven.left = driven.interval;
   driven.sinceMoved = 0;
+  driven.from = driven.position;
+  driven.done = 0;
+  driven.curve = {};
+  driven.curve.way = driven.target - driven.from;
+  if (driven.interval > 0) driven.curve = driven.motion.next(driven.curve.way, driven.interval);
 }
 
 void drive(btSoftBody::Node& node, btScalar dt, DrivenNode& driven) {
   assert(dt > 0 && driven.node >= 0);
   const btScalar steps = btMax(std::round(driven.left / dt), btScalar(1));
-  driven.velocity = (driven.target - driven.position) / (steps * dt);
+  ++driven.done;
+  const btScalar fraction = static_cast<btScalar>(driven.done) / (static_cast<btScalar>(driven.done) + steps - 1);
+  const btVector3 next = steps > 1 ? driven.from + driven.curve.at(fraction) : driven.target;
+  driven.velocity = (next - driven.position) / dt;
   driven.left -= dt;
   driven.sinceMoved += dt;
   node.m_x = node.m_q = driven.position;
@@ -88,7 +101,7 @@ void DrivenNodes::beginBody(btSoftBody& body, btScalar dt) {
     if (!isKnown && !wasMoved(node)) continue;
     DrivenNode driven;
     driven.node = n;
-    driven.position = driven.target = node.m_q;
+    driven.position = driven.target = driven.from = node.m_q;
     if (isKnown) driven = (*known)[next];
     // A velocity that the application has set itself takes precedence.
     if (!node.m_v.isZero() && node.m_v != driven.velocity) continue;
@@ -142,6 +155,10 @@ void DrivenNodes::visitState(WorldStream& stream) {
       stream(driven.sinceMoved);
       stream(driven.interval);
       stream(driven.left);
+      stream(driven.from);
+      stream(driven.done);
+      driven.curve.visitState(stream);
+      driven.motion.visitState(stream);
     });
   });
 }

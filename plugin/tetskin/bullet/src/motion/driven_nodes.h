@@ -6,10 +6,11 @@
 // their motion; for the application they are at once where it has put them.
 //
 // A node was moved if its m_x is not its m_q: after a step both are the same, and translating, rotating or scaling a
-// body moves both. If free nodes were moved by hand as well, the application has set a state, which is no motion.
+// body moves both. Between its places, a node goes along a FrameCurve. If free nodes were moved by hand as well, the application has set a state, which is no motion.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/bullet/src/base/frame_curve.h>
 
 #include <unordered_map>
 #include <vector>
@@ -26,6 +27,10 @@ struct DrivenNode {
   btScalar sinceMoved = 0;      ///< seconds of steps
   btScalar interval = 0;        ///< seconds between the last two moves
   btScalar left = 0;            ///< seconds until it has to arrive
+  btVector3 from{0, 0, 0};      ///< position when it was moved
+  int done = 0;                 ///< steps since then
+  FrameCurve curve;             ///< from there
+  FrameMotion motion;           ///< of the moves so far
 };
 
 class DrivenNodes {

@@ -182,17 +182,8 @@ void KinematicPaths::visitState(WorldStream& stream) {
     stream(path.steps);
     stream(path.done);
     stream(path.last);
-    for (FrameCurve* curve : {&path.moves, &path.turns}) {
-      stream(curve->way);
-      stream(curve->early);
-      stream(curve->late);
-    }
-    for (FrameMotion* motion : {&path.motion, &path.turning}) {
-      stream(motion->velocity);
-      stream(motion->mean);
-      stream(motion->before);
-      stream(motion->seconds);
-    }
+    for (FrameCurve* curve : {&path.moves, &path.turns}) curve->visitState(stream);
+    for (FrameMotion* motion : {&path.motion, &path.turning}) motion->visitState(stream);
     if (path.steps < 1 || path.done < 1) stream.fail();
     if (stream.restoring()) path.seen = step_;
   });
