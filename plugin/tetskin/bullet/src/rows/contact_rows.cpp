@@ -433,6 +433,12 @@ void ContactRows::followStep(btScalar seconds) {
   usualStep_ += (usualStep_ > 0.0 ? kFollowed : 1.0) * (now - usualStep_);
 }
 
+btScalar ContactRows::likeUsual(btScalar seconds) const {
+  assert(usualStep_ > 0.0);
+  const double steps = static_cast<double>(seconds) / usualStep_;
+  return static_cast<btScalar>(std::min(std::max(steps * steps, 1.0 / kOthers), kOthers));
+}
+
 /// Of rows that do not touch, those that are as near as in a usual step: in longer ones, there are more.
 void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
   loads_.resize(bodies.bodies().size());
@@ -474,7 +480,6 @@ void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& 
   const auto now = static_cast<double>(seconds);
   followStep(seconds);
   listLoads(bodies, seconds);
-  const double steps = now / usualStep_, asUsual = std::min(std::max(steps * steps, 1.0 / kOthers), kOthers);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     ContactRow& row = rows_[r];
     if (row.constant) continue;
@@ -485,7 +490,7 @@ void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& 
     const double times = !row.joined ? kStiffness * stiffening(bodies, row, seconds)
                          : mounted   ? kMountStiffness
                                      : kJointStiffness;
-    const auto maximum = static_cast<btScalar>(times * usualMass * asUsual) / sharing(r);
+    const auto maximum = static_cast<btScalar>(times * usualMass) * likeUsual(seconds) / sharing(r);
     row.stiffness = row.stiffness > 0 ? std::min(row.stiffness, maximum) : maximum;
     row.tangentStiffness = kTangentShare * row.stiffness;
     row.effectiveMass = static_cast<btScalar>(mass);

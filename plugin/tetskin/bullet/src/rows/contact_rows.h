@@ -23,6 +23,8 @@ class ContactRows {
   void add(std::vector<PointJoint>& joints, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
   /// Call it when all of these are there.
   void setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
+  /// The factor of a contact's D by which what it bears gives way as in a usual step; known after `setStiffness`.
+  btScalar likeUsual(btScalar seconds) const;
   /// Writes or reads what it remembers beside what is in the bodies.
   void visitState(StateStream& stream) { stream(usualStep_); }
   /// Adds any other row, such as one of rigid bodies alone.

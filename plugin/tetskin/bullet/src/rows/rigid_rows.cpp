@@ -109,7 +109,7 @@ class RigidRowCollector {
     row.normal = from.m_normalWorldOnB;
     row.friction = from.m_combinedFriction;
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
-    row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
+    row.stiffness = rows_.likeUsual(seconds_) * static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
     row.tangentStiffness = row.stiffness;
     row.relative = velocityAt(row.ends[0].rigid, a) - velocityAt(row.ends[1].rigid, b);
     const btVector3 along = from.m_appliedImpulseLateral1 * from.m_lateralFrictionDir1 +
@@ -170,7 +170,7 @@ void RigidRowCollector::addJoint(btTypedConstraint& joint) {
     row.ends[1].rigid = at(b, -from.vector(from.linearB, k), -from.vector(from.angularB, k));
     row.effectiveMass = static_cast<btScalar>(massOf(row, rigids_));
     if (!(row.effectiveMass > 0)) continue;
-    row.stiffness = static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
+    row.stiffness = rows_.likeUsual(seconds_) * static_cast<btScalar>(kRigidStiffness) * row.effectiveMass;
     const btScalar softness = from.number(from.softness, k);
     if (softness > 0) row.stiffness = std::min(row.stiffness, row.effectiveMass / softness);
     row.lowest = from.number(from.lowest, k);
