@@ -70,6 +70,18 @@ TEST(ChangingSteps, LeaveABoxAtRestAndAsleep) {
   }
 }
 
+TEST(ChangingSteps, LeaveWhatLiesOnARestingRigidBodyAtRest) {
+  for (const Pattern& pattern : patterns()) {
+    TetskinWorld world;
+    Obstacle plate(world, std::make_unique<btBoxShape>(btVector3(1, btScalar(0.1), 1)),
+                   placeAt(btVector3(0, btScalar(0.1), 0)), 0.5);
+    TouchingBody touching(world, boxMesh(Vector3d::Constant(0.4)), btVector3(0, btScalar(0.61), 0));
+    simulate(world, pattern.steps, 6.0);
+    EXPECT_FALSE(touching.body->body().isActive()) << pattern.name;
+    EXPECT_FALSE(plate.body().isActive()) << pattern.name;
+  }
+}
+
 /// A body that is kept awake shows what sleep would hide.
 TEST(ChangingSteps, ChangeNeitherTheSpeedNorTheForceOfWhatLies) {
   for (const Pattern& pattern : patterns()) {

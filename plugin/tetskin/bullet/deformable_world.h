@@ -61,8 +61,8 @@ struct StepTimes {
 /// wake when the application moves or changes them, when what they lie on, or are attached to, is moved, changed or
 /// removed, and when an obstacle comes near; see the guide.
 ///
-/// A kinematic body that is moved once per frame is put, during each step, where that step takes it; callbacks within a
-/// step see it there.
+/// A kinematic body that is moved once per frame is put, during each step, where that step takes it, on a curve with a
+/// continuous velocity; callbacks within a step see it there.
 ///
 /// A body whose collision flags allow no contact with soft bodies (as `createSoftBody` makes them) is marked as
 /// sleeping between the solve and its integration, so that Bullet does not search for such contacts; only a world's

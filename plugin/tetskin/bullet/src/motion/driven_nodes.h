@@ -6,7 +6,8 @@
 // their motion; for the application they are at once where it has put them.
 //
 // A node was moved if its m_x is not its m_q: after a step both are the same, and translating, rotating or scaling a
-// body moves both. Between its places, a node goes along a FrameCurve. If free nodes were moved by hand as well, the application has set a state, which is no motion.
+// body moves both. Between its places, a node goes along a FrameCurve. If free nodes were moved by hand as well, the
+// application has set a state, which is no motion.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>

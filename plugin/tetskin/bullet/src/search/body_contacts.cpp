@@ -92,8 +92,7 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
   if (!dispatcher_ && (body_.m_cfg.collisions & btSoftBody::fCollision::SDF_RDN) == 0) return;
-  const std::shared_ptr<const KinematicPaths> paths =
-      body_.speculation() > 0 ? body_.kinematicPaths().lock() : nullptr;
+  const std::shared_ptr<const KinematicPaths> paths = body_.speculation() > 0 ? body_.kinematicPaths().lock() : nullptr;
   const Met met{&object, rigid.getCollisionShape(), pathOf(rigid, paths.get())};
   if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
   waiting_.push_back(met);

@@ -22,13 +22,13 @@ struct KinematicPath {
   btTransform from = btTransform::getIdentity(), to = from;  ///< of the frame; `to` is where the application has it
   btTransform before = from;                                 ///< when this step begins
   int steps = 1;                                             ///< number of steps in the frame
-  int done = 1;          ///< steps that have begun since the application has moved it, including this one
-  int last = 0;          ///< steps between the two moves before; 0: not known
-  bool isKnown = false;  ///< its transform before this step is known
-  bool wasPut = false;   ///< in this step, it was put at another place
-  FrameCurve moves, turns;           ///< of the frame: of the origin, and the rotation vector from `from`
-  FrameMotion motion, turning;       ///< of the frames so far
-  unsigned seen = 0;     ///< number of the last step in which the body was kinematic
+  int done = 1;                 ///< steps that have begun since the application has moved it, including this one
+  int last = 0;                 ///< steps between the two moves before; 0: not known
+  bool isKnown = false;         ///< its transform before this step is known
+  bool wasPut = false;          ///< in this step, it was put at another place
+  FrameCurve moves, turns;      ///< of the frame: of the origin, and the rotation vector from `from`
+  FrameMotion motion, turning;  ///< of the frames so far
+  unsigned seen = 0;            ///< number of the last step in which the body was kinematic
 
   /// The transform at the end of this step.
   btTransform now() const;
