@@ -36,7 +36,7 @@ constexpr double kJointStiffness = 1000.0, kMountStiffness = 1e4;
 /// random order moves visibly; with a thousandth, it takes a minute to follow a change.
 constexpr double kFollowed = 0.01;
 /// Most by which a step that is no usual one makes contacts stiffer or softer: more would take many iterations.
-constexpr double kOthers = 25.0;
+constexpr double kMostOtherwise = 25.0;
 /// Body's sizes per second: bound of the velocity at which penetrating bodies are pushed apart.
 constexpr btScalar kPushingOut = 1;
 /// Rounding of a position, in units of the last digit.
@@ -436,7 +436,7 @@ void ContactRows::followStep(btScalar seconds) {
 btScalar ContactRows::likeUsual(btScalar seconds) const {
   assert(usualStep_ > 0.0);
   const double steps = static_cast<double>(seconds) / usualStep_;
-  return static_cast<btScalar>(std::min(std::max(steps * steps, 1.0 / kOthers), kOthers));
+  return static_cast<btScalar>(std::min(std::max(steps * steps, 1.0 / kMostOtherwise), kMostOtherwise));
 }
 
 /// Of rows that do not touch, those that are as near as in a usual step: in longer ones, there are more.
