@@ -164,7 +164,8 @@ void ForcedBody::visitState(WorldStream& stream) {
       dynamics->setMass(at, mass);
     } else {
       outdated |= dynamics->matrix().mass(at) != mass;
-      continues &= dynamics->continues(at, node.m_x, node.m_vn);
+      // What is pinned is led to where the application has it: the step that goes on finds out whether it jumps.
+      continues &= !(node.m_im > 0) || dynamics->continues(at, node.m_x, node.m_vn);
     }
   }
   dynamics->visitState(stream, outdated, continues);
