@@ -60,7 +60,7 @@ TEST(FrameCurve, OfASwingHasNoJumpsOfVelocityAndIsNearTheSwing) {
     before = curve;
   }
   EXPECT_LT(jump, 0.03 * chordsJump);  // differences over a thousandth of a frame
-  EXPECT_LT(curved, 0.35 * straight);
+  EXPECT_LT(curved, 0.12 * straight);
 }
 
 TEST(FrameCurve, OfABodyThatStandsBeginsAtRestAndArrives) {

@@ -147,7 +147,7 @@ TEST_F(KinematicPath, OfABodyThatTurnsAroundAnAxleIsNearACircle) {
     if (step < 12) continue;
     const btTransform wanted = at((frames + static_cast<btScalar>(step % 4 + 1) / 4) * turn);
     // On straight paths, it would be off by 0.04.
-    EXPECT_LT((now.getOrigin() - wanted.getOrigin()).length(), 0.008) << step;
+    EXPECT_LT((now.getOrigin() - wanted.getOrigin()).length(), 0.004) << step;
     for (int k = 0; k < 3; ++k) EXPECT_LT((now.getBasis()[k] - wanted.getBasis()[k]).length(), 1e-4) << step;
   }
 }

@@ -5,8 +5,9 @@
 // before, and ends with the one that the last three frames let expect. On straight paths between the places, velocities
 // would jump with each frame, in a single step: what is held would be torn off, or creep.
 //
-// A cubic in Hermite's form; its end velocity is that of the parabola through the last three places. For motions whose
-// third differences are not small (the application stops it at once, or its places are noisy), nothing is expected.
+// A cubic in Hermite's form; its end velocity is that of the cubic through the last four places, by Newton's divided
+// differences. Of motions whose third differences are not small (the application stops it at once, or its places are
+// noisy), nothing is expected.
 #pragma once
 
 #include <LinearMath/btVector3.h>
@@ -41,7 +42,7 @@ struct FrameCurve {
 struct FrameMotion {
   btVector3 velocity{0, 0, 0};               ///< at the end of the last frame, per second
   btVector3 mean{0, 0, 0}, before{0, 0, 0};  ///< mean velocities of the last frame and of the one before
-  btScalar seconds = 0;                      ///< of the last frame
+  btScalar seconds = 0, secondsBefore = 0;   ///< of these frames
 
   /// The curve of the next frame.
   FrameCurve next(const btVector3& way, btScalar duration) {
@@ -54,10 +55,11 @@ struct FrameMotion {
     // Of a motion that is not smooth: no overshoot, as far as its places allow it (Fritsch and Carlson's bound).
     const btScalar most = 2 * way.length(), early = curve.early.length();
     if (!smooth && early > most) curve.early *= most / early;
-    velocity = smooth ? now + (now - mean) * (duration / (duration + seconds)) : now;
+    velocity = smooth ? endVelocity(now, duration) : now;
     curve.late = velocity * duration - way;
     before = mean;
     mean = now;
+    secondsBefore = seconds;
     seconds = duration;
     return curve;
   }
@@ -68,9 +70,18 @@ struct FrameMotion {
     stream(mean);
     stream(before);
     stream(seconds);
+    stream(secondsBefore);
   }
 
  private:
+  btVector3 endVelocity(const btVector3& now, btScalar duration) const {
+    const btScalar two = duration + seconds;
+    const btVector3 second = (now - mean) / two;
+    const btScalar earlier = seconds + secondsBefore;
+    if (!(earlier > 0)) return now + duration * second;
+    const btVector3 third = (second - (mean - before) / earlier) / (two + secondsBefore);
+    return now + duration * (second + two * third);
+  }
   bool isSmooth(const btVector3& now) const {
     constexpr btScalar kSmooth = btScalar(0.75);  // a swing of at least seven frames
     const btScalar fastest = std::max({now.length2(), mean.length2(), before.length2()});
