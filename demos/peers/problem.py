@@ -9,6 +9,7 @@ Each module in `adapters` has a class `Simulation` with these functions, which s
     simulation.add_soft(Body), add_rigid(Rigid)       each returns a handle
     simulation.start()                                what the peer compiles; afterwards nothing is added
     simulation.set_velocities(handle, rows)           of a soft body's nodes
+    simulation.move(handle, position)                 before a step: where it takes a rigid body that is moved
     simulation.step(dt)                               one frame, in the substeps of the setting
     simulation.nodes(handle), velocities(handle)      (nodes, 3)
     simulation.surface(handle)                        (vertices, 3): the skin, or the nodes without one
@@ -89,7 +90,8 @@ class Body:
 
 @dataclass(frozen=True)
 class Rigid:
-    """A rigid box or ball. mass 0: it does not move. rotation: x, y, z, w. friction: with soft bodies of friction 1."""
+    """A rigid box or ball. mass 0: it does not move, unless it is moved, by `move`. rotation: x, y, z, w. friction: with
+    soft bodies of friction 1."""
     shape: str  # "box" or "ball"
     size: object  # half extents, or the radius
     mass: float = 0.0
@@ -97,3 +99,4 @@ class Rigid:
     rotation: tuple = (0.0, 0.0, 0.0, 1.0)
     velocity: tuple = (0.0, 0.0, 0.0)
     friction: float = 0.5
+    moved: bool = False

@@ -16,6 +16,7 @@ from shapes import surface_of
 
 VERSION = mujoco.__version__
 NO_SKIN = "it attaches surfaces to a grid of cells of its own, and simulates that: none to given tets"
+HEAVY = 1e4  # kg
 RADIUS = 0.002  # of the vertices, in contact: that of their examples
 
 
@@ -38,7 +39,7 @@ class Simulation:
         self.substeps, self.cells, self.order = substeps, cells, order
         self.option = (f'<option gravity="{numbers(gravity)}" integrator="{integrator}" solver="{solver}" '
                        f'tolerance="{tolerance}" iterations="{iterations}" timestep="{1 / 60 / substeps:.12g}"/>')
-        self.parts, self.soft, self.rigid = [], [], []
+        self.parts, self.soft, self.rigid, self.targets = [], [], [], {}
 
     def add_plane(self, friction=1.0):
         self.parts.append(
@@ -81,8 +82,12 @@ class Simulation:
         x, y, z, w = rigid.rotation
         joint = "<freejoint/>" if rigid.mass else ""
         mass = f' mass="{rigid.mass}"' if rigid.mass else ""
+        if rigid.moved:  # bodies that are placed have no velocity in contact: heavy ones, on slides, are pushed
+            joint = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
+            mass = f' mass="{HEAVY}"'
         self.parts.append(
-            f'<body name="{name}" pos="{numbers(rigid.position)}" quat="{numbers((w, x, y, z))}">{joint}'
+            f'<body name="{name}" pos="{numbers(rigid.position)}" quat="{numbers((w, x, y, z))}" '
+            f'gravcomp="{int(rigid.moved)}">{joint}'
             f'<geom type="{shape}" size="{numbers(rigid.size)}"{mass} priority="1" '
             f'friction="{rigid.friction} 0.005 0.0001"/>'
             '</body>')
@@ -109,6 +114,9 @@ class Simulation:
         first = self.model.flex_vertadr[handle]
         return slice(first, first + self.model.flex_vertnum[handle])
 
+    def move(self, handle, position):
+        self.targets[handle] = np.asarray(position, float)
+
     def set_velocities(self, handle, rows):
         if self.cells is not None:
             raise Unsupported("velocities of a grid of cells are not those of the tets' nodes")
@@ -119,7 +127,13 @@ class Simulation:
 
     def step(self, dt):
         self.model.opt.timestep = dt / self.substeps
-        mujoco.mj_step(self.model, self.data, self.substeps)
+        for left in range(self.substeps, 0, -1):
+            for name, target in self.targets.items():
+                body = self.model.body(name)
+                at, way = self.model.jnt_dofadr[body.jntadr[0]], self.model.jnt_qposadr[body.jntadr[0]]
+                missing = target - body.pos - self.data.qpos[way : way + 3]
+                self.data.qvel[at : at + 3] = missing / (left * self.model.opt.timestep)
+            mujoco.mj_step(self.model, self.data)
         if self.data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:  # MuJoCo then starts again from rest
             raise FloatingPointError("MuJoCo found accelerations that are not finite, and reset itself")
         mujoco.mj_kinematics(self.model, self.data)

@@ -96,6 +96,8 @@ class Simulation:
             collider = rapier.Collider.ball(float(rigid.size))
         collider = collider.friction(rigid.friction).friction_combine_rule(rapier.CoefficientCombineRule.MULTIPLY)
         body = rapier.RigidBody.dynamic() if rigid.mass else rapier.RigidBody.fixed()
+        if rigid.moved:
+            body = rapier.RigidBody.kinematic_position_based()
         x, y, z, w = rigid.rotation
         length = np.linalg.norm((x, y, z))
         turn = np.array((x, y, z)) / length * 2 * np.arctan2(length, w) if length else np.zeros(3)
@@ -106,6 +108,9 @@ class Simulation:
 
     def start(self):
         pass
+
+    def move(self, handle, position):
+        self.world.rigid_bodies[handle].set_next_kinematic_translation(tuple(map(float, position)))
 
     def set_velocities(self, handle, rows):
         self.world.soft_bodies[handle].particle_velocities = np.asarray(rows, np.float32)

@@ -80,13 +80,16 @@ class Simulation:
             raise Unsupported("an ElasticBody has no contact")
         shape = ts.Shape.box(rigid.size) if rigid.shape == "box" else ts.Shape.sphere(rigid.size)
         body = self.world.add_rigid_body(shape, mass=rigid.mass, position=rigid.position, rotation=rigid.rotation,
-                                         friction=rigid.friction)
+                                         friction=rigid.friction, kinematic=rigid.moved)
         if rigid.mass:
             body.velocity = rigid.velocity
         return body
 
     def start(self):
         pass
+
+    def move(self, handle, position):
+        handle.position = position
 
     def set_velocities(self, handle, rows):
         handle.velocities = rows
