@@ -97,6 +97,32 @@ TEST(FrameCurve, OfABodyThatTurnsBackStaysNearItsPlaces) {
   }
 }
 
+/// An even motion, in frames that Bullet divides into two or three steps of a length that does not fit.
+TEST(FrameCurve, OfStepsThatDoNotFitIntoFramesHasNoLargerJumpsThanStraightPaths) {
+  constexpr btScalar kStep = btScalar(1) / 140;
+  FrameMotion motion;
+  btScalar left = 0, last = 0, lastStraight = 0, jump = 0, straightJump = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    left += kFrame;
+    const auto steps = static_cast<int>(left / kStep);
+    const btScalar duration = static_cast<btScalar>(steps) * kStep;
+    left -= duration;
+    const FrameCurve curve = motion.next(btVector3(kFrame, 0, 0), duration);
+    for (int k = 0; k < steps; ++k) {
+      const auto share = [&](int count) { return static_cast<btScalar>(count) / static_cast<btScalar>(steps); };
+      const btScalar velocity = (curve.at(share(k + 1)) - curve.at(share(k))).x() / kStep;
+      const btScalar straight = kFrame / duration;
+      if (frame > 5) {
+        jump = std::max(jump, std::abs(velocity - last));
+        straightJump = std::max(straightJump, std::abs(straight - lastStraight));
+      }
+      last = velocity;
+      lastStraight = straight;
+    }
+  }
+  EXPECT_LT(jump, 1.02 * straightJump);
+}
+
 TEST(FrameCurve, OfNoisyPlacesExpectsNothing) {
   FrameMotion motion;
   for (int frame = 0; frame < 40; ++frame) {

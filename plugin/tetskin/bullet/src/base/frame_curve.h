@@ -5,15 +5,15 @@
 // before, and ends with the one that the last three frames let expect. On straight paths between the places, velocities
 // would jump with each frame, in a single step: what is held would be torn off, or creep.
 //
-// A cubic in Hermite's form; its end velocity is that of the cubic through the last four places, by Newton's divided
-// differences. Of motions whose third differences are not small (the application stops it at once, or its places are
-// noisy), nothing is expected.
+// A cubic in Hermite's form; its end velocity is that of the cubic through the last four places. Of motions whose third
+// differences are not small (the application stops it at once, or its places are noisy), nothing is expected.
 #pragma once
 
 #include <LinearMath/btVector3.h>
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace tetskin::bullet_detail {
 
@@ -74,13 +74,15 @@ struct FrameMotion {
   }
 
  private:
+  /// Of frames of uneven length, that of the parabola through the last three places: where Bullet's steps do not fit
+  /// into the application's frames, its places are not where the steps' times would have them, and more would be noise.
   btVector3 endVelocity(const btVector3& now, btScalar duration) const {
-    const btScalar two = duration + seconds;
-    const btVector3 second = (now - mean) / two;
-    const btScalar earlier = seconds + secondsBefore;
-    if (!(earlier > 0)) return now + duration * second;
-    const btVector3 third = (second - (mean - before) / earlier) / (two + secondsBefore);
-    return now + duration * (second + two * third);
+    constexpr btScalar kEven = btScalar(0.01);
+    const btVector3 second = (now - mean) / (duration + seconds);
+    const btVector3 parabola = now + duration * second;
+    const auto isEven = [&](btScalar other) { return std::abs(other - duration) <= kEven * duration; };
+    if (!isEven(seconds) || !isEven(secondsBefore)) return parabola;
+    return parabola + (now - 2 * mean + before) / 3;
   }
   bool isSmooth(const btVector3& now) const {
     constexpr btScalar kSmooth = btScalar(0.75);  // a swing of at least seven frames
