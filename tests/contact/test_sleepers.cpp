@@ -358,7 +358,8 @@ TEST_P(Sleepers, AreCarriedFromTheFirstFrameByWhatIsMovedOncePerFrame) {
       ways[perFrame / 4] = place() - start;
       gaps[perFrame / 4] = gap();
     }
-    EXPECT_NEAR(ways[0], ways[1], 0.1 * static_cast<double>(velocity.length() + rate));
+    // Moved once per frame, the platform starts within a frame, and not at once: what rolls is set going otherwise.
+    EXPECT_NEAR(ways[0], ways[1], 0.2 * static_cast<double>(velocity.length() + rate));
     EXPECT_NEAR(gaps[0], gaps[1], 0.0005);
   }
 }
