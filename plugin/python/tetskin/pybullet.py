@@ -327,13 +327,33 @@ class Mirror:
         p.stepSimulation(physicsClientId=self.client)
         centres, positions, rotations = self._poses(p, self._bodies)
         parts = [(body, part) for body, parts in self._bodies.items() for part in parts]
-        for (_, part), position, rotation in zip(parts, positions, rotations):
-            part.rigid.position = position
-            part.rigid.rotation = rotation
-        self.world.step(parameters["fixedTimeStep"], substeps=substeps)
+        self._follow(parts, positions, rotations, positions - centres, parameters["fixedTimeStep"], substeps)
+
+    def _follow(self, parts: list[tuple[int, _Part]], positions: np.ndarray, rotations: np.ndarray, arms: np.ndarray,
+                seconds: float, substeps: int) -> None:
+        """Steps the world while the parts go there on straight paths, and takes the mean of the forces on them.
+
+        The world would take bodies that are moved once per frame along curves, which expect how they go on: forces that
+        act back on pybullet would follow what is expected, and swing.
+        """
+        if substeps < 1:
+            self.world.step(seconds, substeps=substeps)  # which says what is wrong with that
+        from_positions = np.array([part.rigid.position for _, part in parts]).reshape(-1, 3)
+        from_rotations = np.array([part.rigid.rotation for _, part in parts]).reshape(-1, 4)
+        turned = np.sum(from_rotations * rotations, axis=1, keepdims=True)
+        to_rotations = np.where(turned < 0, -rotations, rotations)
         self._forces = {}
-        for (body, part), arm in zip(parts, positions - centres):
-            self._add_force(body, part, arm)
+        for k in range(1, substeps + 1):
+            share = k / substeps
+            between = from_rotations + share * (to_rotations - from_rotations)
+            between /= np.linalg.norm(between, axis=1, keepdims=True)
+            places = from_positions + share * (positions - from_positions)
+            for (_, part), place, rotation in zip(parts, places, between):
+                part.rigid.position = place
+                part.rigid.rotation = rotation
+            self.world.step(seconds / substeps, substeps=1)
+            for (body, part), arm in zip(parts, arms):
+                self._add_force(body, part, arm, 1 / substeps)
 
     def _arrange(self) -> None:
         """Arrays of what is the same in all steps, by body: links with shapes, and of each part the link's row."""
@@ -374,13 +394,14 @@ class Mirror:
             states += [state[:2] for state in of_links]
         return states
 
-    def _add_force(self, body: int, part: _Part, arm: np.ndarray) -> None:
-        """Adds that of the world's last step on a part to its link's. arm: from the link's centre of mass to it."""
+    def _add_force(self, body: int, part: _Part, arm: np.ndarray, share: float) -> None:
+        """Adds a share of that of the world's last step on a part to its link's. arm: from the link's centre to it."""
         wrench = self.world.forces_on(part.rigid).total
         if not any(wrench.force) and not any(wrench.torque):
             return
         force, torque = self._forces.get((body, part.link), (np.zeros(3), np.zeros(3)))
-        self._forces[body, part.link] = (force + wrench.force, torque + wrench.torque + np.cross(arm, wrench.force))
+        self._forces[body, part.link] = (force + share * wrench.force,
+                                         torque + share * (wrench.torque + np.cross(arm, wrench.force)))
 
     def _give(self, p: Any) -> None:
         """Gives the links their forces, for pybullet's next step."""
