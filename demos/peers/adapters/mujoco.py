@@ -127,13 +127,15 @@ class Simulation:
 
     def step(self, dt):
         self.model.opt.timestep = dt / self.substeps
-        for left in range(self.substeps, 0, -1):
+        for left in range(self.substeps if self.targets else 0, 0, -1):
             for name, target in self.targets.items():
                 body = self.model.body(name)
                 at, way = self.model.jnt_dofadr[body.jntadr[0]], self.model.jnt_qposadr[body.jntadr[0]]
                 missing = target - body.pos - self.data.qpos[way : way + 3]
                 self.data.qvel[at : at + 3] = missing / (left * self.model.opt.timestep)
             mujoco.mj_step(self.model, self.data)
+        if not self.targets:
+            mujoco.mj_step(self.model, self.data, self.substeps)
         if self.data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:  # MuJoCo then starts again from rest
             raise FloatingPointError("MuJoCo found accelerations that are not finite, and reset itself")
         mujoco.mj_kinematics(self.model, self.data)

@@ -79,8 +79,6 @@ btTransform KinematicPath::now() const {
 void KinematicPath::leadTo(const btTransform& place, int frame, btScalar seconds) {
   assert(frame >= 0 && seconds > 0);
   if (done > steps) motion = turning = {};  // it has stood
-  // What the body did before tells nothing if it has stood for long, or has been moved once alone.
-  last = last > 0 || done > 1 ? done : 0;
   from = before;
   to = place;
   steps = std::max(frame, 1);
@@ -127,8 +125,9 @@ const KinematicPath& KinematicPaths::advance(const btRigidBody& body, btScalar s
     if (path.done <= kMaxSteps) ++path.done;
     return path;
   }
-  const int last = path.last > 0 || path.done > 1 ? path.done : 0;
-  path.leadTo(to, stepsOf(path.before, to, body, seconds, last), seconds);
+  // What the body did before tells nothing if it has stood for long, or has been moved once alone.
+  path.last = path.last > 0 || path.done > 1 ? path.done : 0;
+  path.leadTo(to, stepsOf(path.before, to, body, seconds, path.last), seconds);
   return path;
 }
 
