@@ -64,7 +64,7 @@ TEST(Teleports, GoOnWithTheMotionThere) {
     ASSERT_TRUE(there->teleport(motion).ok());
     const double energy = kineticEnergyOf(here->body());
     EXPECT_NEAR(kineticEnergyOf(there->body()), energy, 1e-5 * energy);
-    EXPECT_LT(farthest(there->body(), here->body(), motion), 2e-6);
+    EXPECT_LT(farthest(there->body(), here->body(), motion), 1e-5);
     step(world, 60);
     EXPECT_LT(farthest(there->body(), here->body(), motion), 2e-4) << damping;
   }
@@ -117,6 +117,7 @@ TEST(Teleports, RefuseWhatIsNoRigidMotion) {
   EXPECT_EQ(stateOf(body->body()), before);
 }
 
+/// Bullet's forces are not quite the same in all directions.
 TEST(Teleports, OfBulletsForcesTurnVelocities) {
   EmptyWorld world;
   world.deformable().setGravity(btVector3(0, 0, 0));
@@ -124,11 +125,14 @@ TEST(Teleports, OfBulletsForcesTurnVelocities) {
   options.forceModel = ForceModel::LinearElasticity;
   options.youngsModulus = 500;
   const auto here = thrownBar(world, options), there = thrownBar(world, options);
-  const btTransform motion(btQuaternion(btVector3(0, 1, 0), btScalar(getenv("T")?atof(getenv("T")):1.2)), btVector3(20, 0, 0));
+  const btTransform motion(btQuaternion(btVector3(0, 1, 0), btScalar(1.2)), btVector3(20, 0, 0));
   step(world, 5);
   ASSERT_TRUE(there->teleport(motion).ok());
-  step(world, 10);
-  EXPECT_LT(farthest(there->body(), here->body(), motion), 1e-3);
+  EXPECT_LT(farthest(there->body(), here->body(), motion), 1e-5);
+  for (int n = 0; n < here->body().m_nodes.size(); ++n) {
+    const btVector3 turned = motion.getBasis() * here->body().m_nodes[n].m_v;
+    EXPECT_LT((there->body().m_nodes[n].m_v - turned).length(), 1e-5);
+  }
 }
 
 // ---- reset

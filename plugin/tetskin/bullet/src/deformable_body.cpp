@@ -511,7 +511,8 @@ Status DeformableBody::reset() {
   auto* elastic = dynamic_cast<ElasticForce*>(impl_->elasticity.get());
   const bool same = own.createdAt().size() == static_cast<std::size_t>(own.m_nodes.size()) &&
                     restMeasureOf(own) == impl_->restMeasure && (!elastic || elastic->body().hasItsRestShapes());
-  if (!same) return invalid("reset: the body was scaled, or its nodes or tets changed, since it was added; add it anew");
+  if (!same)
+    return invalid("reset: the body was scaled, or its nodes or tets changed, since it was added; add it anew");
   impl_->wakeNeighbours();
   if (impl_->hasOwnSolver) Access<DeformableSolver>::reset(static_cast<DeformableSolver&>(impl_->solver), own);
   own.returnToStart();
