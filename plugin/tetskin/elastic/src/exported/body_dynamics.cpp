@@ -647,7 +647,8 @@ Eigen::Vector3d BodyDynamics<S>::placeOf(const HeldPoint<S>& point) const {
 
 template <class S>
 void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse,
-                                     std::vector<HeldPoint<S>>* held) {
+                                     const std::vector<std::array<double, 3>>& more, std::vector<HeldPoint<S>>* held) {
+  assert(more.empty() || more.size() == motions_.size());
   const auto componentOf = [&](const HeldPoint<S>& point) {
     return partOf_[matrix_.slotOf(static_cast<std::size_t>(point.nodes[0]))];
   };
@@ -661,6 +662,7 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   }
   const std::vector<ComponentMomentum> now = momentaNow();
   std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
+  for (std::size_t k = 0; k < more.size(); ++k) torques[k] = Eigen::Vector3d(more[k][0], more[k][1], more[k][2]);
   for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n), component = partOf_[slot];
     if (matrix_.massAt(slot) == S(0)) continue;

@@ -194,8 +194,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Removes from the solution the linear and the angular momentum that internal forces cannot cause, but a solve that
   /// is cut short does: see `ComponentMotion::excess`.
   /// impulse  by node, of everything else that has acted on it in the step; empty: nothing has
+  /// torques  by component, beside those of these impulses at the nodes; empty: none
   /// held     points where contacts resist the change; the caller changes their impulses accordingly
   void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {},
+                      const std::vector<std::array<double, 3>>& torques = {},
                       std::vector<HeldPoint<S>>* held = nullptr);
   /// Where something other than elasticity has rotated a component in this step, the solution gets that rotation as a
   /// chord: a straight motion would stretch a stiff body. Nothing changes for soft bodies, for which the effect is
