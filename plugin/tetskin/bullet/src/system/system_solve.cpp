@@ -31,7 +31,8 @@ constexpr double kAccepted = 3.0;
 constexpr double kLeftShare = 1e-3;
 /// Sum of the impulses' sizes on a body, over the size of their sum, from which on it counts as squeezed. The error
 /// that a solve leaves is a share of the impulses: given to a light body between heavy ones as a motion of its own, it
-/// shakes the body for ever, by tens of its sizes per second under 100 times its mass.
+/// shakes the body for ever, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold
+/// what spins around what it is joined to, as a tyre its hub, and impulses that were changed would turn the other body.
 constexpr double kSqueezed = 30.0;
 
 }  // namespace
@@ -351,13 +352,19 @@ void SystemSolve::giveMomentum() {
 
 void SystemSolve::removeMomentumError(Body& body) const {
   std::vector<std::array<double, 3>> impulses(body.dynamics().nodeCount(), {0.0, 0.0, 0.0});
+  std::vector<std::array<double, 3>> torques(body.dynamics().componentCount(), {0.0, 0.0, 0.0});
   Eigen::Vector3d net = Eigen::Vector3d::Zero();
   double pressed = 0.0;
   for (const BodyEnd& of : body.ends.list()) {
     const CarriedPoint& point = pointOf(of.row, of.index);
     const btVector3 impulse = btScalar(signOf(of.index)) * system_.rows[of.row]->impulse;
-    net += toEigen(impulse);
-    pressed += toEigen(impulse).norm();
+    const ContactRow& row = *system_.rows[of.row];
+    if (row.joined) {
+      addTorqueOfGap(body, of, impulse, torques);
+    } else {
+      net += toEigen(impulse);
+      pressed += toEigen(impulse).norm();
+    }
     for (std::uint32_t n = 0; n < point.count; ++n) {
       auto& to = impulses[static_cast<std::size_t>(point.nodes[n])];
       for (std::size_t k = 0; k < 3; ++k) {
@@ -368,12 +375,25 @@ void SystemSolve::removeMomentumError(Body& body) const {
   std::vector<HeldPoint> held;
   std::vector<ContactRow*> rows;
   if (pressed > kSqueezed * net.norm()) findHeld(body, held, rows);
-  body.dynamics().removeMomentum([&](std::size_t node) { return impulses[node]; }, &held);
+  body.dynamics().removeMomentum([&](std::size_t node) { return impulses[node]; }, torques, &held);
   for (std::size_t k = 0; k < held.size(); ++k) {
     const btVector3 change = toBullet({held[k].change[0], held[k].change[1], held[k].change[2]});
     rows[k]->impulse -= rows[k]->tangent * change;
     rows[k]->slip += change - rows[k]->normal.dot(change) * rows[k]->normal;
   }
+}
+
+/// What a joint gives to a rigid body acts at its point of that body, from which the soft body's may have gone astray:
+/// the two are to get opposite torques.
+void SystemSolve::addTorqueOfGap(const Body& body, const BodyEnd& end, const btVector3& impulse,
+                                 std::vector<std::array<double, 3>>& torques) const {
+  const ContactRow& row = *system_.rows[end.row];
+  if (end.index != 0 || row.constant || row.ends[1].rigid.unknown < 0) return;
+  const CarriedPoint& point = pointOf(end.row, 0);
+  const btVector3 gap = in_.rows.originOf(row).position - point.position(*body.solved.body);
+  const btVector3 torque = gap.cross(impulse);
+  std::array<double, 3>& to = torques[body.solved.dynamics->componentOf(static_cast<std::size_t>(point.nodes[0]))];
+  for (int k = 0; k < 3; ++k) to[static_cast<std::size_t>(k)] += static_cast<double>(torque[k]);
 }
 
 /// The contacts with rigid objects that resist a motion of the whole body. Contacts with soft bodies keep their

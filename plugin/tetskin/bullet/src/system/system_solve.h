@@ -107,6 +107,8 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   bool isHung(const Body& body) const;
   void giveMomentum();
   void removeMomentumError(Body& body) const;
+  void addTorqueOfGap(const Body& body, const BodyEnd& end, const btVector3& impulse,
+                      std::vector<std::array<double, 3>>& torques) const;
   void findHeld(const Body& body, std::vector<HeldPoint>& held, std::vector<ContactRow*>& rows) const;
 
   // The reduced unknowns; implemented in system_elimination.cpp.

@@ -111,15 +111,7 @@ void SoftContactRows::exclude(const btSoftBody& body) {
 std::unique_ptr<ContactBody> SoftContactRows::take(const btSoftBody& body) {
   const ContactBody* solved = find(body);
   if (!solved) return nullptr;
-  // Nothing stored in the step before may refer to the body.
-  const int id = solved->id;
-  for (auto* contacts : {&contacts_, &sleeping_}) {
-    const auto isOf = [&](const auto& contact) { return contact.body == &body || contact.object == &body; };
-    contacts->erase(std::remove_if(contacts->begin(), contacts->end(), isOf), contacts->end());
-  }
-  for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
-    kept = kept->first.first == id || kept->first.second == id ? pairStates_.erase(kept) : std::next(kept);
-  }
+  forgetPairs(*solved);
   const auto found = std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; });
   std::unique_ptr<ContactBody> taken = std::move(*found);
   bodies_.erase(found);
@@ -133,6 +125,34 @@ void SoftContactRows::includeReturned() {
     const std::unique_ptr<ContactBody> back = std::move(away_[k]);
     away_.erase(away_.begin() + static_cast<std::ptrdiff_t>(k));
     if (back->lives()) include(*back->body, back->shape, back->self);
+  }
+}
+
+/// Afterwards nothing stored in the step before refers to the body.
+void SoftContactRows::forgetPairs(const ContactBody& body) {
+  for (auto* contacts : {&contacts_, &sleeping_}) {
+    const auto isOf = [&](const auto& contact) { return contact.body == body.body || contact.object == body.body; };
+    contacts->erase(std::remove_if(contacts->begin(), contacts->end(), isOf), contacts->end());
+  }
+  for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
+    const auto [first, second] = kept->first;
+    kept = first == body.id || second == body.id ? pairStates_.erase(kept) : std::next(kept);
+  }
+}
+
+void SoftContactRows::forget(const btSoftBody& body) {
+  ContactBody* solved = find(body);
+  if (!solved) return;
+  forgetPairs(*solved);
+  solved->positions.clear();
+}
+
+void SoftContactRows::shift(const btVector3& by) {
+  for (const auto& solved : bodies_) {
+    for (btVector3& position : solved->positions) position += by;
+  }
+  for (auto* contacts : {&contacts_, &sleeping_}) {
+    for (PointContact& contact : *contacts) contact.position += by;
   }
 }
 

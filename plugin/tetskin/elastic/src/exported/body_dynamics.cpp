@@ -647,7 +647,8 @@ Eigen::Vector3d BodyDynamics<S>::placeOf(const HeldPoint<S>& point) const {
 
 template <class S>
 void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(std::size_t)>& impulse,
-                                     std::vector<HeldPoint<S>>* held) {
+                                     const std::vector<std::array<double, 3>>& more, std::vector<HeldPoint<S>>* held) {
+  assert(more.empty() || more.size() == motions_.size());
   const auto componentOf = [&](const HeldPoint<S>& point) {
     return partOf_[matrix_.slotOf(static_cast<std::size_t>(point.nodes[0]))];
   };
@@ -661,6 +662,7 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   }
   const std::vector<ComponentMomentum> now = momentaNow();
   std::vector<Eigen::Vector3d> impulses(motions_.size(), Eigen::Vector3d::Zero()), torques = impulses;
+  for (std::size_t k = 0; k < more.size(); ++k) torques[k] = Eigen::Vector3d(more[k][0], more[k][1], more[k][2]);
   for (std::size_t n = 0; impulse && n < nodeCount(); ++n) {
     const std::size_t slot = matrix_.slotOf(n), component = partOf_[slot];
     if (matrix_.massAt(slot) == S(0)) continue;
@@ -689,6 +691,27 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
     excess[partOf_[slot]].at(places_.at(slot), v);
     for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(v[k]);
   });
+}
+
+template <class S>
+void BodyDynamics<S>::carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  for (int k = 0; k < 9 && turns; ++k) rotation(k / 3, k % 3) = turn[static_cast<std::size_t>(k)];
+  const Eigen::Vector3d translation(by[0], by[1], by[2]);
+  places_.carry(turns, rotation, translation);
+  for (ComponentMotion& motion : motions_) motion.carry(rotation, translation);
+  if (!turns) return;
+  const std::vector<std::array<double, 9>> ofAll{turn};
+  if (history_.isKnown()) history_.turn(ofAll, partOf_);
+  turnWide(matrix_.solution(), ofAll, partOf_);
+  for (AlignedVector<S>* solution : guess_.known()) {
+    if (solution) turnWide(solution->data(), ofAll, partOf_);
+  }
+  const Eigen::Matrix<S, 3, 3> rounded = rotation.template cast<S>();
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+    Eigen::Map<Eigen::Matrix<S, 3, 1>> v(&velocities_[4 * slot]);
+    v = (rounded * v).eval();
+  }
 }
 
 /// Of the steps before, only what the next one would not forget.

@@ -102,6 +102,15 @@ class TETSKIN_ELASTIC_API BodyDynamics {
     return &points_[4 * slot];
   }
 
+  /// Takes the body and all that it remembers along a rigid motion, a rotation about the origin and a translation: the
+  /// next step goes on from the last one there. Points and velocities are the caller's: see `rounded`.
+  /// turn  a matrix by rows;  turns  false: it is that of no rotation
+  void carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by);
+  /// True if this is the node's position, rounded.
+  bool isAt(std::size_t node, const S* point) const { return places_.isAt(matrix_.slotOf(node), point, S(0)); }
+  /// The node's position, rounded: 3 scalars.
+  void rounded(std::size_t node, S* point) const { places_.round(matrix_.slotOf(node), point); }
+
   /// The node's position minus its point.
   void remainder(std::size_t node, S* out) const {
     const std::size_t slot = matrix_.slotOf(node);
@@ -185,8 +194,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Removes from the solution the linear and the angular momentum that internal forces cannot cause, but a solve that
   /// is cut short does: see `ComponentMotion::excess`.
   /// impulse  by node, of everything else that has acted on it in the step; empty: nothing has
+  /// torques  by component, beside those of these impulses at the nodes; empty: none
   /// held     points where contacts resist the change; the caller changes their impulses accordingly
   void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {},
+                      const std::vector<std::array<double, 3>>& torques = {},
                       std::vector<HeldPoint<S>>* held = nullptr);
   /// Where something other than elasticity has rotated a component in this step, the solution gets that rotation as a
   /// chord: a straight motion would stretch a stiff body. Nothing changes for soft bodies, for which the effect is
