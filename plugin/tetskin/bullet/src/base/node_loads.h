@@ -11,10 +11,6 @@
 #include <memory>
 #include <vector>
 
-namespace tetskin {
-class DeformableSolver;
-}
-
 namespace tetskin::bullet_detail {
 
 class WorldStream;
@@ -47,16 +43,3 @@ class NodeLoads : public RowSource {
 };
 
 }  // namespace tetskin::bullet_detail
-
-namespace tetskin {
-
-template <>
-struct Access<DeformableSolver> {
-  /// Applies forces in the next steps. Wakes the body, which is in the solver's world.
-  /// forces  world space, mass times length / s^2
-  /// steps   1 or more
-  static TETSKIN_BULLET_API void addLoads(DeformableSolver& solver, btSoftBody& body, bullet_detail::NodePushes forces,
-                                          int steps);
-};
-
-}  // namespace tetskin

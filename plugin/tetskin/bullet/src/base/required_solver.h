@@ -6,6 +6,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/base/node_loads.h>
 
 #include <string>
 #include <vector>
@@ -31,3 +32,19 @@ TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(btDeformableMultiBodyDyn
 TETSKIN_BULLET_API Status refusal(const std::string& subject, const std::vector<std::string>& changes);
 
 }  // namespace tetskin::bullet_detail
+
+namespace tetskin {
+
+template <>
+struct Access<DeformableSolver> {
+  /// `requireOwnSolve` of a world's solver, which knows the world from then on: in the middle of a step, it can tell
+  /// which objects are there.
+  static TETSKIN_BULLET_API void requireOwnSolve(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world);
+  /// Applies forces in the next steps. Wakes the body, which is in the solver's world.
+  /// forces  world space, mass times length / s^2
+  /// steps   1 or more
+  static TETSKIN_BULLET_API void addLoads(DeformableSolver& solver, btSoftBody& body, bullet_detail::NodePushes forces,
+                                          int steps);
+};
+
+}  // namespace tetskin

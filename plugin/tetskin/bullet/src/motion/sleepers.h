@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 class btOverlappingPairCache;
@@ -65,6 +66,11 @@ class Sleepers {
 
   /// Call it when a body falls asleep: stores what the application may change.
   void store(btSoftBody& body);
+
+  /// Forgets a body that has left the world.
+  void forget(const btSoftBody& body) { resting_.erase(&body); }
+  /// Forgets objects that are gone: who lies beside one wakes, even if another one has its address and its place.
+  void forget(const std::unordered_set<const btCollisionObject*>& gone);
 
   /// Writes or reads what is known of bodies at rest.
   void visitState(WorldStream& stream);

@@ -25,6 +25,9 @@ class Stillness {
   /// that does not stay begins to wait anew, and bodies that are solved for together wait for each other.
   void judge(SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
 
+  /// Forgets a body that has left the world.
+  void forget(const btSoftBody& body) { waits_.erase(&body); }
+
   /// Writes or reads which bodies wait.
   void visitState(WorldStream& stream);
 

@@ -64,12 +64,21 @@ struct DeformableSolver::Impl {
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
 
+  /// Bodies are again as the application has them, wherever the step has stopped.
+  void endStep(const btAlignedObjectArray<btSoftBody*>& world);
+
   /// Writes or reads the settings by which Bullet's world had the last step solved.
   void visitFlags(WorldStream& stream);
 
   // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  void know(btDeformableMultiBodyDynamicsWorld& world);
+  /// The world of these bodies, null if it is not known. A solver may outlive its world, and be used by another one.
+  btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
+  /// Call it before a step: what is kept by the addresses of objects that have left the world goes with them, as others
+  /// may have been created there.
+  void forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world);
   void numberAnew();
   /// Call it before Bullet detects contacts, and again when it has called the application since.
   void noteObjects();
@@ -129,9 +138,11 @@ struct DeformableSolver::Impl {
   StepClock clock;
   HiddenBodies hidden;
   StepObjects objects;
-  bool inSimulation = false;               ///< within `stepSimulation`, of a DeformableWorld alone
-  bool inStep = false;                     ///< from `gather` until positions have been integrated
-  std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
+  btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world, which may have been destroyed
+  const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
+  bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
+  bool inStep = false;                                  ///< from `gather` until positions have been integrated
+  std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it
   RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;
   bool deterministic = false;
