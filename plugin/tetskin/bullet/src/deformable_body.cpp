@@ -189,8 +189,7 @@ struct DeformableBody::Impl final : BodyOwner {
     if (status.ok()) apply(now);
     return status;
   }
-  void enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
-             std::vector<QuadraticShape> quadratic, const ObjectFilters& filters = {});
+  void enter(const ObjectFilters& filters = {});
   void visitState(WorldStream& stream) override;
   void describe(BuildStream& stream) override;
   btSoftBody& ownedBody() override { return *body; }
@@ -249,7 +248,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   impl->material = material;
   impl->weightPressure = pressure;
   std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
-  made->impl_->enter(options, rest.value(), std::move(quadratic).value());
+  made->impl_->makeElasticity(options, rest.value(), std::move(quadratic).value());
+  made->impl_->enter();
   if (options.configureWorld) {
     world.setUseProjection(true);
     if (options.implicit) world.setLineSearch(false);
@@ -259,10 +259,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
 }
 
 /// Adds the body and its forces to the world. What may run out of memory comes first: from then on, nothing throws.
-void DeformableBody::Impl::enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
-                                 std::vector<QuadraticShape> quadratic, const ObjectFilters& filters) {
-  forceModel = options.forceModel;
-  makeElasticity(options, linear, std::move(quadratic));
+void DeformableBody::Impl::enter(const ObjectFilters& filters) {
+  assert(elasticity);
   btDispatcher& dispatcher = *world.getDispatcher();
   if (forceModel == ForceModel::Corotated && !isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
     registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
@@ -278,6 +276,7 @@ void DeformableBody::Impl::enter(const SoftBodyOptions& options, const elastic_d
 
 void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
                                           std::vector<QuadraticShape> quadratic) {
+  forceModel = options.forceModel;
   switch (options.forceModel) {
     case ForceModel::LinearElasticity:
       makeElasticity<btDeformableLinearElasticityForce>();
@@ -347,7 +346,8 @@ std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& strea
   impl->material = parts.material;
   impl->weightPressure = parts.weightPressure;
   std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
-  made->impl_->enter(options, rest.value(), std::move(parts.quadratic), parts.filters);
+  made->impl_->makeElasticity(options, rest.value(), std::move(parts.quadratic));
+  made->impl_->enter(parts.filters);
   return made;
 }
 
