@@ -18,7 +18,7 @@ TEST(StateStream, GrowsAListAsItIsReadWhateverItsLengthSays) {
   std::vector<unsigned char> bytes(1000000, 1);
   const auto count = static_cast<std::uint32_t>(bytes.size() - sizeof(std::uint32_t));
   std::memcpy(bytes.data(), &count, sizeof count);
-  StateStream stream(bytes.data(), bytes.size());
+  StateStream stream(static_cast<const unsigned char*>(bytes.data()), bytes.size());
   std::vector<Large> list(3);
   const std::size_t before = allocatedBytes();
   resetPeak();
