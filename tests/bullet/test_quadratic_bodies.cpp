@@ -160,5 +160,41 @@ TEST(QuadraticBodies, AreRefusedWhereTheirTetsAreNoRefinement) {
   EXPECT_EQ(DeformableBody::add(world.deformable(), cage).status().code, StatusCode::InvalidOption);
 }
 
+/// The right end of a beam with edges of 5 cm after a quarter of a second, in lengths of the beam, created at a place
+/// along x and z.
+double fallOfABeamAt(double place, bool quadratic) {
+  const double edge = 0.05;
+  Cage cage;
+  cage.mesh = latticeCage(8, 1, 1, edge);
+  if (quadratic) cage = refineQuadratic(cage.mesh).value();
+  const std::vector<Eigen::Vector3d> rest = cage.mesh.nodes;
+  for (Eigen::Vector3d& p : cage.mesh.nodes) p += Eigen::Vector3d(place, 0, place);
+  tetskin::DeformableWorld world;
+  SoftBodyOptions options;
+  options.density = 100.0;
+  options.youngsModulus = 1e5;
+  options.pinned = [&](const Eigen::Vector3d& p) { return p.x() < place + 0.1 * edge; };
+  const auto body = DeformableBody::add(world, cage, options).value();
+  for (int k = 0; k < 60; ++k) world.stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+  double fallen = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    if (rest[n].x() < 7.9 * edge) continue;
+    fallen += rest[n].y() - static_cast<double>(body->body().m_nodes[static_cast<int>(n)].m_x.y());
+    ++count;
+  }
+  return fallen / count / (8 * edge);
+}
+
+/// In float, a position has 1 cm there: the rest shapes are the cage's all the same.
+TEST(QuadraticBodies, BendAsMuchWhereverTheyAreCreated) {
+  for (const bool quadratic : {true, false}) {
+    const double near = fallOfABeamAt(0.0, quadratic);
+    EXPECT_GT(near, 0.02);
+    for (const double place : {5e3, 6e4, 2e5}) {
+      EXPECT_NEAR(fallOfABeamAt(place, quadratic), near, 0.01 * near) << quadratic << ' ' << place;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetskin::test

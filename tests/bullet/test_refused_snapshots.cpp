@@ -148,6 +148,41 @@ TEST_F(RefusedSnapshots, HoldNeitherActionsNorGhostsNorJointsOfYourOwn) {
   scene.world.removeConstraint(&hinge);
 }
 
+TEST_F(RefusedSnapshots, HoldNoObjectWithoutShapeOrThatTheBroadphaseDoesNotKnow) {
+  const std::string last = "object " + std::to_string(scene.world.getNumCollisionObjects());
+  btCollisionObject bare;
+  bare.setCollisionShape(&scene.shape<btSphereShape>(btScalar(1)));
+  scene.world.getCollisionObjectArray().push_back(&bare);
+  expectNotSaved(last + " (it has no collision shape");
+  scene.world.getCollisionObjectArray().pop_back();
+  btCollisionShape* const shape = scene.bodies[2]->getCollisionShape();
+  scene.bodies[2]->setCollisionShape(nullptr);
+  expectNotSaved("object 2 (it has no collision shape");
+  scene.bodies[2]->setCollisionShape(shape);
+  EXPECT_TRUE(scene.world.restore(snapshot.data(), snapshot.size()).ok());
+}
+
+/// Bullet calls both hinges.
+TEST_F(RefusedSnapshots, NameAJointOfAnotherClass) {
+  RigidScene scenes[2];
+  for (RigidScene& with : scenes) {
+    btRigidBody& body = with.add(with.shape<btSphereShape>(btScalar(0.2)), 1, btVector3(0, 1, 0));
+    const btTransform frame = btTransform::getIdentity();
+    if (&with == scenes) {
+      with.join<btHingeConstraint>(body, frame);
+    } else {
+      with.join<btHingeAccumulatedAngleConstraint>(body, frame);
+    }
+    with.step();
+  }
+  expectRefused(scenes[1], saved(scenes[0].world), StatusCode::SnapshotMismatch, "its joint 0 is missing");
+}
+
+TEST_F(RefusedSnapshots, AreToldFromThoseOfADeterministicWorld) {
+  scene.world.deformableSolver().setDeterministic(true);
+  expectMismatch("it was deterministic, and this one is not, or the other way round");
+}
+
 TEST_F(RefusedSnapshots, HoldNoOtherConstraintSolver) {
   btMultiBodyConstraintSolver solver;
   scene.world.setConstraintSolver(&solver);

@@ -281,6 +281,27 @@ TEST_F(System, EndsOnABodyAddTheBlocksOfTheirRows) {
   EXPECT_LT((denseMatrix() - before).norm(), 1e-6 * before.norm());
 }
 
+TEST_F(System, EndsOfRowsThatAreApartAddNothing) {
+  begin(1e4);
+  BodyEnds ends(dynamics().matrix());
+  std::vector<ContactRow*> rows;
+  for (const int tet : {2, 2, 6}) (void)addRow(tet, false);
+  for (ContactRow& row : rows_.rows()) {
+    row.state = ContactRow::State::Apart;
+    row.tangent = btMatrix3x3::getIdentity();
+    ends.add(rows.size(), 0, rows_.originOf(row).points[0]);
+    rows.push_back(&row);
+  }
+  const MatrixXd before = denseMatrix();
+  ends.addTangents(rows);
+  EXPECT_EQ(denseMatrix(), before);
+  // One of two at the same nodes: it alone counts.
+  rows[1]->state = ContactRow::State::Sticks;
+  ends.addTangents(rows);
+  const MatrixXd w = weightsOf(rows_.originOf(*rows[1]).points[0]);
+  EXPECT_LT((denseMatrix() - before - w.transpose() * w).norm(), 1e-5 * before.norm());
+}
+
 /// What two nodes that no tet connects would have together, each of them has by itself.
 TEST_F(System, AnEndOnNodesThatNoTetConnectsResistsNoLess) {
   begin(1e4);

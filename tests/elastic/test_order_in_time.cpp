@@ -261,15 +261,13 @@ TEST(OrderInTime, ABodyThatIsStoppedStartsAgainAsOneThatHasNeverMoved) {
 TEST(OrderInTime, ReadingForcesAndEnergyChangesNothing) {
   const TetMesh cage = beamCage();
   ElasticBody<double> body = swinging(cage, 0.0), read = swinging(cage, 0.0);
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 60; ++k) {
     body.step(1.0 / 240.0, kDown);
     read.step(1.0 / 240.0, kDown);
     EXPECT_GT(read.energy(), 0.0);
     EXPECT_EQ(read.forces().size(), cage.nodeCount());
-  }
-  // But for the rotations with which those of the next step begin.
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    EXPECT_LT((pointsOf(read.positions())[n] - pointsOf(body.positions())[n]).norm(), 1e-5);
+    ASSERT_EQ(pointsOf(read.positions()), pointsOf(body.positions())) << k;
+    ASSERT_EQ(pointsOf(read.velocities()), pointsOf(body.velocities())) << k;
   }
 }
 

@@ -10,9 +10,12 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <initializer_list>
+#include <limits>
 #include <memory>
 #include <random>
 #include <string>
@@ -389,6 +392,41 @@ TEST(RecordedWorld, ThatIsDamagedIsRefusedOrHarmless) {
     Description cut = whole;
     cut.bytes.resize(size);
     EXPECT_FALSE(isBuiltAndStepped(std::move(cut))) << size;
+  }
+}
+
+/// A number that a shape is made with, where it is read, becomes none.
+TEST(RecordedWorld, OfAShapeThatIsNotFiniteIsRefused) {
+  const btScalar marked = btScalar(0.12345);
+  btStaticPlaneShape plane(btVector3(0, 1, 0), marked);
+  btConvexHullShape hull;
+  for (const btVector3& point : {btVector3(0, 0, 0), btVector3(1, 0, marked), btVector3(0, 1, 0), btVector3(0, 0, 1)}) {
+    hull.addPoint(point);
+  }
+  btSphereShape ball(1), markedBall(marked);
+  btCompoundShape compound;
+  compound.addChildShape(btTransform(btMatrix3x3::getIdentity(), btVector3(marked, 0, 0)), &ball);
+  btEmptyShape nothing;
+  nothing.setMargin(marked);
+  for (btCollisionShape* shape :
+       std::initializer_list<btCollisionShape*>{&plane, &hull, &markedBall, &compound, &nothing}) {
+    DeformableWorld world;
+    btRigidBody body(0, nullptr, shape);
+    world.addRigidBody(&body);
+    const Description whole(world);
+    ASSERT_TRUE(isBuiltAndStepped(whole)) << shape->getName();
+    int places = 0;
+    for (std::size_t k = 0; k + sizeof marked <= whole.bytes.size(); ++k) {
+      if (std::memcmp(&whole.bytes[k], &marked, sizeof marked) != 0) continue;
+      ++places;
+      Description damaged = whole;
+      const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
+      std::memcpy(&damaged.bytes[k], &nan, sizeof nan);
+      const Status refused = bullet_detail::RecordedWorld::build(damaged.bytes, damaged.store, {}).status();
+      EXPECT_NE(refused.message.find("not finite"), std::string::npos) << shape->getName() << ' ' << refused.message;
+    }
+    EXPECT_GT(places, 0) << shape->getName();
+    world.removeRigidBody(&body);
   }
 }
 

@@ -116,6 +116,62 @@ TEST(Replay, NamesTheFirstStepThatDiffersAndTheObject) {
   EXPECT_EQ(replay->report().object, name);
 }
 
+/// A motion state of the application, which moves when it is asked, and may not be told.
+struct PathThatAdvances : btMotionState {
+  void getWorldTransform(btTransform& to) const override {
+    ++asked;
+    to = btTransform(btMatrix3x3::getIdentity(), btVector3(btScalar(0.01 * asked), btScalar(0.1), 0));
+  }
+  void setWorldTransform(const btTransform&) override { ++told; }
+  mutable int asked = 0;
+  int told = 0;
+};
+
+/// A ball that falls onto a plate which such a path moves.
+struct OnPath {
+  explicit OnPath(DeformableWorld& to) : world(to) {
+    for (btRigidBody* body : {&plate, &ball}) world.addRigidBody(body);
+    plate.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    plate.setActivationState(DISABLE_DEACTIVATION);
+    ball.setWorldTransform(btTransform(btMatrix3x3::getIdentity(), btVector3(0, btScalar(0.5), 0)));
+    path.asked = 0;  // Bullet asks as it makes the plate
+  }
+  ~OnPath() {
+    for (btRigidBody* body : {&plate, &ball}) world.removeRigidBody(body);
+  }
+  DeformableWorld& world;
+  PathThatAdvances path;
+  btBoxShape plateShape{btVector3(1, btScalar(0.1), 1)};
+  btSphereShape ballShape{btScalar(0.2)};
+  btRigidBody plate{0, &path, &plateShape}, ball{1, nullptr, &ballShape, btVector3(1, 1, 1)};
+};
+
+TEST(Replay, NeitherAsksNorTellsMotionStatesAndARecorderAsksNoMoreThanBullet) {
+  const TemporaryFile file("path");
+  std::vector<std::uint64_t> hashes;
+  {
+    DeformableWorld world;
+    OnPath scene(world);
+    const auto recorder = Recorder::start(world, file.path).value();
+    for (int frame = 0; frame < 30; ++frame) {
+      recorder->step(kFrame, 4, kFrame / 4);
+      hashes.push_back(stateHash(world));
+    }
+    EXPECT_EQ(scene.path.asked, 30);
+    EXPECT_EQ(scene.path.told, 0);
+  }
+  DeformableWorld world;
+  OnPath scene(world);
+  const auto replay = Replay::open(world, file.path).value();
+  for (const std::uint64_t hash : hashes) {
+    ASSERT_TRUE(replay->step()) << replay->status().message << replay->report().object;
+    ASSERT_EQ(stateHash(world), hash);
+  }
+  EXPECT_EQ(scene.path.asked, 0);
+  EXPECT_EQ(scene.path.told, 0);
+  EXPECT_EQ(scene.plate.getMotionState(), &scene.path);
+}
+
 TEST(Replay, OfAFileThatWasCutShortPlaysItsWholeSteps) {
   const TemporaryFile file("cut");
   record("drag", file.path, 12);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
+#include <tetskin/bullet/src/record/record_file.h>
 #include <tetskin/bullet/src/record/state_patch.h>
 
 #include <random>
@@ -58,6 +59,16 @@ TEST(StatePatch, ThatDoesNotFitIsRefused) {
     refused += !applied(damaged, from);
   }
   EXPECT_GT(refused, 50);
+}
+
+/// Lengths in a file have 32 bits. In places, each byte that differs may have a head and a gap before it.
+TEST(StatePatch, OfAStateThatIsRecordableFitsIntoAFile) {
+  Bytes from(26000), to = from;
+  for (std::size_t k = 0; k < to.size(); k += 14) to[k] = 1;
+  EXPECT_LT(differenceOf(from, to).size(), 2 * from.size());
+  EXPECT_TRUE(isRecordable(0x7FFFFFFFu));
+  EXPECT_FALSE(isRecordable(0x80000000u));
+  EXPECT_FALSE(isRecordable(std::uint64_t{5} << 30));
 }
 
 }  // namespace

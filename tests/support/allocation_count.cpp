@@ -18,6 +18,7 @@
 namespace {
 
 std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads allocate, too
+std::atomic<long long> untilFailure{-1};                     // allocations; below 0: none fails
 
 /// The block's size is stored in front of the block, in as many bytes as the block's alignment needs.
 constexpr std::size_t kOrdinary = alignof(std::max_align_t);
@@ -56,6 +57,7 @@ void* allocate(std::size_t size, std::size_t alignment) noexcept {
   return memory + alignment;
 }
 void* allocateOrThrow(std::size_t size, std::size_t alignment) {
+  if (untilFailure >= 0 && untilFailure-- == 0) throw std::bad_alloc();
   void* block = allocate(size, alignment);
   if (!block) throw std::bad_alloc();
   return block;
@@ -112,6 +114,13 @@ std::size_t peakBytes() {
 }
 void resetPeak() {
   peak = bytes.load();
+}
+
+AllocationThatFails::AllocationThatFails(std::size_t after) {
+  untilFailure = static_cast<long long>(after);
+}
+AllocationThatFails::~AllocationThatFails() {
+  untilFailure = -1;
 }
 
 }  // namespace tetskin::test

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
 
 namespace tetskin::test {
 
@@ -13,5 +14,30 @@ std::size_t allocationCount();
 std::size_t allocatedBytes();
 std::size_t peakBytes();
 void resetPeak();
+
+/// As long as this exists, or until it has happened, the allocation that comes after so many others finds no memory.
+class AllocationThatFails {
+ public:
+  explicit AllocationThatFails(std::size_t after);
+  ~AllocationThatFails();
+  AllocationThatFails(const AllocationThatFails&) = delete;
+  AllocationThatFails& operator=(const AllocationThatFails&) = delete;
+};
+
+/// Calls it with ever later allocations that fail, until none does. Returns how often it has failed.
+/// whenFailed  called after each failure
+template <class Call, class WhenFailed>
+int failEachAllocation(Call&& call, WhenFailed&& whenFailed) {
+  for (std::size_t after = 0;; after += 1 + after / 16) {
+    try {
+      const AllocationThatFails failing(after);
+      call();
+      return static_cast<int>(after);
+    } catch (const std::bad_alloc&) {
+    }
+    whenFailed();
+    if (after > 100000) return -1;
+  }
+}
 
 }  // namespace tetskin::test

@@ -206,9 +206,7 @@ struct DeformableBody::Impl final : BodyOwner {
     if (status.ok()) apply(now);
     return status;
   }
-  void enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
-             std::vector<QuadraticShape> quadratic);
-  void addForces();
+  void enter(const ObjectFilters& filters = {});
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void visitState(WorldStream& stream) override;
   void describe(BuildStream& stream) override;
@@ -267,45 +265,42 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   if (Status status = checkStiffness(*body, material); !status.ok()) return status;
   if (Status status = checkGravity(world.getGravity(), *body); !status.ok()) return status;
 
-  world.addSoftBody(body.get());
+  auto impl = std::make_unique<Impl>(world, solver, std::move(body));
+  for (const double m : masses) impl->masses.push_back(static_cast<btScalar>(m));
+  impl->material = material;
+  impl->weightPressure = pressure;
+  std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
+  made->impl_->makeElasticity(options, rest.value(), std::move(quadratic).value());
+  made->impl_->enter();
   if (options.configureWorld) {
     world.setUseProjection(true);
     if (options.implicit) world.setLineSearch(false);
     if (options.implicit) world.setImplicit(*options.implicit);
   }
-
-  auto impl = std::make_unique<Impl>(world, solver, std::move(body));
-  for (const double m : masses) impl->masses.push_back(static_cast<btScalar>(m));
-  impl->material = material;
-  impl->weightPressure = pressure;
-  impl->enter(options, rest.value(), std::move(quadratic).value());
-  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
+  return made;
 }
 
-void DeformableBody::Impl::enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
-                                 std::vector<QuadraticShape> quadratic) {
-  forceModel = options.forceModel;
-  restMeasure = restMeasureOf(*body);
-  makeElasticity(options, linear, std::move(quadratic));
-  addForces();
-}
-
-/// The body is in the world.
-void DeformableBody::Impl::addForces() {
+/// Adds the body, unless it is there, and its forces to the world. What may run out of memory comes first: from then on,
+/// nothing throws.
+void DeformableBody::Impl::enter(const ObjectFilters& filters) {
+  assert(elasticity);
+  btDispatcher& dispatcher = *world->getDispatcher();
+  if (forceModel == ForceModel::Corotated && !isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
+    registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
+  }
+  if (!isInAWorld()) world->addSoftBody(body.get(), filters.group, filters.mask);
   for (btDeformableLagrangianForce* force : {static_cast<btDeformableLagrangianForce*>(&gravity), elasticity.get()}) {
     force->setIndices(solver->getIndices());
   }
   addToList(*list, gravity, *elasticity, *body);
   if (forceModel != ForceModel::Corotated) return;
-  static_cast<DeformableSolver*>(solver)->requireOwnSolve();
-  btDispatcher& dispatcher = *world->getDispatcher();
-  if (!isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
-    registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
-  }
+  Access<DeformableSolver>::requireOwnSolve(static_cast<DeformableSolver&>(*solver), *world);
 }
 
 void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
                                           std::vector<QuadraticShape> quadratic) {
+  forceModel = options.forceModel;
+  restMeasure = restMeasureOf(*body);
   switch (options.forceModel) {
     case ForceModel::LinearElasticity:
       makeElasticity<btDeformableLinearElasticityForce>();
@@ -370,13 +365,14 @@ std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& strea
   for (std::size_t k = 0; k < parts.restNodes.size(); k += 3) {
     rest.value().nodes.emplace_back(parts.restNodes[k], parts.restNodes[k + 1], parts.restNodes[k + 2]);
   }
-  world.addSoftBody(body.get(), parts.filters.group, parts.filters.mask);
   auto impl = std::make_unique<DeformableBody::Impl>(world, solverOf(world), std::move(body));
   impl->masses = std::move(parts.masses);
   impl->material = parts.material;
   impl->weightPressure = parts.weightPressure;
-  impl->enter(options, rest.value(), std::move(parts.quadratic));
-  return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
+  std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
+  made->impl_->makeElasticity(options, rest.value(), std::move(parts.quadratic));
+  made->impl_->enter(parts.filters);
+  return made;
 }
 
 ForceModel DeformableBody::forceModel() const {
@@ -445,8 +441,7 @@ Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
   if (Status status = checkSolver(solverOf(world), options); !status.ok()) return status;
   if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
   impl_->moveTo(world);
-  if (!isThere) world.addSoftBody(impl_->body.get(), impl_->filters.group, impl_->filters.mask);
-  impl_->addForces();
+  impl_->enter(impl_->filters);
   body().activate();
   return {};
 }

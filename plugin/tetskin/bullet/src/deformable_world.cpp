@@ -47,6 +47,25 @@ int partsOf(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds) {
   return static_cast<int>(std::min(std::ceil(btSqrt(enough / smallest)), kMostParts));
 }
 
+/// As long as this exists, the world is within `stepSimulation`; an exception that leaves it ends the step, too.
+template <class SolverImpl>
+class Simulation {
+ public:
+  Simulation(SolverImpl& solver, const btSoftBodyArray& bodies)
+      : solver_(solver), bodies_(bodies), isInner_(solver.inSimulation), running_(solver.inSimulation) {}
+  ~Simulation() {
+    if (solver_.inStep && !isInner_) solver_.endStep(bodies_);
+  }
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+ private:
+  SolverImpl& solver_;
+  const btSoftBodyArray& bodies_;
+  const bool isInner_;  ///< a callback has called it
+  const Running running_;
+};
+
 }  // namespace
 
 struct DeformableWorldObjects::Impl {
@@ -70,6 +89,7 @@ DeformableWorldObjects::~DeformableWorldObjects() = default;
 DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
     : btDeformableMultiBodyDynamicsWorld(&impl_->dispatcher, &impl_->broadphase, &impl_->constraintSolver,
                                          &impl_->configuration, &impl_->deformableSolver) {
+  impl_->deformableSolver.impl_->know(*this);
   setGravity(options.gravity);
   setUseProjection(true);
   impl_->deformableSolver.setThreads(options.threads);
@@ -85,7 +105,7 @@ DeformableWorld::~DeformableWorld() = default;
 /// Between the steps of one call, a world is in no state of its own: Bullet knows how many steps are left, and clears
 /// the application's forces after the last one.
 int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
-  const Running simulation(impl_->deformableSolver.impl_->inSimulation);
+  const Simulation simulation(*impl_->deformableSolver.impl_, getSoftBodyArray());
   // Bullet would add it to its clock, or divide by it.
   if (!(timeStep >= 0 && timeStep < BT_LARGE_FLOAT) ||
       (maxSubSteps > 0 && !(fixedTimeStep > 0 && fixedTimeStep < BT_LARGE_FLOAT))) {

@@ -65,11 +65,11 @@ Result<std::unique_ptr<SoftContacts>> SoftContacts::add(btDeformableMultiBodyDyn
   if (Status status = checkSoftOptions(options); !status.ok()) return status;
   DeformableSolver* solver = deformableSolverOf(world);
   if (!solver) return refusal("contact between soft bodies", {kUseDeformableSolver});
-  solver->requireOwnSolve();
-  auto impl = std::make_unique<Impl>(world, *solver, options);
-  impl->force.setIndices(solver->getIndices());
-  solver->getLagrangianForceArray()->push_back(&impl->force);
-  return std::unique_ptr<SoftContacts>(new SoftContacts(std::move(impl)));
+  Access<DeformableSolver>::requireOwnSolve(*solver, world);
+  std::unique_ptr<SoftContacts> made(new SoftContacts(std::make_unique<Impl>(world, *solver, options)));
+  made->impl_->force.setIndices(solver->getIndices());
+  solver->getLagrangianForceArray()->push_back(&made->impl_->force);
+  return made;
 }
 
 Status SoftContacts::add(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {

@@ -126,7 +126,7 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
   distances.slack = static_cast<btScalar>(kSearchSlack * size);
   distances.thickness = static_cast<btScalar>(kMeshThickness * size);
   distances.beyondNodes = beyondNodes(patches) * static_cast<btScalar>(size);
-  deformableSolverOf(body)->requireOwnSolve();
+  Access<DeformableSolver>::requireOwnSolve(*deformableSolverOf(body), world);
   return std::unique_ptr<SurfaceContact>(
       new SurfaceContact(std::make_unique<Impl>(world, body, std::move(patches), distances)));
 }

@@ -12,10 +12,6 @@
 #include <memory>
 #include <vector>
 
-namespace tetskin {
-class DeformableSolver;
-}
-
 namespace tetskin::bullet_detail {
 
 class WorldStream;
@@ -50,24 +46,3 @@ class NodeLoads : public RowSource {
 };
 
 }  // namespace tetskin::bullet_detail
-
-namespace tetskin {
-
-template <>
-struct Access<DeformableSolver> {
-  /// Applies forces in the next steps. Wakes the body, which is in the solver's world.
-  /// forces  world space, mass times length / s^2
-  /// steps   1 or more
-  static TETSKIN_BULLET_API void addLoads(DeformableSolver& solver, btSoftBody& body, bullet_detail::NodePushes forces,
-                                          int steps);
-  /// Forgets all that the solver remembers of a body, and what acts on it for a number of steps. Not within a step.
-  static void reset(DeformableSolver& solver, btSoftBody& body);
-  /// Forgets what the body has touched, and how it has slept; takes the nodes that are led along. Not within a step.
-  /// moveNodes  moves the nodes of the body
-  static void teleport(DeformableSolver& solver, btSoftBody& body, const bullet_detail::Placement& placement,
-                       const std::function<void()>& moveNodes);
-  /// Moves everything in the world. Not within a step.
-  static void shift(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
-};
-
-}  // namespace tetskin

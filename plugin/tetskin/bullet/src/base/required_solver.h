@@ -6,7 +6,10 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/base/node_loads.h>
+#include <tetskin/bullet/src/base/placement.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,3 +34,27 @@ TETSKIN_BULLET_API DeformableSolver* deformableSolverOf(btDeformableMultiBodyDyn
 TETSKIN_BULLET_API Status refusal(const std::string& subject, const std::vector<std::string>& changes);
 
 }  // namespace tetskin::bullet_detail
+
+namespace tetskin {
+
+template <>
+struct Access<DeformableSolver> {
+  /// `requireOwnSolve` of a world's solver, which knows the world from then on: in the middle of a step, it can tell
+  /// which objects are there.
+  static TETSKIN_BULLET_API void requireOwnSolve(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world);
+  /// Applies forces in the next steps. Wakes the body, which is in the solver's world.
+  /// forces  world space, mass times length / s^2
+  /// steps   1 or more
+  static TETSKIN_BULLET_API void addLoads(DeformableSolver& solver, btSoftBody& body, bullet_detail::NodePushes forces,
+                                          int steps);
+  /// Forgets all that the solver remembers of a body, and what acts on it for a number of steps. Not within a step.
+  static void reset(DeformableSolver& solver, btSoftBody& body);
+  /// Forgets what the body has touched, and how it has slept; takes the nodes that are led along. Not within a step.
+  /// moveNodes  moves the nodes of the body
+  static void teleport(DeformableSolver& solver, btSoftBody& body, const bullet_detail::Placement& placement,
+                       const std::function<void()>& moveNodes);
+  /// Moves everything in the world. Not within a step.
+  static void shift(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
+};
+
+}  // namespace tetskin

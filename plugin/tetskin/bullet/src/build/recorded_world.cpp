@@ -200,7 +200,7 @@ void RecordedWorld::visit(BuildStream& stream, const std::vector<const SourceBui
       stream.fail();
     }
   }
-  std::vector<btCollisionObject*> order(stream.length(0));
+  std::vector<btCollisionObject*> order(stream.length(0, sizeof(int)));
   for (std::size_t k = 0; k < order.size() && !stream.failed(); ++k) {
     int number = 0;
     stream(number);

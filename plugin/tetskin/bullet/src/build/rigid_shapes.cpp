@@ -5,9 +5,12 @@
 #include <btBulletCollisionCommon.h>
 #include <tetskin/bullet/src/build/rigid_shapes.h>
 #include <tetskin/bullet/src/state/bullet_members.h>
+#include <tetskin/bullet/src/state/saved_tree.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -17,6 +20,14 @@ struct CompoundScaling {
   friend btVector3 btCompoundShape::*memberOf(CompoundScaling);
 };
 template struct Opened<CompoundScaling, &btCompoundShape::m_localScaling>;
+struct CompoundLow {
+  friend btVector3 btCompoundShape::*memberOf(CompoundLow);
+};
+template struct Opened<CompoundLow, &btCompoundShape::m_localAabbMin>;
+struct CompoundHigh {
+  friend btVector3 btCompoundShape::*memberOf(CompoundHigh);
+};
+template struct Opened<CompoundHigh, &btCompoundShape::m_localAabbMax>;
 struct PlaneNormal {
   friend btVector3 btStaticPlaneShape::*memberOf(PlaneNormal);
 };
@@ -27,6 +38,12 @@ namespace {
 /// Compounds within compounds, in a file that is damaged.
 constexpr int kMaxDepth = 16;
 
+void requireFinite(BuildStream& stream, std::initializer_list<btVector3> numbers) {
+  for (const btVector3& v : numbers) {
+    for (int k = 0; k < 3; ++k) stream.require(std::isfinite(v[k]), "a shape is not finite");
+  }
+}
+
 /// What a convex shape is beyond its class: exact, as its constructor's arguments would not be.
 struct ConvexSize {
   btVector3 dimensions{0, 0, 0}, scaling{1, 1, 1};
@@ -36,10 +53,7 @@ struct ConvexSize {
     stream(dimensions);
     stream(scaling);
     stream(margin);
-    for (int k = 0; k < 3; ++k) {
-      stream.require(std::isfinite(dimensions[k]) && std::isfinite(scaling[k]), "a shape is not finite");
-    }
-    stream.require(std::isfinite(margin), "a shape is not finite");
+    requireFinite(stream, {dimensions, scaling, btVector3(margin, 0, 0)});
   }
 };
 
@@ -127,6 +141,7 @@ std::shared_ptr<btCollisionShape> buildPlane(BuildStream& stream, const btStatic
   btVector3 scaling = shape ? shape->getLocalScaling() : btVector3(1, 1, 1);
   btScalar constant = shape ? shape->getPlaneConstant() : 0, margin = shape ? shape->getMargin() : 0;
   visitAll(stream, normal, scaling, constant, margin);
+  requireFinite(stream, {normal, scaling, btVector3(constant, margin, 0)});
   if (shape || stream.failed()) return nullptr;
   auto made = std::make_shared<btStaticPlaneShape>(normal, constant);
   (*made).*memberOf(PlaneNormal()) = normal;  // the constructor has normalized it, which may change its last digit
@@ -141,7 +156,10 @@ std::shared_ptr<btCollisionShape> buildHull(BuildStream& stream, const btConvexH
   for (int k = 0; shape && k < shape->getNumPoints(); ++k) points.push_back(shape->getUnscaledPoints()[k]);
   ConvexSize size;
   if (shape) size = sizeOf(*shape);
-  stream.each(points, [&](btVector3& point) { stream(point); });
+  stream.each(points, [&](btVector3& point) {
+    stream(point);
+    requireFinite(stream, {point});
+  });
   size.visit(stream);
   if (shape || stream.failed()) return nullptr;
   auto made = std::make_shared<btConvexHullShape>();
@@ -228,6 +246,7 @@ std::shared_ptr<btCollisionShape> buildMesh(BuildStream& stream, const btBvhTria
     quantized = shape->usesQuantizedAabbCompression();
   }
   visitAll(stream, scaling, margin, quantized);
+  requireFinite(stream, {scaling, btVector3(margin, 0, 0)});
   stream.copied([&](BuildStream& bytes) {
     bytes.each(data->parts, [&](MeshPart& part) {
       bytes.array(part.positions);
@@ -264,18 +283,46 @@ std::shared_ptr<btCollisionShape> buildSharedShape(BuildStream& stream, const bt
   return stream.shared(SharedKind::CollisionShape, shape, [&] { return buildAnyShape(stream, shape, depth); });
 }
 
+/// Returns false if it is no tree of the children.
+bool takeTree(const SavedTree& nodes, btCompoundShape& shape) {
+  std::vector<char> taken(static_cast<std::size_t>(shape.getNumChildShapes()), 0);
+  const auto takes = [&](int child) {
+    return child < shape.getNumChildShapes() && !taken[static_cast<std::size_t>(child)]++;
+  };
+  if (!isTree(nodes, takes) || std::count(taken.begin(), taken.end(), 0) > 0) return false;
+  makeTree(nodes, *shape.getDynamicAabbTree(), [&](int child, btDbvtNode& leaf) {
+    leaf.data = nullptr;
+    leaf.dataAsInt = child;
+    shape.getChildList()[child].m_node = &leaf;
+  });
+  return true;
+}
+
 std::shared_ptr<btCollisionShape> buildCompound(BuildStream& stream, const btCompoundShape* shape, int depth) {
   auto data = std::make_shared<CompoundData>();
   bool tree = shape && shape->getDynamicAabbTree();
   btVector3 scaling = shape ? shape->getLocalScaling() : btVector3(1, 1, 1);
   btScalar margin = shape ? shape->getMargin() : 0;
-  visitAll(stream, tree, scaling, margin);
+  btVector3 low(0, 0, 0), high(0, 0, 0);
+  SavedTree nodes;
+  if (shape) {
+    low = shape->*memberOf(CompoundLow());
+    high = shape->*memberOf(CompoundHigh());
+    if (tree)
+      readTree(
+          shape->getDynamicAabbTree()->m_root, [](const btDbvtNode& leaf) { return leaf.dataAsInt; }, nodes);
+  }
+  visitAll(stream, tree, scaling, margin, low, high);
+  visitTree(stream, nodes);
+  for (const SavedNode& node : nodes) requireFinite(stream, {node.low, node.high});
+  requireFinite(stream, {scaling, low, high, btVector3(margin, 0, 0)});
   const std::size_t count = stream.length(shape ? static_cast<std::size_t>(shape->getNumChildShapes()) : 0);
   if (!shape) data->shape = std::make_unique<btCompoundShape>(tree);
   for (std::size_t k = 0; k < count && !stream.failed(); ++k) {
     const int child = static_cast<int>(k);
     btTransform place = shape ? shape->getChildTransform(child) : btTransform::getIdentity();
     stream(place);
+    requireFinite(stream, {place.getBasis()[0], place.getBasis()[1], place.getBasis()[2], place.getOrigin()});
     std::shared_ptr<btCollisionShape> made =
         buildSharedShape(stream, shape ? shape->getChildShape(child) : nullptr, depth + 1);
     if (!made) continue;
@@ -286,13 +333,19 @@ std::shared_ptr<btCollisionShape> buildCompound(BuildStream& stream, const btCom
   data->shape->setMargin(margin);
   // The children, and their places, are scaled already.
   (*data->shape).*memberOf(CompoundScaling()) = scaling;
+  // Children that have been moved since have left another tree, and their box is the application's to renew.
+  (*data->shape).*memberOf(CompoundLow()) = low;
+  (*data->shape).*memberOf(CompoundHigh()) = high;
+  if (tree && !takeTree(nodes, *data->shape)) stream.fail();
+  if (stream.failed()) return nullptr;
   return {data, data->shape.get()};
 }
 
 std::shared_ptr<btCollisionShape> buildEmpty(BuildStream& stream, const btCollisionShape* shape) {
   btScalar margin = shape ? shape->getMargin() : 0;
   stream(margin);
-  if (shape) return nullptr;
+  requireFinite(stream, {btVector3(margin, 0, 0)});
+  if (shape || stream.failed()) return nullptr;
   auto made = std::make_shared<btEmptyShape>();
   made->setMargin(margin);
   return made;

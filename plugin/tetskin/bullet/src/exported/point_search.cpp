@@ -24,10 +24,10 @@ PointSearch::PointSearch(btDeformableMultiBodyDynamicsWorld& world, BodyWithTree
           world.getDispatcher(), body, PointCollider(std::move(patches), distances.slack), distances.thickness)),
       marginBefore_(body.margin()) {
   assert(!(distances.margin < 0) && !(distances.beyondNodes < 0));
+  registerContactAlgorithms(static_cast<btCollisionDispatcher&>(*world.getDispatcher()));
   body.getCollisionShape()->setMargin(distances.margin);
   body.setReach(distances.margin + distances.beyondNodes);
   body.setSurfaceContacts(contacts_);
-  registerContactAlgorithms(static_cast<btCollisionDispatcher&>(*world.getDispatcher()));
   forgetPairs(body, world);
   body.activate();
 }

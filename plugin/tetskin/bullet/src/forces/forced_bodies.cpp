@@ -8,14 +8,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace tetskin::bullet_detail {
 namespace {
 
-/// By how much a tet may differ from its nodes at rest, as a share of its size, because of rounding: of positions in
-/// the world, where the body was created; and of the rest shapes of tets, from one to the next.
-constexpr double kRoundedCage = 0.1, kRoundedTets = 3e-5;
+/// By how much a tet may differ from its nodes at rest, as a share of its size, because of rounding: of the rest shapes
+/// of tets, from one to the next; and of positions in the world, where the body was created, which may be anywhere.
+constexpr double kRoundedTets = 3e-5, kRoundedCage = std::numeric_limits<double>::infinity();
 
 /// 0: it is pinned.
 btScalar massOf(const btSoftBody::Node& node) {

@@ -260,6 +260,15 @@ void Sleepers::shift(const btVector3& by, const std::vector<const btSoftBody*>& 
   }
 }
 
+void Sleepers::forget(const std::unordered_set<const btCollisionObject*>& gone) {
+  for (auto sleeper = resting_.begin(); sleeper != resting_.end();) {
+    for (Neighbour& neighbour : sleeper->second.neighbours) {
+      if (gone.count(neighbour.object) > 0) neighbour.object = nullptr;
+    }
+    sleeper = gone.count(sleeper->first) > 0 ? resting_.erase(sleeper) : std::next(sleeper);
+  }
+}
+
 void Sleepers::visitState(WorldStream& stream) {
   stream.byObject(resting_, [&](const btCollisionObject&, RestingBody& sleeper) {
     stream.object(sleeper.body);

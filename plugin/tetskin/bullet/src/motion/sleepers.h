@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 class btOverlappingPairCache;
@@ -66,12 +67,15 @@ class Sleepers {
   /// Call it when a body falls asleep: stores what the application may change.
   void store(btSoftBody& body);
 
-  void forget(const btSoftBody& body) { resting_.erase(&body); }
   /// Moves what is known of where things are, after these have been moved by as much.
   /// changed  the bodies that were changed in their sleep before
   void shift(const btVector3& by, const std::vector<const btSoftBody*>& changed);
   /// The bodies that were changed in their sleep since it was stored how they sleep.
   std::vector<const btSoftBody*> changed() const;
+  /// Forgets a body that has left the world.
+  void forget(const btSoftBody& body) { resting_.erase(&body); }
+  /// Forgets objects that are gone: who lies beside one wakes, even if another one has its address and its place.
+  void forget(const std::unordered_set<const btCollisionObject*>& gone);
 
   /// Writes or reads what is known of bodies at rest.
   void visitState(WorldStream& stream);

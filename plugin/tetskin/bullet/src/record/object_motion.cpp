@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <LinearMath/btDefaultMotionState.h>
+#include <tetskin/bullet/src/base/opened_member.h>
+#include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/record/object_motion.h>
 #include <tetskin/core/src/base/hash.h>
 
+#include <algorithm>
+
 namespace tetskin::bullet_detail {
+
+/// `setMotionState` asks the new one.
+struct MotionStateMember {
+  friend btMotionState* btRigidBody::*memberOf(MotionStateMember);
+};
+template struct Opened<MotionStateMember, &btRigidBody::m_optionalMotionState>;
+
 namespace {
 
 /// 0 and -0 are different: they are other bits.
@@ -40,14 +52,24 @@ std::uint32_t hashOfMotion(const btCollisionObject& object) {
   return hash.mixed();
 }
 
-/// Visits the motion states of kinematic bodies, in the order of the world.
-template <class Visit>
-void forKinematicTargets(btDeformableMultiBodyDynamicsWorld& world, Visit&& visit) {
+btRigidBody* kinematicAt(btDeformableMultiBodyDynamicsWorld& world, int index) {
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-  for (int k = 0; k < objects.size(); ++k) {
-    btRigidBody* rigid = btRigidBody::upcast(objects[k]);
-    if (rigid && rigid->isKinematicObject() && rigid->getMotionState()) visit(*rigid->getMotionState());
-  }
+  btRigidBody* rigid = index >= 0 && index < objects.size() ? btRigidBody::upcast(objects[index]) : nullptr;
+  return rigid && rigid->isKinematicObject() ? rigid : nullptr;
+}
+
+struct Target {
+  int index = 0;  ///< in the world
+  btTransform place = btTransform::getIdentity();
+};
+
+void visitTargets(WorldStream& stream, std::vector<Target>& targets) {
+  stream.each(targets, [&](Target& target) { stream(target.index), stream(target.place); });
+}
+
+btDefaultMotionState* asPlace(btMotionState* state) {
+  static const btMotionState* const sample = new btDefaultMotionState;
+  return state && isOfSameClass(*state, *sample) ? static_cast<btDefaultMotionState*>(state) : nullptr;
 }
 
 }  // namespace
@@ -72,26 +94,45 @@ std::string nameOf(const btCollisionObject& object) {
 }
 
 Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world) {
-  Bytes targets;
-  forKinematicTargets(world, [&](btMotionState& state) {
-    btTransform target;
-    state.getWorldTransform(target);
-    unsigned char bytes[sizeof target];
-    WorldStream stream(world, bytes, sizeof bytes);
-    stream(target);
-    targets.insert(targets.end(), bytes, bytes + stream.count());
-  });
-  return targets;
+  std::vector<Target> targets;
+  for (int k = 0; k < world.getNumCollisionObjects(); ++k) {
+    const btRigidBody* body = kinematicAt(world, k);
+    if (body && body->getMotionState()) targets.push_back({k, body->getWorldTransform()});
+  }
+  if (targets.empty()) return {};
+  WorldStream counted(world);
+  visitTargets(counted, targets);
+  Bytes bytes(counted.count());
+  WorldStream written(world, bytes.data(), bytes.size());
+  visitTargets(written, targets);
+  return bytes;
 }
 
-bool setKinematicTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& targets) {
-  WorldStream stream(world, targets.data(), targets.size());
-  forKinematicTargets(world, [&](btMotionState& state) {
-    btTransform target;
-    stream(target);
-    if (!stream.failed()) state.setWorldTransform(target);
-  });
-  return !stream.failed() && stream.count() == targets.size();
+LedToTargets::LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& bytes) : world_(world) {
+  std::vector<Target> targets;
+  WorldStream stream(world, bytes.data(), bytes.size());
+  if (!bytes.empty()) visitTargets(stream, targets);
+  fits_ = !stream.failed() && stream.count() == bytes.size() &&
+          std::all_of(targets.begin(), targets.end(), [&](const Target& t) { return kinematicAt(world, t.index); });
+  if (!fits_) return;
+  for (const Target& target : targets) {
+    btRigidBody& body = *kinematicAt(world, target.index);
+    body.getWorldTransform() = target.place;  // as Bullet does it: `setWorldTransform` counts as a change
+    btDefaultMotionState* place = asPlace(body.getMotionState());
+    if (place) place->setWorldTransform(target.place);
+  }
+  for (int k = 0; k < world.getNumCollisionObjects(); ++k) {
+    btRigidBody* body = kinematicAt(world, k);
+    if (!body || !body->getMotionState()) continue;
+    silent_.emplace_back(body, std::exchange(body->*memberOf(MotionStateMember()), nullptr));
+  }
+}
+
+LedToTargets::~LedToTargets() {
+  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+  for (const auto& [body, state] : silent_) {
+    if (objects.findLinearSearch(body) < objects.size()) body->*memberOf(MotionStateMember()) = state;
+  }
 }
 
 }  // namespace tetskin::bullet_detail

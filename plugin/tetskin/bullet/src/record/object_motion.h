@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tetskin::bullet_detail {
@@ -19,10 +20,25 @@ std::vector<std::uint32_t> hashesOfMotion(btDeformableMultiBodyDynamicsWorld& wo
 /// The object's place in the world, and what it is.
 std::string nameOf(const btCollisionObject& object);
 
-/// Where the motion states of kinematic bodies are: Bullet reads them in the step, no snapshot has them. Empty without
-/// such bodies.
+/// Where the motion states of kinematic bodies have put them in the step before: Bullet asks these as a step begins,
+/// and no snapshot has the answer. Empty without such bodies.
 Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world);
-/// Sets them. Returns false if they are of other bodies.
-bool setKinematicTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& targets);
+
+/// As long as this exists, kinematic bodies go to recorded targets: their motion states, which are the application's,
+/// are not asked, and not told. Those of Bullet's own class, which do nothing but store a place, get the new one.
+class LedToTargets {
+ public:
+  LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& bytes);
+  ~LedToTargets();
+  LedToTargets(const LedToTargets&) = delete;
+  LedToTargets& operator=(const LedToTargets&) = delete;
+  /// False if the targets are of other bodies: then nothing has been changed.
+  bool fits() const { return fits_; }
+
+ private:
+  btDeformableMultiBodyDynamicsWorld& world_;
+  std::vector<std::pair<btRigidBody*, btMotionState*>> silent_;  ///< kinematic bodies, with their motion states
+  bool fits_ = false;
+};
 
 }  // namespace tetskin::bullet_detail

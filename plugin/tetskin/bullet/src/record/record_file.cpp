@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 namespace tetskin::bullet_detail {
 namespace {
 
 /// The first bytes of a file; the digits are those of the format's version.
-constexpr char kMagic[] = "tetskin replay 01\n";
+constexpr char kMagic[] = "tetskin replay 02\n";
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 
 struct ChunkHead {
@@ -82,6 +83,9 @@ Status RecordWriter::open(const std::string& path) {
 }
 
 Status RecordWriter::write(ChunkKind kind, const Bytes& bytes) {
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+    return {StatusCode::NotSaved, path_ + ": the world has a part of more than 4 GB, which a file cannot hold"};
+  }
   const auto number = static_cast<std::uint32_t>(kind);
   const ChunkHead head{number, static_cast<std::uint32_t>(bytes.size()), hashOfChunk(number, bytes)};
   file_.write(reinterpret_cast<const char*>(&head), sizeof head);

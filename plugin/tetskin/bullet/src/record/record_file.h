@@ -59,11 +59,17 @@ struct WorldBuildUp {
   static std::optional<WorldBuildUp> fromBytes(const Bytes& bytes);
 };
 
+/// Lengths in files have 32 bits: the difference of two states, with its heads, is less than twice as long as one.
+constexpr bool isRecordable(std::uint64_t bytes) {
+  return bytes < 0x80000000u;
+}
+
 class RecordWriter {
  public:
   /// Error: FileNotWritable.
   Status open(const std::string& path);
-  /// Writes it at once, so that it is in the file when the program crashes. Error: FileNotWritable.
+  /// Writes it at once, so that it is in the file when the program crashes. Errors: FileNotWritable; NotSaved: it is
+  /// too large.
   Status write(ChunkKind kind, const Bytes& bytes);
 
  private:

@@ -16,6 +16,7 @@ struct Recorder::Impl {
         snapshotEvery(static_cast<std::size_t>(options.snapshotEvery)),
         writesBuildUp(options.buildUp) {}
 
+  void save(Bytes& state);
   void writeBuildUp();
   void before(StepChunk& step);
   void after(StepChunk& step);
@@ -27,16 +28,23 @@ struct Recorder::Impl {
   RecordWriter file;
   CopyStore store;
   Bytes ended, now;  ///< the states after the last step, and at present
-  Bytes targets;     ///< of kinematic bodies, before the last step
   Status status;
   std::size_t steps = 0;
 };
+
+void Recorder::Impl::save(Bytes& state) {
+  status = saveInto(world, state);
+  if (!status.ok() || isRecordable(state.size())) return;
+  status = {StatusCode::NotSaved, "the state of this world takes more than 2 GB, which no file of a run can hold"};
+}
 
 /// Where it cannot be said, the application builds the world that plays the file.
 void Recorder::Impl::writeBuildUp() {
   WorldBuildUp buildUp;
   Result<Bytes> described = describeWorld(world, store);
-  if (described.ok()) {
+  if (described.ok() && !isRecordable(described.value().size())) {
+    buildUp.reason = "more than 2 GB to describe";
+  } else if (described.ok()) {
     buildUp.described = std::move(described).value();
   } else {
     buildUp.reason = described.status().message;
@@ -50,7 +58,7 @@ void Recorder::Impl::writeBuildUp() {
 
 /// What has changed since the last step; or the whole state, where it is time for that.
 void Recorder::Impl::before(StepChunk& step) {
-  status = saveInto(world, now);
+  save(now);
   if (!status.ok()) return;
   const bool changed = !areOfOneWorld(ended, now);
   if (writesBuildUp && (changed || steps == 0)) writeBuildUp();
@@ -61,14 +69,14 @@ void Recorder::Impl::before(StepChunk& step) {
     step.change = differenceOf(ended, now);
     if (steps % snapshotEvery == 0) write(ChunkKind::Snapshot, ended);
   }
-  step.kinematic = kinematicTargets(world);
 }
 
 void Recorder::Impl::after(StepChunk& step) {
+  step.kinematic = kinematicTargets(world);
   step.motion = hashesOfMotion(world);
   write(ChunkKind::Step, step.toBytes());
   ++steps;
-  if (status.ok()) status = saveInto(world, ended);
+  if (status.ok()) save(ended);
 }
 
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -80,7 +88,8 @@ Result<std::unique_ptr<Recorder>> Recorder::start(btDeformableMultiBodyDynamicsW
     return Status{StatusCode::InvalidOption, "RecorderOptions::snapshotEvery must be at least 1"};
   }
   auto impl = std::make_unique<Impl>(world, options);
-  if (Status saved = saveInto(world, impl->ended); !saved.ok()) return saved;
+  impl->save(impl->ended);
+  if (!impl->status.ok()) return impl->status;
   if (Status opened = impl->file.open(path); !opened.ok()) return opened;
   impl->write(ChunkKind::Description, Bytes(options.description.begin(), options.description.end()));
   if (!impl->status.ok()) return impl->status;

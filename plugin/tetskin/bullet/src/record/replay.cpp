@@ -38,6 +38,7 @@ struct Replay::Impl {
   Status obey(const Chunk& chunk);
   Status build(const Bytes& chunk);
   Status prepare(const StepChunk& step);
+  Status make(const StepChunk& step);
   void compareState(const Bytes& recorded);
   void compare(const StepChunk& step);
 
@@ -141,8 +142,16 @@ Status Replay::Impl::prepare(const StepChunk& step) {
     }
   }
   changed = false;
-  if (setKinematicTargets(world(), step.kinematic)) return {};
-  return malformed(path, "other bodies are kinematic before step " + std::to_string(next));
+  return {};
+}
+
+Status Replay::Impl::make(const StepChunk& step) {
+  const LedToTargets led(world(), step.kinematic);
+  if (!led.fits()) return malformed(path, "other bodies are kinematic in step " + std::to_string(next));
+  world().stepSimulation(static_cast<btScalar>(step.seconds), step.maxSubSteps,
+                         static_cast<btScalar>(step.fixedTimeStep));
+  ++next;
+  return {};
 }
 
 void Replay::Impl::compareState(const Bytes& recorded) {
@@ -204,10 +213,8 @@ bool Replay::step() {
   impl.report.cutShort = impl.file.isCutShort();
   if (!step || impl.report.differs) return false;
   impl.status = impl.prepare(*step);
+  if (impl.status.ok()) impl.status = impl.make(*step);
   if (!impl.status.ok()) return false;
-  impl.world().stepSimulation(static_cast<btScalar>(step->seconds), step->maxSubSteps,
-                              static_cast<btScalar>(step->fixedTimeStep));
-  ++impl.next;
   impl.compare(*step);
   impl.status = saveInto(impl.world(), impl.ended);
   return true;

@@ -292,6 +292,15 @@ SolvedBody& SolverBodies::bodyOf(int node) {
   return *std::prev(after);
 }
 
+void SolverBodies::forget(const std::unordered_set<const btCollisionObject*>& gone) {
+  for (auto& [body, kept] : persistent_) {
+    auto& anchors = kept.frictionAnchors;
+    anchors.erase(std::remove_if(anchors.begin(), anchors.end(),
+                                 [&](const FrictionAnchor& anchor) { return gone.count(anchor.object) > 0; }),
+                  anchors.end());
+  }
+}
+
 /// Everything else is made anew by the next step, whose list of bodies counts as another one.
 void SolverBodies::visitState(WorldStream& stream) {
   if (stream.restoring()) {

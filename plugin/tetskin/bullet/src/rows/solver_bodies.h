@@ -11,6 +11,7 @@
 #include <cassert>
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 class btDeformableBackwardEulerObjective;
@@ -125,6 +126,8 @@ class SolverBodies {
   /// Null if it is not awake.
   SolvedBody* find(const btSoftBody* body);
 
+  /// Forgets where points have stuck to objects that are gone.
+  void forget(const std::unordered_set<const btCollisionObject*>& gone);
   /// Writes or reads what is known of bodies from the step before.
   void visitState(WorldStream& stream);
 

@@ -179,6 +179,12 @@ void KinematicPaths::shift(const btVector3& by) {
   }
 }
 
+void KinematicPaths::forget(const std::unordered_set<const btCollisionObject*>& gone) {
+  for (auto path = paths_.begin(); path != paths_.end();) {
+    path = gone.count(path->first) > 0 ? paths_.erase(path) : std::next(path);
+  }
+}
+
 /// The rest of a path is set as the next step begins.
 void KinematicPaths::visitState(WorldStream& stream) {
   stream.byObject(paths_, [&](const btRigidBody&, KinematicPath& path) {

@@ -12,6 +12,7 @@
 #include <tetskin/bullet/src/base/frame_curve.h>
 
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace tetskin::bullet_detail {
@@ -54,6 +55,8 @@ class KinematicPaths {
   /// Takes the path of a kinematic body to this step.
   const KinematicPath& advance(const btRigidBody& body, btScalar seconds);
 
+  /// Forgets objects that are gone.
+  void forget(const std::unordered_set<const btCollisionObject*>& gone);
   /// Moves the paths, after the bodies have been moved by as much.
   void shift(const btVector3& by);
 

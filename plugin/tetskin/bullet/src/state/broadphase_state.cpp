@@ -5,9 +5,8 @@
 // step. Therefore the trees are put back node by node, with all counters.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <tetskin/bullet/src/state/bullet_members.h>
+#include <tetskin/bullet/src/state/saved_tree.h>
 #include <tetskin/bullet/src/state/world_state.h>
-
-#include <new>
 
 namespace tetskin::bullet_detail {
 namespace {
@@ -18,15 +17,11 @@ struct SavedProxy {
   int id = 0, group = 0, mask = 0, stage = 0;
   btVector3 low{0, 0, 0}, high{0, 0, 0};
 };
-struct SavedNode {
-  int object = -1;  ///< of a leaf; -1: a node with two children, which follow it
-  btVector3 low{0, 0, 0}, high{0, 0, 0};
-};
 /// All of it, so that it is checked before the first change.
 struct SavedBroadphase {
   std::vector<SavedProxy> proxies;  ///< of the objects
   std::vector<int> stages[kFixedStage + 1];
-  std::vector<SavedNode> trees[2];
+  SavedTree trees[2];
 };
 
 btDbvtProxy& proxyOf(const btCollisionObject& object) {
@@ -34,13 +29,6 @@ btDbvtProxy& proxyOf(const btCollisionObject& object) {
 }
 int objectOf(const btDbvtProxy& proxy) {
   return static_cast<const btCollisionObject*>(proxy.m_clientObject)->getWorldArrayIndex();
-}
-
-void readTree(const btDbvtNode& node, std::vector<SavedNode>& to) {
-  to.push_back({node.isleaf() ? objectOf(*static_cast<const btDbvtProxy*>(node.data)) : -1, node.volume.Mins(),
-                node.volume.Maxs()});
-  if (node.isleaf()) return;
-  for (const btDbvtNode* child : node.childs) readTree(*child, to);
 }
 
 SavedBroadphase read(const btDbvtBroadphase& broadphase, const btCollisionObjectArray& objects) {
@@ -53,9 +41,8 @@ SavedBroadphase read(const btDbvtBroadphase& broadphase, const btCollisionObject
   for (int s = 0; s <= kFixedStage; ++s) {
     for (const btDbvtProxy* p = broadphase.m_stageRoots[s]; p; p = p->links[1]) saved.stages[s].push_back(objectOf(*p));
   }
-  for (int k = 0; k < 2; ++k) {
-    if (broadphase.m_sets[k].m_root) readTree(*broadphase.m_sets[k].m_root, saved.trees[k]);
-  }
+  const auto objectAt = [](const btDbvtNode& leaf) { return objectOf(*static_cast<const btDbvtProxy*>(leaf.data)); };
+  for (int k = 0; k < 2; ++k) readTree(broadphase.m_sets[k].m_root, objectAt, saved.trees[k]);
   return saved;
 }
 
@@ -75,37 +62,14 @@ bool isWhole(const SavedBroadphase& saved, std::size_t objects) {
     }
   }
   for (int k = 0; k < 2; ++k) {
-    std::size_t missing = saved.trees[k].empty() ? 0 : 1;  // nodes whose parents have been seen
-    for (const SavedNode& node : saved.trees[k]) {
-      if (missing-- == 0) return false;
-      if (node.object < 0) {
-        missing += 2;
-        continue;
-      }
-      const int stage = stageOf(node.object);
-      if (stage < 0 || (stage == kFixedStage) != (k == 1) || leaf[static_cast<std::size_t>(node.object)]++)
-        return false;
+    const bool whole = isTree(saved.trees[k], [&](int object) {
+      const int stage = stageOf(object);
       ++leaves;
-    }
-    if (missing > 0) return false;
+      return stage >= 0 && (stage == kFixedStage) == (k == 1) && !leaf[static_cast<std::size_t>(object)]++;
+    });
+    if (!whole) return false;
   }
   return lists == objects && leaves == objects;
-}
-
-btDbvtNode* makeTree(const SavedNode*& from, btDbvtNode* parent, const btCollisionObjectArray& objects) {
-  const SavedNode& saved = *from++;
-  auto* node = new (btAlignedAlloc(sizeof(btDbvtNode), 16)) btDbvtNode();  // as btDbvt does, which frees it
-  node->parent = parent;
-  node->volume = btDbvtVolume::FromMM(saved.low, saved.high);
-  node->childs[1] = nullptr;
-  if (saved.object >= 0) {
-    btDbvtProxy& proxy = proxyOf(*objects[saved.object]);
-    node->data = &proxy;
-    proxy.leaf = node;
-  } else {
-    for (btDbvtNode*& child : node->childs) child = makeTree(from, node, objects);
-  }
-  return node;
 }
 
 void write(const SavedBroadphase& saved, btDbvtBroadphase& broadphase, const btCollisionObjectArray& objects) {
@@ -131,11 +95,11 @@ void write(const SavedBroadphase& saved, btDbvtBroadphase& broadphase, const btC
     }
   }
   for (int k = 0; k < 2; ++k) {
-    btDbvt& tree = broadphase.m_sets[k];
-    tree.clear();
-    const SavedNode* from = saved.trees[k].data();
-    if (!saved.trees[k].empty()) tree.m_root = makeTree(from, nullptr, objects);
-    tree.m_leaves = static_cast<int>((saved.trees[k].size() + 1) / 2);
+    makeTree(saved.trees[k], broadphase.m_sets[k], [&](int object, btDbvtNode& leaf) {
+      btDbvtProxy& proxy = proxyOf(*objects[object]);
+      leaf.data = &proxy;
+      proxy.leaf = &leaf;
+    });
   }
 }
 
@@ -153,9 +117,7 @@ void visitBroadphase(WorldStream& stream) {
   }
   stream.each(saved.proxies, [&](SavedProxy& p) { visitAll(stream, p.id, p.group, p.mask, p.stage, p.low, p.high); });
   for (std::vector<int>& stage : saved.stages) stream.array(stage);
-  for (std::vector<SavedNode>& tree : saved.trees) {
-    stream.each(tree, [&](SavedNode& node) { visitAll(stream, node.object, node.low, node.high); });
-  }
+  for (SavedTree& tree : saved.trees) visitTree(stream, tree);
   if (stream.restoring()) {
     if (stream.failed() || !isWhole(saved, static_cast<std::size_t>(objects.size()))) return stream.fail();
     write(saved, broadphase, objects);

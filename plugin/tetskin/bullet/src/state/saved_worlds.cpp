@@ -77,6 +77,9 @@ std::string unsavedPart(World& world) {
   for (int k = 0; k < objects.size(); ++k) {
     if (objects[k]->getInternalType() & ~kSaved)
       return "object " + std::to_string(k) + " (a ghost object, or your own)";
+    if (!objects[k]->getCollisionShape() || !objects[k]->getBroadphaseHandle()) {
+      return "object " + std::to_string(k) + " (it has no collision shape, or the world's broadphase does not know it)";
+    }
   }
   for (int k = 0; k < world.getNumConstraints(); ++k) {
     if (!isSaved(*world.getConstraint(k))) return "joint " + std::to_string(k) + " (none of Bullet's classes)";

@@ -71,6 +71,7 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
   const std::vector<btDeformableLagrangianForce*> forces = forcesOf(solver);
   const char* const kOthers = "other soft bodies, contacts of soft bodies, springs or welds were there";
   std::unordered_set<const btSoftBody*> solvedHere;
+  stream.same(solver.deterministic(), "it was deterministic, and this one is not, or the other way round");
   stream.same(forces.size(), kOthers);
   for (btDeformableLagrangianForce* force : forces) {
     stream.same(kindOf(force), kOthers);
@@ -118,6 +119,7 @@ void visitRecord(WorldStream& stream, const std::weak_ptr<RecordedForces>& inSol
 
 void visitSolver(WorldStream& stream, DeformableSolver& solver) {
   DeformableSolver::Impl& impl = *solver.impl_;
+  if (stream.saving()) impl.forgetRemovedObjects(&stream.world());
   impl.visitFlags(stream);
   impl.bodies.visitState(stream);
   impl.rows.visitState(stream);
@@ -127,6 +129,7 @@ void visitSolver(WorldStream& stream, DeformableSolver& solver) {
   impl.stillness.visitState(stream);
   impl.rigids.paths().visitState(stream);
   visitRecord(stream, impl.recorded);
+  if (stream.restoring()) impl.objects.note(&stream.world());
 }
 
 void visitSolverSettings(WorldStream& stream, DeformableSolver& solver) {

@@ -5,6 +5,7 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/src/state/bullet_members.h>
 #include <tetskin/bullet/src/state/world_directory.h>
+#include <tetskin/bullet/src/state/world_state.h>
 #include <tetskin/core/src/base/hash.h>
 
 #include <algorithm>
@@ -191,8 +192,8 @@ WorldDirectory::WorldDirectory(World& world) {
   }
   for (int k = 0; k < world.getNumConstraints(); ++k) {
     btTypedConstraint& joint = *world.getConstraint(k);
-    joints_.push_back({joint.getConstraintType(), indexOf(world, &joint.getRigidBodyA()),
-                       indexOf(world, &joint.getRigidBodyB()), 0, 0});
+    joints_.push_back(
+        {classOfJoint(joint), indexOf(world, &joint.getRigidBodyA()), indexOf(world, &joint.getRigidBodyB()), 0, 0});
   }
   for (int k = 0; k < world.getNumMultiBodyConstraints(); ++k) {
     btMultiBodyConstraint& joint = *world.getMultiBodyConstraint(k);
@@ -276,13 +277,15 @@ bool WorldDirectory::listsFit() const {
 }
 
 Status WorldDirectory::find(WorldDirectory now) {
-  const bool all = findById(now);
-  bool same = all && objects_.size() == now.objects_.size();
-  for (std::size_t k = 0; same && k < objects_.size(); ++k) same = isSame(now, k);
+  bool all = findById(now) && objects_.size() == now.objects_.size(), same = all;
+  for (std::size_t k = 0; all && k < objects_.size(); ++k) {
+    all = objects_[k].type == now.objects_[static_cast<std::size_t>(objectAt_[k])].type;
+    same = same && all && isSame(now, k);
+  }
   if (!same) {
     // Built in the same order, but after other objects had come and gone.
     const Status byOrder = differenceOfObjects(now, false);
-    if (!byOrder.ok()) return all && objects_.size() == now.objects_.size() ? differenceOfObjects(now, true) : byOrder;
+    if (!byOrder.ok()) return all ? differenceOfObjects(now, true) : byOrder;
     objectAt_.resize(objects_.size());
     for (std::size_t k = 0; k < objects_.size(); ++k) objectAt_[k] = static_cast<int>(k);
   }

@@ -6,6 +6,7 @@
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/contact_filter.h>
+#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/step/step.h>
 #include <tetskin/core/src/base/run_by_size.h>
@@ -48,6 +49,10 @@ void DeformableSolver::setDeterministic(bool on) {
 }
 bool DeformableSolver::deterministic() const {
   return impl_->deterministic;
+}
+void Access<DeformableSolver>::requireOwnSolve(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world) {
+  solver.requireOwnSolve();
+  solver.impl_->know(world);
 }
 void Access<DeformableSolver>::addLoads(DeformableSolver& solver, btSoftBody& body, NodePushes forces, int steps) {
   solver.requireOwnSolve();
@@ -183,8 +188,13 @@ void DeformableSolver::applyTransforms(btScalar dt) {
   impl.driven.end(m_softBodies, dt);
   setMovesCounted(m_softBodies, impl.solving ? this : nullptr);
   countMoves(m_softBodies);
-  impl.inStep = false;
-  impl.rigids.paths().endStep();
+  impl.endStep(m_softBodies);
+}
+
+void DeformableSolver::Impl::endStep(const btAlignedObjectArray<btSoftBody*>& world) {
+  hidden.show(world);
+  rigids.paths().endStep();
+  inStep = false;
 }
 
 }  // namespace tetskin

@@ -19,7 +19,7 @@ ForceRecord::~ForceRecord() = default;
 Result<std::unique_ptr<ForceRecord>> ForceRecord::add(btDeformableMultiBodyDynamicsWorld& world) {
   DeformableSolver* solver = deformableSolverOf(world);
   if (!solver) return refusal("a record of forces", {kUseDeformableSolver});
-  solver->requireOwnSolve();
+  Access<DeformableSolver>::requireOwnSolve(*solver, world);
   std::weak_ptr<RecordedForces>& inSolver = solver->impl_->recorded;
   std::shared_ptr<RecordedForces> recorded = inSolver.lock();
   if (!recorded) inSolver = recorded = std::make_shared<RecordedForces>(world);

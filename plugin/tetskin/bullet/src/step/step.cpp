@@ -157,6 +157,7 @@ void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& wor
   solving = solver.ownSolveActive();
   hidden.show(world);
   all.copyFromArray(world);
+  forgetRemovedObjects(worldOf(all));
   if (solving) {
     sleepers.wake(all);
     fallAsleep();

@@ -65,6 +65,9 @@ struct DeformableSolver::Impl {
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
 
+  /// Bodies are again as the application has them, wherever the step has stopped.
+  void endStep(const btAlignedObjectArray<btSoftBody*>& world);
+
   /// Writes or reads the settings by which Bullet's world had the last step solved.
   void visitFlags(WorldStream& stream);
 
@@ -74,8 +77,14 @@ struct DeformableSolver::Impl {
   /// Moves everything in a world of this solver; implemented in shift_origin.cpp.
   void shift(btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
 
+  void know(btDeformableMultiBodyDynamicsWorld& world);
+  /// The world of these bodies, null if it is not known. A solver may outlive its world, and be used by another one.
+  btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
+  /// Call it before a step: what is kept by the addresses of objects that have left the world goes with them, as others
+  /// may have been created there.
+  void forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world);
   void numberAnew();
   /// Call it before Bullet detects contacts, and again when it has called the application since.
   void noteObjects();
@@ -135,10 +144,12 @@ struct DeformableSolver::Impl {
   StepClock clock;
   HiddenBodies hidden;
   StepObjects objects;
-  RigidForces* rigidForces = nullptr;      ///< of a DeformableWorld alone, which owns them
-  bool inSimulation = false;               ///< within `stepSimulation`, of a DeformableWorld alone
-  bool inStep = false;                     ///< from `gather` until positions have been integrated
-  std::weak_ptr<RecordedForces> recorded;  ///< null if nobody reads it
+  RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
+  btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world, which may have been destroyed
+  const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
+  bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
+  bool inStep = false;                                  ///< from `gather` until positions have been integrated
+  std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it
   RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;
   bool deterministic = false;

@@ -15,15 +15,6 @@
 namespace tetskin {
 namespace {
 
-/// Null if the list has no force of a DeformableBody. Their gravities stand in front of all others.
-btDeformableMultiBodyDynamicsWorld* worldOf(const ForceList& forces) {
-  for (int i = 0; i < forces.size(); ++i) {
-    const auto* gravity = asOwn<const BodyGravity>(OwnObject::Kind::BodyGravity, forces[i]);
-    if (gravity && gravity->m_softBodies.size() > 0) return &gravity->world();
-  }
-  return nullptr;
-}
-
 template <class Contact>
 void dropContactsWith(const StepObjects::Gone& gone, btAlignedObjectArray<Contact>& contacts) {
   int left = 0;
@@ -44,12 +35,27 @@ bool isIn(const ForceList& forces, const btDeformableLagrangianForce* force) {
 
 }  // namespace
 
+void DeformableSolver::Impl::know(btDeformableMultiBodyDynamicsWorld& world) {
+  known = &world;
+  knownInfo = &world.getWorldInfo();
+}
+
+btDeformableMultiBodyDynamicsWorld* DeformableSolver::Impl::worldOf(
+    const btAlignedObjectArray<btSoftBody*>& softs) const {
+  for (int b = 0; b < softs.size(); ++b) {
+    if (softs[b]->getWorldInfo() == knownInfo) return known;
+  }
+  return nullptr;
+}
+
 void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>& world) {
   if (!inStep) bodies.clear();  // the next step lists them anew
   const std::vector<const btSoftBody*> gone = bodies.dropAllBut(world, solver.m_softBodies);
   if (gone.empty()) return;
   for (const btSoftBody* body : gone) {
     driven.forget(*body);
+    sleepers.forget(*body);
+    stillness.forget(*body);
     if (auto* own = bodyWithTrees(*const_cast<btSoftBody*>(body))) own->setMovesCountedBy(nullptr);
   }
   if (!inStep) {
@@ -72,8 +78,16 @@ void DeformableSolver::Impl::numberAnew() {
   }
 }
 
+void DeformableSolver::Impl::forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world) {
+  if (!world || objects.world() != world || !objects.haveChanged()) return;
+  const StepObjects::Gone gone = objects.gone();
+  bodies.forget(gone);
+  rigids.paths().forget(gone);
+  sleepers.forget(gone);
+}
+
 void DeformableSolver::Impl::noteObjects() {
-  objects.note(worldOf(forces()));
+  objects.note(worldOf(all));
 }
 
 /// Contacts at the surface are dropped with the pair.

@@ -16,14 +16,16 @@ struct IslandFinder : btDeformableMultiBodyDynamicsWorld {
 
 }  // namespace
 
+StepObjects::Noted StepObjects::noted(const btCollisionObject& object) {
+  const btBroadphaseProxy* proxy = object.getBroadphaseHandle();
+  return {&object, proxy ? proxy->m_uniqueId : 0};
+}
+
 std::vector<StepObjects::Noted> StepObjects::objectsOf(const btCollisionWorld& world) {
   const btCollisionObjectArray& all = world.getCollisionObjectArray();
   std::vector<Noted> objects;
   objects.reserve(static_cast<std::size_t>(all.size()));
-  for (int k = 0; k < all.size(); ++k) {
-    const btBroadphaseProxy* proxy = all[k]->getBroadphaseHandle();
-    objects.emplace_back(all[k], proxy ? proxy->m_uniqueId : 0);
-  }
+  for (int k = 0; k < all.size(); ++k) objects.push_back(noted(*all[k]));
   return objects;
 }
 
@@ -34,7 +36,13 @@ void StepObjects::note(btDeformableMultiBodyDynamicsWorld* world) {
 }
 
 bool StepObjects::haveChanged() const {
-  return world_ && objectsOf(*world_) != noted_;
+  if (!world_) return false;
+  const btCollisionObjectArray& all = world_->getCollisionObjectArray();
+  if (static_cast<std::size_t>(all.size()) != noted_.size()) return true;
+  for (std::size_t k = 0; k < noted_.size(); ++k) {
+    if (noted(*all[static_cast<int>(k)]) != noted_[k]) return true;
+  }
+  return false;
 }
 
 StepObjects::Gone StepObjects::gone() const {

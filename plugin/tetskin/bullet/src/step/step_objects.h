@@ -32,6 +32,7 @@ class StepObjects {
  private:
   /// An object, and the number that the broadphase gives to each object once.
   using Noted = std::pair<const btCollisionObject*, int>;
+  static Noted noted(const btCollisionObject& object);
   static std::vector<Noted> objectsOf(const btCollisionWorld& world);
 
   btDeformableMultiBodyDynamicsWorld* world_ = nullptr;

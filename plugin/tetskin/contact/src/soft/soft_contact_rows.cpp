@@ -96,8 +96,11 @@ bool SoftContactRows::isWithin(const ContactBody& body) const {
 
 void SoftContactRows::include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self) {
   assert(shape);
+  bodies_.reserve(bodies_.size() + 1);
+  auto made = std::make_unique<ContactBody>(body, std::move(shape), self, nextId_);
   exclude(body);
-  bodies_.push_back(std::make_unique<ContactBody>(body, std::move(shape), self, nextId_++));
+  bodies_.push_back(std::move(made));
+  ++nextId_;
 }
 
 void SoftContactRows::exclude(const btSoftBody& body) {

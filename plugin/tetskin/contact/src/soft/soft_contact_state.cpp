@@ -7,7 +7,7 @@
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <vector>
 
 namespace tetskin::contact_detail {
 namespace {
@@ -57,15 +57,21 @@ void SoftContactRows::describe(BuildStream& stream) {
   }
 }
 
+/// In the order of the world's objects: they may have been added in another one.
 void SoftContactRows::checkState(WorldStream& stream) {
+  excludeDeleted();
   stream.same(bodies_.size(), kOtherBodies);
-  std::uint64_t samples = 0, nodes = 0, tets = 0;
-  for (const auto& body : bodies_) {
-    samples += body->data().samples.size();
-    nodes += body->data().nodes.size();
-    tets += body->data().tets.size();
+  std::vector<const ContactBody*> sorted;
+  for (const auto& body : bodies_) sorted.push_back(body.get());
+  const auto indexOf = [](const ContactBody* body) { return body->body->getWorldArrayIndex(); };
+  std::sort(sorted.begin(), sorted.end(),
+            [&](const ContactBody* a, const ContactBody* b) { return indexOf(a) < indexOf(b); });
+  for (const ContactBody* body : sorted) {
+    stream.same(indexOf(body), kOtherBodies);
+    for (const std::size_t count : {body->data().samples.size(), body->data().nodes.size(), body->data().tets.size()}) {
+      stream.same(count, "a soft body had another contact shape");
+    }
   }
-  for (const std::uint64_t sum : {samples, nodes, tets}) stream.same(sum, kOtherBodies);
 }
 
 void SoftContactRows::visitState(WorldStream& stream) {
@@ -87,8 +93,6 @@ void SoftContactRows::visitBodies(WorldStream& stream) {
                                     [&](const auto& body) { return body->body == named; });
     if (found == bodies_.end()) return stream.refuse(kOtherBodies);
     std::swap(bodies_[k], *found);
-    stream.same(bodies_[k]->data().samples.size(), "a soft body had another contact shape");
-    stream.same(bodies_[k]->data().tets.size(), "a soft body had another contact shape");
     bodies_[k]->visitState(stream, stream.saving() && mayBeFollowed(*bodies_[k]));
   }
 }

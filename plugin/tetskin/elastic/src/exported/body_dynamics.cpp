@@ -203,7 +203,7 @@ template <class S>
 void BodyDynamics<S>::probeForces(ParallelFor* threads) {
   if (!tets_) return;
   places_.displacePoints(moved_);
-  tets_->forces(moved_.data(), forces_.data(), threads);
+  tets_->probeForces(moved_.data(), forces_.data(), threads);
 }
 
 template <class S>

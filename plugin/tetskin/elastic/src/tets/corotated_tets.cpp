@@ -153,7 +153,7 @@ void CorotatedTets<S>::byPacks(ParallelFor* threads, Kernel&& kernel) {
 template <class S>
 double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads) {
   assert(points);
-  if (!energy) points_ = points;  // a query of the energy changes nothing
+  points_ = points;
   byPacks(threads, [&](auto work, const auto& loops, std::size_t task) {
     work.points = points;
     work.sums = sums;
@@ -193,18 +193,32 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
   });
 }
 
+/// The next step finds its rotations starting from the same ones, and makes its matrix anew, or not, as it would have.
 template <class S>
-double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
-  // A query changes nothing, so that the next step finds its rotations starting from the same ones.
+template <class Query>
+void CorotatedTets<S>::ask(Query&& query) {
   const AlignedVector<S> linear = linear_.rotations, quadratic = quadratic_.rotations;
   const S maxTurned = maxTurned_;
   const double turned = turned_;
-  const double energy = cornerForces(points, nullptr, true, threads);
+  const S* const points = points_;
+  query();
   linear_.rotations = linear;
   quadratic_.rotations = quadratic;
   maxTurned_ = maxTurned;
   turned_ = turned;
+  points_ = points;
+}
+
+template <class S>
+double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
+  double energy = 0.0;
+  ask([&] { energy = cornerForces(points, nullptr, true, threads); });
   return energy;
+}
+
+template <class S>
+void CorotatedTets<S>::probeForces(const S* points, S* out, ParallelFor* threads) {
+  ask([&] { forces(points, out, threads); });
 }
 
 template <class S>

@@ -37,7 +37,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
 
   /// Elastic forces at `points`, both 4 scalars per slot; updates the tets' rotations.
   void forces(const S* points, S* out, ParallelFor* threads);
-  /// The elastic energy at `points`.
+  /// The same, and the elastic energy at `points`; these change nothing.
+  void probeForces(const S* points, S* out, ParallelFor* threads);
   double energy(const S* points, ParallelFor* threads);
 
   /// The rotation of tets since `cornersForMatrix`, in radians: root mean square over all rotations, and maximum.
@@ -85,6 +86,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// Calls kernel(work, its loops, number of the task) for all packs.
   template <class Kernel>
   void byPacks(ParallelFor* threads, Kernel&& kernel);
+  template <class Query>
+  void ask(Query&& query);
   /// sums  see TetWork
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 

@@ -102,12 +102,14 @@ class StateStream {
     static_assert(std::is_arithmetic_v<T>);
     bytes(values, count * sizeof(T));
   }
-  /// A vector of anything, with its length: visit(element) for each.
+  /// A vector of anything, with its length: visit(element) for each. It grows as elements are read: those that are not
+  /// there take no memory.
   template <class Vector, class Visit>
   void each(Vector& values, Visit&& visit) {
     const std::size_t n = length(values.size());
-    if (restoring()) values.resize(n);
+    if (restoring() && values.size() > n) values.resize(n);
     for (auto& value : values) visit(value);
+    while (values.size() < n && !failed_) visit(values.emplace_back());
   }
 
  private:
