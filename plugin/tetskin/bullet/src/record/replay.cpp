@@ -205,8 +205,9 @@ bool Replay::step() {
   if (!step || impl.report.differs) return false;
   impl.status = impl.prepare(*step);
   if (!impl.status.ok()) return false;
-  impl.world().stepSimulation(static_cast<btScalar>(step->seconds), step->maxSubSteps,
-                              static_cast<btScalar>(step->fixedTimeStep));
+  const auto seconds = static_cast<btScalar>(step->seconds), fixed = static_cast<btScalar>(step->fixedTimeStep);
+  impl.world().stepSimulation(seconds, step->maxSubSteps, fixed);
+  impl.report.secondsPerStep = step->maxSubSteps > 0 ? fixed : seconds;
   ++impl.next;
   impl.compare(*step);
   impl.status = saveInto(impl.world(), impl.ended);
