@@ -136,6 +136,17 @@ std::vector<char> World::save() const {
 void World::restore(const void* snapshot, std::size_t size) {
   const Alone alone(*this);
   check(world_->restore(snapshot, size));
+  updateTeleported();
+}
+
+std::unique_ptr<Replay> World::replay(const std::string& path) {
+  const Alone alone(*this);
+  std::unique_ptr<Replay> replay = take(Replay::open(*world_, path));
+  updateTeleported();
+  return replay;
+}
+
+void World::updateTeleported() {
   for (const auto& body : bodies_) {
     if (body->binding) body->skin.markTeleported();
   }

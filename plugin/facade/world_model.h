@@ -113,9 +113,10 @@ class World : public std::enable_shared_from_this<World> {
   }
   /// Makes the next step of a run, and updates all surfaces. False: there is none.
   bool step(Replay& replay);
-  void updateSkins();
   std::vector<char> save() const;
   void restore(const void* snapshot, std::size_t size);
+  /// Opens a run, in the state in which recording began.
+  std::unique_ptr<Replay> replay(const std::string& path);
 
   std::shared_ptr<RigidState> addRigid(const ShapeModel& shape, double mass, const btTransform& pose, double friction,
                                        bool kinematic);
@@ -174,6 +175,8 @@ class World : public std::enable_shared_from_this<World> {
     std::vector<std::pair<btHingeConstraint*, btScalar>> torques_;
   };
 
+  void updateSkins();
+  void updateTeleported();
   static void checkStep(double dt, int substeps);
   static btScalar substepOf(double dt, int substeps);
   Shared& sharedOf(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options);

@@ -130,9 +130,7 @@ void bindRuns(nb::module_& module, Class<World>&) {
           "__init__",
           [](ReplayHandle* self, const std::shared_ptr<World>& world, const PathLike& path) {
             const Locked lock(*world);
-            auto replay = take(Replay::open(world->bullet(), path.text()));
-            new (self) ReplayHandle(world, std::move(replay));
-            world->updateSkins();
+            new (self) ReplayHandle(world, world->replay(path.text()));
           },
           "world"_a, "path"_a, "Puts the world into the state in which recording began.")
       .def("step", replayedStep,
