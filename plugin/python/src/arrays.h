@@ -199,12 +199,25 @@ class Class : public nb::class_<T> {
     const std::string name = nb::cast<std::string>(this->attr("__name__"));
     return def("__repr__", [name, words](const T& self) { return "<tetskin." + name + ": " + words(self) + ">"; });
   }
-  /// How a thing with __getstate__ and __setstate__ is pickled, by the oldest protocols, too.
-  Class& pickled() {
-    return def("__reduce__", [](nb::handle self) {
-      const nb::object make = nb::module_::import_("copyreg").attr("__newobj__");
-      return nb::make_tuple(make, nb::make_tuple(self.type()), self.attr("__getstate__")());
-    });
+  /// How it is pickled, by the oldest protocols, too.
+  /// get  a thing's state, as a tuple
+  /// set  a thing of a state, which may throw
+  template <class Get, class Set>
+  Class& pickled(Get get, Set set) {
+    def("__getstate__", get, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"));
+    const auto make = [set](T& self, const nb::tuple& state) {
+      try {
+        new (&self) T(set(state));
+      } catch (const nb::cast_error&) {
+        fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+      }
+    };
+    def("__setstate__", make, nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
+    const auto reduce = [](nb::handle self) {
+      const nb::object newObject = nb::module_::import_("copyreg").attr("__newobj__");
+      return nb::make_tuple(newObject, nb::make_tuple(self.type()), self.attr("__getstate__")());
+    };
+    return def("__reduce__", reduce, nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
   }
 };
 /// "2 tets", "1 tet".
@@ -300,7 +313,7 @@ struct type_caster<tetskin::python::ArrayLike> {
 };
 template <>
 struct type_caster<tetskin::python::PathLike> {
-  NB_TYPE_CASTER(tetskin::python::PathLike, const_name("str | os.PathLike"))
+  NB_TYPE_CASTER(tetskin::python::PathLike, const_name("str | bytes | os.PathLike[str]"))
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.object = borrow(source);
     return PyUnicode_Check(source.ptr()) || PyBytes_Check(source.ptr()) || hasattr(source, "__fspath__");

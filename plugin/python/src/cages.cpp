@@ -102,7 +102,7 @@ void bindCages(nb::module_& module) {
         return counted(c.mesh.tetCount(), "tet", "tets") + ", " + counted(c.mesh.nodeCount(), "node", "nodes") +
                (c.quadraticTet.empty() ? "" : ", quadratic") + (c.stiffnessFactor.empty() ? "" : ", calibrated");
       })
-      .pickled()
+      .pickled(stateOf, cageOfState)
       .def(
           "__init__",
           [](CageModel* self, const ArrayLike& nodes, const ArrayLike& tets) {
@@ -158,15 +158,7 @@ void bindCages(nb::module_& module) {
             check(validate(cage));
             return CageModel{sharedOf(std::move(cage)), m.report};
           },
-          "scale"_a, "A copy of another size, with its masses.")
-      .def("__getstate__", stateOf)
-      .def("__setstate__", [](CageModel& self, const nb::tuple& state) {
-        try {
-          new (&self) CageModel(cageOfState(state));
-        } catch (const nb::cast_error&) {
-          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
-        }
-      });
+          "scale"_a, "A copy of another size, with its masses.");
 
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,

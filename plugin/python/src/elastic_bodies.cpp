@@ -83,7 +83,8 @@ void bindElasticBodies(nb::module_& module) {
             return m.body->step(dt, acceleration);
           },
           "dt"_a, "acceleration"_a = Vec3{},
-          "Advances by dt seconds; returns the number of iterations: none for 0 seconds. acceleration: of all nodes that are not pinned, "
+          "Advances by dt seconds; returns the number of iterations: none for 0 seconds. acceleration: of all nodes "
+          "that are not pinned, "
           "such as gravity.")
       .def(
           "forces",

@@ -137,7 +137,7 @@ void bindMeshes(nb::module_& module) {
         return counted(m.mesh->vertexCount(), "vertex", "vertices") + ", " +
                counted(m.mesh->triangleCount(), "triangle", "triangles");
       })
-      .pickled()
+      .pickled(stateOf, meshOfState)
       .def(
           "__init__",
           [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles,
@@ -171,15 +171,7 @@ void bindMeshes(nb::module_& module) {
       .def_prop_ro(
           "vertex_count", [](const MeshModel& m) { return m.mesh->vertexCount(); }, "Number of vertices.")
       .def_prop_ro(
-          "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.")
-      .def("__getstate__", stateOf)
-      .def("__setstate__", [](MeshModel& self, const nb::tuple& state) {
-        try {
-          new (&self) MeshModel(meshOfState(state));
-        } catch (const nb::cast_error&) {
-          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
-        }
-      });
+          "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.");
 
   module.def(
       "load_mesh", loaded, "path"_a,

@@ -100,6 +100,7 @@ Class<World> bindWorlds(nb::module_& module) {
                 "cannot pickle a World. Pickle what builds it, a function with its meshes and cages, and world.save(), "
                 "which restore() of a world built alike takes");
           },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"),
           "Raises a TypeError: what travels is what builds a world, and its snapshot.")
       .def_prop_rw(
           "gravity",
