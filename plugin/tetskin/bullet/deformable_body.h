@@ -85,13 +85,30 @@ class TETSKIN_BULLET_API DeformableBody {
   Status setPinned(int node, bool pinned = true);
   /// Moves a pinned node: it is at this position in the following steps, with the velocity of its motion. Call it once
   /// per frame, or once per step; the motion is spread over as many steps as lay between the last two calls. A node for
-  /// which it is no longer called stays where it is. The body wakes. To move the whole body without a velocity, use
-  /// Bullet's `translate`, `rotate` or `transform`.
+  /// which it is no longer called stays where it is. The body wakes. To put the whole body elsewhere, see `teleport`.
   /// position  world space
   /// Errors    IndexOutOfRange; InvalidOption for a node that is not pinned; NonFinite. On an error nothing is changed
   Status setPinnedPosition(int node, const btVector3& position);
   /// True if the node is pinned. The node must exist.
   bool isPinned(int node) const;
+
+  /// Puts the body elsewhere in its motion: nodes, velocities, pinned nodes and their ways go along, so that the next
+  /// step is the one that it would have made, and nothing on the way is met. What it has touched is forgotten; it, and
+  /// what lies beside it, wakes. Springs, welds and anchors stay attached to what they hold. (Bullet's `translate`,
+  /// `rotate` and `transform` leave velocities as they are.) Skins that interpolate: `SoftBodySkin::markTeleported`.
+  /// motion  world space, from where the body is: x becomes motion * x
+  /// Cost    O(nodes + faces)
+  /// Errors  InvalidOption: not a rigid motion, the body is not in its world, or within a step; nothing is changed then
+  Status teleport(const btTransform& motion);
+
+  /// Puts the body back into the state in which it was added: where it was then, at rest, with nothing remembered, so
+  /// that its steps are those of a new body. What has been set stays: which nodes are pinned (they go to where they
+  /// were, too), masses, material, gravity, groups, contacts, springs. It, and what lies beside it, wakes. After
+  /// `shiftOrigin` it goes to the same place as the world has it now.
+  /// Cost    some milliseconds for 1,000 tets, as `add`
+  /// Errors  InvalidOption: the body was scaled, or got other nodes or tets, is not in its world, or within a step;
+  ///         nothing is changed then
+  Status reset();
 
  private:
   struct Impl;

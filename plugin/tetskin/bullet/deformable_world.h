@@ -222,6 +222,20 @@ TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyD
 TETSKIN_BULLET_API Status restoreSnapshot(btDeformableMultiBodyDynamicsWorld& world, const void* snapshot,
                                           std::size_t size);
 
+/// Makes a point the origin: it is subtracted from all positions in the world, of soft and rigid bodies, multibodies,
+/// joints to points in space, targets of springs, motion states, and all that is remembered of positions, so that the
+/// world goes on as before. For worlds that are large beside the digits of a float.
+///
+/// Not moved is what the world does not have: positions in the application, in its own motion states that compute them,
+/// in its forces and actions; shapes that reach far; pivots in space of multibodies' joints. Of broadphases, those
+/// other than btDbvtBroadphase may find pairs anew. Skins that interpolate: `SoftBodySkin::markTeleported`.
+///
+/// world   created with a `DeformableSolver`
+/// origin  world space; best a whole number that a float represents, such as a multiple of 1,024
+/// Cost    O(nodes + objects + contacts)
+/// Errors  InvalidOption: another solver, or within a step; NonFinite. On an error nothing is changed
+TETSKIN_BULLET_API Status shiftOrigin(btDeformableMultiBodyDynamicsWorld& world, const btVector3& origin);
+
 /// A force, and its torque about the centre of mass of the object that it acts on: for a soft body that of its nodes'
 /// masses, for a rigid body or a link the origin of its frame. World space, in the world's units of mass, length and
 /// seconds.

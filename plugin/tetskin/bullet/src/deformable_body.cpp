@@ -8,6 +8,7 @@
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/build_stream.h>
+#include <tetskin/bullet/src/base/node_loads.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/build/soft_bodies.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
@@ -163,6 +164,7 @@ struct DeformableBody::Impl final : BodyOwner {
   ElasticMaterial material;
   double weightPressure = 1.0;  ///< see the function `weightPressure`
   ForceModel forceModel = ForceModel::Corotated;
+  btScalar restMeasure = 0;  ///< when it was added
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
   std::function<void(const ElasticMaterial&)> applyMaterial;  ///< sets the material of `elasticity`
@@ -203,6 +205,10 @@ struct DeformableBody::Impl final : BodyOwner {
   bool isActedOn() const {
     return isInItsWorld() && gravity.m_softBodies.size() > 0 && elasticity->m_softBodies.size() > 0;
   }
+  /// Ok if the body may be put elsewhere now.
+  Status checkIsPlaced(const std::string& call) const;
+  /// What lies on the body, or beside it, is to find out that it has gone.
+  void wakeNeighbours();
   bool solverLives() const { return !hasOwnSolver || deformableSolver(&solver); }
   Status checkNode(int node) const {
     if (node >= 0 && node < static_cast<int>(masses.size())) return {};
@@ -263,6 +269,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
 void DeformableBody::Impl::enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
                                  std::vector<QuadraticShape> quadratic) {
   forceModel = options.forceModel;
+  restMeasure = restMeasureOf(*body);
   makeElasticity(options, linear, std::move(quadratic));
   for (btDeformableLagrangianForce* force : {static_cast<btDeformableLagrangianForce*>(&gravity), elasticity.get()}) {
     force->setIndices(solver.getIndices());
@@ -458,6 +465,59 @@ Status DeformableBody::setPinnedPosition(int node, const btVector3& position) {
   body().m_nodes[node].m_x = position;
   if (BodyWithTrees* own = bodyWithTrees(body())) own->countMove();
   body().activate();
+  return {};
+}
+
+Status DeformableBody::Impl::checkIsPlaced(const std::string& call) const {
+  if (!isInItsWorld()) return invalid(call + ": the body is not in its world");
+  if (!hasOwnSolver || !isWithinStep(static_cast<const DeformableSolver&>(solver))) return {};
+  return invalid(call + ": within a step; call it between two steps");
+}
+
+void DeformableBody::Impl::wakeNeighbours() {
+  struct Waker : btBroadphaseAabbCallback {
+    bool process(const btBroadphaseProxy* proxy) override {
+      static_cast<btCollisionObject*>(proxy->m_clientObject)->activate();
+      return true;
+    }
+  } waker;
+  const btBroadphaseProxy& own = *body->getBroadphaseHandle();
+  world.getBroadphase()->aabbTest(own.m_aabbMin, own.m_aabbMax, waker);
+}
+
+Status DeformableBody::teleport(const btTransform& motion) {
+  if (Status status = impl_->checkIsPlaced("teleport"); !status.ok()) return status;
+  if (!isRigid(motion)) {
+    return invalid("teleport: the transform is not a rigid motion: it is not finite, or scales, shears or mirrors");
+  }
+  btSoftBody& soft = body();
+  auto* elastic = dynamic_cast<ElasticForce*>(impl_->elasticity.get());
+  const Placement placement(motion);
+  const auto moveNodes = [&] { carryNodes(soft, elastic ? elastic->body().dynamics.get() : nullptr, placement); };
+  impl_->wakeNeighbours();
+  if (impl_->hasOwnSolver) {
+    Access<DeformableSolver>::teleport(static_cast<DeformableSolver&>(impl_->solver), soft, placement, moveNodes);
+  } else {
+    moveNodes();
+  }
+  if (BodyWithTrees* own = bodyWithTrees(soft)) own->countMove();
+  soft.activate();
+  return {};
+}
+
+Status DeformableBody::reset() {
+  if (Status status = impl_->checkIsPlaced("reset"); !status.ok()) return status;
+  BodyWithTrees& own = *bodyWithTrees(body());
+  auto* elastic = dynamic_cast<ElasticForce*>(impl_->elasticity.get());
+  const bool same = own.createdAt().size() == static_cast<std::size_t>(own.m_nodes.size()) &&
+                    restMeasureOf(own) == impl_->restMeasure && (!elastic || elastic->body().hasItsRestShapes());
+  if (!same)
+    return invalid("reset: the body was scaled, or its nodes or tets changed, since it was added; add it anew");
+  impl_->wakeNeighbours();
+  if (impl_->hasOwnSolver) Access<DeformableSolver>::reset(static_cast<DeformableSolver&>(impl_->solver), own);
+  own.returnToStart();
+  if (elastic) elastic->reset();
+  own.activate();
   return {};
 }
 

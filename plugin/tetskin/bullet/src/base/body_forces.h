@@ -45,6 +45,11 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
   virtual void visitState(WorldStream& /*stream*/) {}
   /// Writes what a snapshot takes for granted; refuses, while reading, where it is not so.
   virtual void checkState(WorldStream& /*stream*/) {}
+  /// Forgets what it remembers of a body from the steps before: the body has been put elsewhere, or into the state in
+  /// which it was created.
+  virtual void forget(const btSoftBody& /*body*/) {}
+  /// Moves what it remembers in world space, together with everything else in the world, which has been moved already.
+  virtual void shift(const btVector3& /*by*/) {}
   /// Which SourceBuilder makes such an entry from what `describe` writes; null: none.
   virtual const char* builderName() const { return nullptr; }
   virtual void describe(BuildStream& /*stream*/) {}

@@ -226,8 +226,29 @@ void BodyWithTrees::scale(const btVector3& factors) {
   if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 
+void BodyWithTrees::returnToStart() {
+  assert(createdAt_.size() == static_cast<std::size_t>(m_nodes.size()));
+  for (int n = 0; n < m_nodes.size(); ++n) {
+    Node& node = m_nodes[n];
+    node.m_x = node.m_q = createdAt_[static_cast<std::size_t>(n)] + shifted_;
+    for (btVector3* rate : {&node.m_v, &node.m_vn, &node.m_splitv, &node.m_f}) rate->setZero();
+  }
+  m_maxSpeedSquared = 0;
+  setReach(-1);
+  setSpeculation(0);
+  pointContacts_.clear();
+  countMove();
+  if (kind_ != Kind::None) {
+    buildNodeTree(*this);
+    renewFaceTree();
+  }
+  updateNormals();
+  updateBounds();
+}
+
 void BodyWithTrees::visitState(WorldStream& stream) {
   stream(reach_);
+  stream(shifted_);
   if (!stream.restoring()) return;
   countMove();
   setSpeculation(0);

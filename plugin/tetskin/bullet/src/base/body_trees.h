@@ -84,6 +84,11 @@ class BodyWithTrees : public btSoftBody {
   btScalar contactSize() const { return contactSize_; }
   /// The nodes' positions with which the body was created.
   const std::vector<btVector3>& createdAt() const { return createdAt_; }
+  /// By how much the world has been moved since.
+  const btVector3& shifted() const { return shifted_; }
+  void shift(const btVector3& by) { shifted_ += by; }
+  /// Takes the body back to where it was created, at rest, with new trees; cost O(n log n).
+  void returnToStart();
   /// The solver that reads the contacts of the nodes; null if Bullet searches for them. Whether the body is still in
   /// its world, another solver's name in the body tells.
   const btSoftBodySolver* nodesSolver() const { return nodesSolver_; }
@@ -145,6 +150,7 @@ class BodyWithTrees : public btSoftBody {
   std::shared_ptr<BodyContacts> nodeContacts_;
   btScalar contactSize_ = 0;
   std::vector<btVector3> createdAt_;
+  btVector3 shifted_{0, 0, 0};
   const btSoftBodySolver* nodesSolver_ = nullptr;
 };
 

@@ -30,6 +30,12 @@ struct FrameCurve {
     return fraction * way + (fraction * left) * (left * early - fraction * late);
   }
 
+  /// Turns it with its body.
+  template <class Rotation>
+  void rotate(const Rotation& by) {
+    by.rotate(way, early, late);
+  }
+
   template <class Stream>
   void visitState(Stream& stream) {
     stream(way);
@@ -62,6 +68,11 @@ struct FrameMotion {
     secondsBefore = seconds;
     seconds = duration;
     return curve;
+  }
+
+  template <class Rotation>
+  void rotate(const Rotation& by) {
+    by.rotate(velocity, mean, before);
   }
 
   template <class Stream>

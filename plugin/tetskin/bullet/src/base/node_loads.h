@@ -8,6 +8,7 @@
 #include <tetskin/bullet/src/base/row_source.h>
 #include <Eigen/Core>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,7 @@ class DeformableSolver;
 namespace tetskin::bullet_detail {
 
 class WorldStream;
+struct Placement;
 
 struct NodePush {
   int node = 0;
@@ -30,6 +32,7 @@ class NodeLoads : public RowSource {
  public:
   void add(btSoftBody& body, NodePushes forces, int steps);
   bool empty() const { return loads_.empty(); }
+  void drop(const btSoftBody& body);
   /// Drops loads on bodies that are not in their world any more.
   void dropAllBut(const btAlignedObjectArray<btSoftBody*>& world);
 
@@ -57,6 +60,14 @@ struct Access<DeformableSolver> {
   /// steps   1 or more
   static TETSKIN_BULLET_API void addLoads(DeformableSolver& solver, btSoftBody& body, bullet_detail::NodePushes forces,
                                           int steps);
+  /// Forgets all that the solver remembers of a body, and what acts on it for a number of steps. Not within a step.
+  static void reset(DeformableSolver& solver, btSoftBody& body);
+  /// Forgets what the body has touched, and how it has slept; takes the nodes that are led along. Not within a step.
+  /// moveNodes  moves the nodes of the body
+  static void teleport(DeformableSolver& solver, btSoftBody& body, const bullet_detail::Placement& placement,
+                       const std::function<void()>& moveNodes);
+  /// Moves everything in the world. Not within a step.
+  static void shift(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
 };
 
 }  // namespace tetskin

@@ -30,6 +30,10 @@ void ElasticForce::setMaterial(const ElasticMaterial& material) {
   body_.setMaterial(material);
 }
 
+void ElasticForce::reset() {
+  body_.reset(material_);
+}
+
 void ElasticForce::reinitialize(bool) {
   if (m_softBodies.size() == 0 || body_.hasItsRestShapes()) return;
   if (Result<elastic_detail::RestTets> rest = restTetsOf(*body_.body); rest.ok()) {
@@ -56,7 +60,7 @@ void ElasticForce::checkState(WorldStream& stream) {
   stream.same(body_.body->m_tetras.size(), "a soft body has another number of tets");
   stream.same(body_.quadratic.size(), "a soft body has another number of quadratic tets");
   stream.same(body_.dynamics->componentCount(), "a soft body has another number of parts");
-  stream.same(body_.restMeasureNow(), "a soft body has another shape at rest, or was scaled");
+  stream.same(restMeasureOf(*body_.body), "a soft body has another shape at rest, or was scaled");
 }
 
 }  // namespace tetskin::bullet_detail

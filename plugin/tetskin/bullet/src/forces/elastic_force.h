@@ -26,6 +26,8 @@ class ElasticForce : public InactiveForce {
                std::vector<QuadraticShape> quadratic, const SolverSettings& settings);
 
   void setMaterial(const ElasticMaterial& material);
+  /// Forgets all steps. The body must have the tets and rest shapes with which it was created.
+  void reset();
   const SolverSettings& settings() const { return settings_; }
   ForcedBody& body() { return body_; }
 

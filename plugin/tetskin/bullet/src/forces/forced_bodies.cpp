@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
@@ -31,7 +32,8 @@ bool hasRestShape(const btSoftBody::Tetra& tet) {
   return tet.m_element_measure > 0 && size > 0 && std::isfinite(size);
 }
 
-/// A measure of some of the tets, which changes if the body is scaled, or gets another rest shape.
+}  // namespace
+
 btScalar restMeasureOf(const btSoftBody& body) {
   assert(body.m_tetras.size() > 0);
   btScalar sum = 0;
@@ -44,7 +46,37 @@ btScalar restMeasureOf(const btSoftBody& body) {
   return sum;
 }
 
-}  // namespace
+/// Bullet's own `transform` would make the present lengths of links those at rest. Where a node is at its own position
+/// in double, it stays there.
+void carryNodes(btSoftBody& body, Dynamics* dynamics, const Placement& placement) {
+  const int count = body.m_nodes.size();
+  if (dynamics && dynamics->nodeCount() != static_cast<std::size_t>(count)) dynamics = nullptr;
+  std::vector<bool> exact(static_cast<std::size_t>(count), false);
+  for (std::size_t n = 0; n < exact.size() && dynamics; ++n) {
+    btScalar point[3];
+    toPoint(body.m_nodes[static_cast<int>(n)].m_x, point);
+    exact[n] = dynamics->isAt(n, point);
+  }
+  if (dynamics) dynamics->carry(placement.turns, placement.turn, placement.by);
+  for (int n = 0; n < count; ++n) {
+    btSoftBody::Node& node = body.m_nodes[n];
+    const auto at = static_cast<std::size_t>(n);
+    const bool led = node.m_q != node.m_x;
+    placement.place(node.m_x, node.m_q);
+    if (exact[at]) {
+      btScalar point[3];
+      dynamics->rounded(at, point);
+      node.m_x = fromPoint(point);
+    }
+    if (!led) node.m_q = node.m_x;
+    placement.rotate(node.m_v, node.m_vn, node.m_splitv, node.m_n);
+  }
+  for (int f = 0; f < body.m_faces.size(); ++f) placement.rotate(body.m_faces[f].m_normal);
+  body.updateNodeTree(false, false);
+  const BodyWithTrees* own = bodyWithTrees(body);
+  if (!own || !own->hasNoFaceTree()) body.updateFaceTree(false, false);
+  body.updateBounds();
+}
 
 void readNodes(const btSoftBody& body, Dynamics& dynamics) {
   assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
@@ -130,6 +162,14 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
   dynamics->setDamping(material.damping);
 }
 
+void ForcedBody::reset(const ElasticMaterial& material) {
+  assert(hasItsRestShapes());
+  elastic_detail::RestTets linear = restTetsOf(*body).value();
+  linear.nodes = dynamics->tets()->rest().nodes;
+  dynamics.reset();
+  build(linear, material);
+}
+
 bool ForcedBody::hasOwnCounts() const {
   assert(body && dynamics);
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
@@ -138,10 +178,6 @@ bool ForcedBody::hasOwnCounts() const {
 
 bool ForcedBody::hasItsRestShapes() const {
   return hasOwnCounts() && restMeasureOf(*body) == restMeasure;
-}
-
-btScalar ForcedBody::restMeasureNow() const {
-  return restMeasureOf(*body);
 }
 
 /// A body that has been scaled, or has got nodes, since the last step gets new dynamics as the next one begins.

@@ -6,6 +6,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/base/placement.h>
 #include <tetskin/bullet/src/forces/quadratic_shapes.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
@@ -34,6 +35,12 @@ struct SolverSettings {
 };
 
 using Dynamics = elastic_detail::BodyDynamics<btScalar>;
+
+/// Takes the nodes of any body, with their velocities, normals and trees, to another place.
+/// dynamics  of the body, which go with it; or null
+void carryNodes(btSoftBody& body, Dynamics* dynamics, const Placement& placement);
+/// A measure of the shapes of some tets at rest, which changes if the body is scaled.
+btScalar restMeasureOf(const btSoftBody& body);
 
 /// The state of a body's nodes.
 void readNodes(const btSoftBody& body, Dynamics& dynamics);
@@ -64,11 +71,11 @@ struct ForcedBody {
   /// linear  see `restTetsOf`; its nodes are those of the body's cage, or empty
   void build(const elastic_detail::RestTets& linear, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
+  /// Forgets all steps: as the body was built.
+  void reset(const ElasticMaterial& material);
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.
   bool hasOwnCounts() const;
   bool hasItsRestShapes() const;
-  /// The measure of the body as it is now.
-  btScalar restMeasureNow() const;
 
   /// Writes or reads what the dynamics remember from step to step. The nodes and the material are those of the snapshot
   /// when it is read.

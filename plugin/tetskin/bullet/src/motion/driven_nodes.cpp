@@ -113,6 +113,28 @@ void DrivenNodes::beginBody(btSoftBody& body, btScalar dt) {
   if (known || !found_.empty()) bodies_[&body].swap(found_);
 }
 
+/// Where they were compared with those of the body, positions and velocities are the same bits afterwards, too.
+void DrivenNodes::carry(btSoftBody& body, const Placement& placement, const std::function<void()>& moveNodes) {
+  Nodes* nodes = find(body);
+  if (!nodes) return moveNodes();
+  const Nodes before = *nodes;
+  std::vector<btSoftBody::Node> bodys;
+  for (const DrivenNode& driven : before) bodys.push_back(body.m_nodes[driven.node]);
+  moveNodes();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const DrivenNode& was = before[k];
+    const btSoftBody::Node& now = body.m_nodes[was.node];
+    DrivenNode& driven = (*nodes)[k];
+    placement.place(driven.position, driven.target, driven.from);
+    placement.rotate(driven.velocity);
+    if (was.target == bodys[k].m_q) driven.target = now.m_q;
+    if (was.position == was.target) driven.position = driven.target;
+    if (was.velocity == bodys[k].m_v) driven.velocity = now.m_v;
+    driven.curve.rotate(placement);
+    driven.motion.rotate(placement);
+  }
+}
+
 void DrivenNodes::beforeIntegration(const btAlignedObjectArray<btSoftBody*>& awake) {
   if (bodies_.empty()) return;
   for (int b = 0; b < awake.size(); ++b) {

@@ -12,7 +12,9 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/bullet/src/base/frame_curve.h>
+#include <tetskin/bullet/src/base/placement.h>
 
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -40,6 +42,9 @@ class DrivenNodes {
   bool knows(const btSoftBody& body) const { return bodies_.count(&body) > 0; }
   /// Forgets a body that has left the world.
   void forget(const btSoftBody& body) { bodies_.erase(&body); }
+  /// Takes the nodes that are being moved along, on their ways.
+  /// moveNodes  moves the nodes of the body
+  void carry(btSoftBody& body, const Placement& placement, const std::function<void()>& moveNodes);
   /// Call it when a step begins, before anything reads nodes: gives the nodes their velocities. Costs one pass over the
   /// nodes.
   void begin(const btAlignedObjectArray<btSoftBody*>& awake, btScalar dt);

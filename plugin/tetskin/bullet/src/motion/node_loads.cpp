@@ -16,6 +16,11 @@ void NodeLoads::add(btSoftBody& body, NodePushes forces, int steps) {
   body.activate();
 }
 
+void NodeLoads::drop(const btSoftBody& body) {
+  const auto isOf = [&](const Load& load) { return load.body == &body; };
+  loads_.erase(std::remove_if(loads_.begin(), loads_.end(), isOf), loads_.end());
+}
+
 void NodeLoads::dropAllBut(const btAlignedObjectArray<btSoftBody*>& world) {
   const auto isGone = [&](const Load& load) { return world.findLinearSearch(load.body) == world.size(); };
   loads_.erase(std::remove_if(loads_.begin(), loads_.end(), isGone), loads_.end());

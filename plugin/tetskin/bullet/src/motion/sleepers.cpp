@@ -239,6 +239,27 @@ void Sleepers::seePairs(btOverlappingPairCache& pairs) {
   }
 }
 
+std::vector<const btSoftBody*> Sleepers::changed() const {
+  std::vector<const btSoftBody*> bodies;
+  for (const auto& [object, sleeper] : resting_) {
+    const bool known = sleeper.before && !sleeper.body->isActive();
+    if (known && SleepingState(*sleeper.body).nodes != sleeper.before->nodes) bodies.push_back(sleeper.body);
+  }
+  return bodies;
+}
+
+void Sleepers::shift(const btVector3& by, const std::vector<const btSoftBody*>& changed) {
+  for (auto& [object, sleeper] : resting_) {
+    for (Neighbour& neighbour : sleeper.neighbours) {
+      neighbour.transform.getOrigin() += by;
+      neighbour.low += by;
+      neighbour.high += by;
+    }
+    const bool same = std::find(changed.begin(), changed.end(), sleeper.body) == changed.end();
+    if (sleeper.before && same) sleeper.before->nodes = SleepingState(*sleeper.body).nodes;
+  }
+}
+
 void Sleepers::visitState(WorldStream& stream) {
   stream.byObject(resting_, [&](const btCollisionObject&, RestingBody& sleeper) {
     stream.object(sleeper.body);

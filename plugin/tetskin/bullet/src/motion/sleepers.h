@@ -66,6 +66,13 @@ class Sleepers {
   /// Call it when a body falls asleep: stores what the application may change.
   void store(btSoftBody& body);
 
+  void forget(const btSoftBody& body) { resting_.erase(&body); }
+  /// Moves what is known of where things are, after these have been moved by as much.
+  /// changed  the bodies that were changed in their sleep before
+  void shift(const btVector3& by, const std::vector<const btSoftBody*>& changed);
+  /// The bodies that were changed in their sleep since it was stored how they sleep.
+  std::vector<const btSoftBody*> changed() const;
+
   /// Writes or reads what is known of bodies at rest.
   void visitState(WorldStream& stream);
 

@@ -192,6 +192,12 @@ void Stillness::waitForEachOther(const SolverBodies& bodies, const SolvedSystem&
   for (btCollisionObject* member : members) setTime(*member, std::min(shortest, member->getDeactivationTime()));
 }
 
+void Stillness::shift(const btVector3& by) {
+  for (auto& [body, wait] : waits_) {
+    for (btVector3& position : wait.positions) position += by;
+  }
+}
+
 /// All of them have waited in the last step.
 void Stillness::visitState(WorldStream& stream) {
   stream.byObject(waits_, [&](const btSoftBody&, Wait& wait) {

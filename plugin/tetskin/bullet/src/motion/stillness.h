@@ -25,6 +25,9 @@ class Stillness {
   /// that does not stay begins to wait anew, and bodies that are solved for together wait for each other.
   void judge(SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
 
+  void forget(const btSoftBody& body) { waits_.erase(&body); }
+  void shift(const btVector3& by);
+
   /// Writes or reads which bodies wait.
   void visitState(WorldStream& stream);
 

@@ -126,6 +126,20 @@ void SolverBodies::clear() {
   systems_.clear();
 }
 
+void SolverBodies::forget(const btSoftBody& body) {
+  clear();
+  persistent_.erase(&body);
+  for (auto& [other, kept] : persistent_) {
+    auto& anchors = kept.frictionAnchors;
+    anchors.erase(std::remove_if(anchors.begin(), anchors.end(), [&](const auto& a) { return a.object == &body; }),
+                  anchors.end());
+  }
+}
+
+void SolverBodies::forgetTrees() {
+  for (auto& [body, kept] : persistent_) kept.paddedTrees.forget();
+}
+
 void SolverBodies::assign(const ForceList& forces) {
   listAwake();
   takeElastic(forces);

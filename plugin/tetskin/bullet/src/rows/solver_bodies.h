@@ -107,6 +107,10 @@ class SolverBodies {
   SolvedSystem& join(const std::vector<std::size_t>& indices);
   /// Removes all bodies.
   void clear();
+  /// Call it between steps: what is known of a body from the step before, and of others that have touched it.
+  void forget(const btSoftBody& body);
+  /// The trees of all bodies are to be fitted in the next step.
+  void forgetTrees();
 
   std::vector<SolvedBody>& bodies() { return bodies_; }
   const std::vector<SolvedBody>& bodies() const { return bodies_; }

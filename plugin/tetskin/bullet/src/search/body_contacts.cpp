@@ -224,6 +224,26 @@ void BodyContacts::forget(const btCollisionObject& object) {
   }
 }
 
+void BodyContacts::forgetAll() {
+  waiting_.clear();
+  known_.clear();
+  remembered_ = 0;
+  nodesRead_ = 0;
+  body_.pointContacts().clear();
+}
+
+/// What was found to be clear is searched again, with the same result.
+void BodyContacts::shift(const btVector3& by) {
+  for (auto& [object, known] : known_) {
+    for (auto& [number, shape] : known.shapes) {
+      ShapeMemory fresh;
+      fresh.touched.swap(shape.memory.touched);
+      shape.memory = std::move(fresh);
+    }
+  }
+  for (PointContact& contact : body_.pointContacts()) contact.position += by;
+}
+
 void BodyContacts::forgetUnused(KnownObject& object) {
   for (auto shape = object.shapes.begin(); shape != object.shapes.end();) {
     const bool used = object.step - shape->second.lastStep < kForgottenAfter;

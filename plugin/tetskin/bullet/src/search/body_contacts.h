@@ -57,6 +57,11 @@ class BodyContacts {
   /// Forgets an object that is not met any more, or not at present.
   void forget(const btCollisionObject& object);
 
+  /// Forgets all objects.
+  void forgetAll();
+  /// The body and all objects have been moved by as much.
+  void shift(const btVector3& by);
+
   /// Writes or reads which points have touched. What was found to be clear is searched again, with the same result.
   void visitState(WorldStream& stream);
 

@@ -173,6 +173,12 @@ void KinematicPaths::endStep() {
   shifted_.clear();
 }
 
+void KinematicPaths::shift(const btVector3& by) {
+  for (auto& [body, path] : paths_) {
+    for (btTransform* at : {&path.from, &path.to, &path.before}) at->getOrigin() += by;
+  }
+}
+
 /// The rest of a path is set as the next step begins.
 void KinematicPaths::visitState(WorldStream& stream) {
   stream.byObject(paths_, [&](const btRigidBody&, KinematicPath& path) {

@@ -54,6 +54,9 @@ class KinematicPaths {
   /// Takes the path of a kinematic body to this step.
   const KinematicPath& advance(const btRigidBody& body, btScalar seconds);
 
+  /// Moves the paths, after the bodies have been moved by as much.
+  void shift(const btVector3& by);
+
   /// Writes or reads the paths that bodies are on.
   void visitState(WorldStream& stream);
 

@@ -33,6 +33,10 @@ class RecordedForces {
 
   /// Forgets all.
   void clear();
+  /// Moves what is drawn.
+  void shift(const btVector3& by) {
+    for (Point& point : points_) point.position += by;
+  }
   /// Writes or reads the forces, but not what is drawn.
   void visitState(WorldStream& stream);
 

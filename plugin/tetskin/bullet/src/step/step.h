@@ -68,6 +68,11 @@ struct DeformableSolver::Impl {
   void visitFlags(WorldStream& stream);
 
   // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  /// Forgets what the body has touched, and how it has slept; implemented in step_placed.cpp.
+  void forgetTouches(btSoftBody& body);
+  /// Moves everything in a world of this solver; implemented in shift_origin.cpp.
+  void shift(btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
+
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
   void numberAnew();

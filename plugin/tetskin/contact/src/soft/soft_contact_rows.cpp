@@ -102,16 +102,36 @@ void SoftContactRows::exclude(const btSoftBody& body) {
   gone_.erase(std::remove(gone_.begin(), gone_.end(), &body), gone_.end());
   const ContactBody* solved = find(body);
   if (!solved) return;
-  // Nothing stored in the step before may refer to the body.
-  const int id = solved->id;
+  forgetPairs(*solved);
+  bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; }));
+}
+
+/// Afterwards nothing stored in the step before refers to the body.
+void SoftContactRows::forgetPairs(const ContactBody& body) {
   for (auto* contacts : {&contacts_, &sleeping_}) {
-    const auto isOf = [&](const auto& contact) { return contact.body == &body || contact.object == &body; };
+    const auto isOf = [&](const auto& contact) { return contact.body == body.body || contact.object == body.body; };
     contacts->erase(std::remove_if(contacts->begin(), contacts->end(), isOf), contacts->end());
   }
   for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
-    kept = kept->first.first == id || kept->first.second == id ? pairStates_.erase(kept) : std::next(kept);
+    const auto [first, second] = kept->first;
+    kept = first == body.id || second == body.id ? pairStates_.erase(kept) : std::next(kept);
   }
-  bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; }));
+}
+
+void SoftContactRows::forget(const btSoftBody& body) {
+  ContactBody* solved = find(body);
+  if (!solved) return;
+  forgetPairs(*solved);
+  solved->positions.clear();
+}
+
+void SoftContactRows::shift(const btVector3& by) {
+  for (const auto& solved : bodies_) {
+    for (btVector3& position : solved->positions) position += by;
+  }
+  for (auto* contacts : {&contacts_, &sleeping_}) {
+    for (PointContact& contact : *contacts) contact.position += by;
+  }
 }
 
 void SoftContactRows::excludeDeleted() {

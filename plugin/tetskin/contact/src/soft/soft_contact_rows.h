@@ -37,6 +37,8 @@ class SoftContactRows : public RowSource {
 
   PointContacts* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
+  void forget(const btSoftBody& body) override;
+  void shift(const btVector3& by) override;
   /// Of the contacts of the last step, those between bodies that sleep are kept; others are as before a step.
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
@@ -46,6 +48,7 @@ class SoftContactRows : public RowSource {
   static constexpr const char* kBuilderName = "soft contacts";
 
  private:
+  void forgetPairs(const ContactBody& body);
   /// What two bodies, or one body with itself, store from step to step.
   struct PairState {
     std::vector<Touch> touches[2];  ///< of the first body in the second, and of the second in the first

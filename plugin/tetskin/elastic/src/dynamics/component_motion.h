@@ -133,6 +133,8 @@ class ComponentMotion {
   RigidVelocity chord(const ComponentMomentum& now, const ComponentMoments& moments, const Eigen::Vector3d& near,
                       double seconds) const;
 
+  /// Takes what the next `find` uses of this one along a rigid motion.
+  void carry(const Eigen::Matrix3d& turn, const Eigen::Vector3d& by) { about_ = (turn * about_ + by).eval(); }
   /// Writes or reads what the next `find` uses of this one.
   void visitState(StateStream& stream) { stream.plain(about_.data(), 3); }
 

@@ -21,14 +21,11 @@ constexpr double kMostGrowth = 2.5;
 constexpr double kMostChange = 0.1;
 constexpr int kCalm = 4;
 
-/// Turns a vector in the wide layout.
 template <class S>
-void turnAll(AlignedVector<S>& wide, const std::vector<std::array<S, 9>>& turns,
-             const std::vector<std::uint32_t>& partOf) {
-  assert(wide.size() == 3 * partOf.size());
+void turnAll(S* wide, const std::vector<std::array<S, 9>>& turns, const std::vector<std::uint32_t>& partOf) {
   const bool several = turns.size() > 1;
   for (std::size_t chunk = 0; chunk < partOf.size() / kGroup; ++chunk) {
-    S* first = &wide[kWideVector * chunk];
+    S* first = wide + kWideVector * chunk;
     for (std::size_t lane = 0; lane < kGroup; ++lane) {
       const std::array<S, 9>& turn = turns[several ? partOf[kGroup * chunk + lane] : 0];
       const S x = first[lane], y = first[kGroup + lane], z = first[2 * kGroup + lane];
@@ -49,12 +46,18 @@ bool ImpulseHistory<S>::fits(double seconds) const {
 template <class S>
 void ImpulseHistory<S>::turn(const std::vector<std::array<double, 9>>& turns,
                              const std::vector<std::uint32_t>& partOf) {
+  assert(mean_.size() == 3 * partOf.size() && last_.size() == mean_.size());
+  turnWide(mean_.data(), turns, partOf);
+  turnWide(last_.data(), turns, partOf);
+}
+
+template <class S>
+void turnWide(S* wide, const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf) {
   std::vector<std::array<S, 9>> factors(turns.size());
   for (std::size_t part = 0; part < turns.size(); ++part) {
     for (std::size_t k = 0; k < 9; ++k) factors[part][k] = static_cast<S>(turns[part][k]);
   }
-  turnAll(mean_, factors, partOf);
-  turnAll(last_, factors, partOf);
+  turnAll(wide, factors, partOf);
 }
 
 template <class S>
@@ -114,7 +117,10 @@ void ImpulseHistory<S>::visitState(StateStream& stream, const BlockMatrix<S>& ma
   }
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class ImpulseHistory<Scalar>;
+#define TETSKIN_INSTANTIATE(Scalar)                                                     \
+  template class ImpulseHistory<Scalar>;                                                \
+  template void turnWide(Scalar* wide, const std::vector<std::array<double, 9>>& turns, \
+                         const std::vector<std::uint32_t>& partOf);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 

@@ -17,6 +17,11 @@
 
 namespace tetskin::elastic_detail {
 
+/// Turns a vector in the wide layout.
+/// turns   by component, stored by rows; one alone: of all components;  partOf  by slot: its component
+template <class S>
+void turnWide(S* wide, const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf);
+
 template <class S>
 class ImpulseHistory {
  public:

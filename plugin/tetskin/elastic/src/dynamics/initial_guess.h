@@ -40,6 +40,9 @@ class InitialGuess {
   /// iterations  that the solve took
   void learn(double squared, double acting, int iterations);
 
+  /// The solutions that are known, in the wide layout.
+  std::array<AlignedVector<S>*, 2> known() { return {known_ > 0 ? &last_ : nullptr, known_ > 1 ? &before_ : nullptr}; }
+
   /// Writes or reads what is known beside the matrix's solution, which is to be remembered.
   void visitState(StateStream& stream, BlockMatrix<S>& matrix);
 

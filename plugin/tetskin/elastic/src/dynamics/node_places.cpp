@@ -241,6 +241,15 @@ void NodePlaces<S>::turnFrames(const std::vector<Matrix3d>& turns) {
 }
 
 template <class S>
+void NodePlaces<S>::carry(bool turns, const Matrix3d& turn, const Vector3d& by) {
+  for (const std::uint32_t slot : slotOf_) {
+    const Vector3d x = placeAt(slot), now = (turns ? Vector3d(turn * x) : x) + by;
+    std::copy_n(now.data(), 3, &places_[3 * slot]);
+  }
+  if (turns) turnFrames(std::vector<Matrix3d>(frames_.size(), turn));
+}
+
+template <class S>
 void NodePlaces<S>::visitState(StateStream& stream) {
   stream.plain(places_.data(), places_.size());
   for (Frame& frame : frames_) {

@@ -59,6 +59,9 @@ class NodePlaces {
   /// Turns the frames with their components: what were the displacements of nodes are now those of turned ones.
   /// turns  by component
   void turnFrames(const std::vector<Eigen::Matrix3d>& turns);
+  /// Takes nodes and frames along a rigid motion: a rotation about the origin, then a translation.
+  /// turns  false: there is no rotation
+  void carry(bool turns, const Eigen::Matrix3d& turn, const Eigen::Vector3d& by);
   /// Replaces positions, 4 scalars per slot, by their displacements from the frames, up to a translation of each
   /// component. Changes nothing else.
   void displacePoints(AlignedVector<S>& points) const;

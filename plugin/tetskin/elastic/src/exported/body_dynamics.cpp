@@ -691,6 +691,27 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
   });
 }
 
+template <class S>
+void BodyDynamics<S>::carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  for (int k = 0; k < 9 && turns; ++k) rotation(k / 3, k % 3) = turn[static_cast<std::size_t>(k)];
+  const Eigen::Vector3d translation(by[0], by[1], by[2]);
+  places_.carry(turns, rotation, translation);
+  for (ComponentMotion& motion : motions_) motion.carry(rotation, translation);
+  if (!turns) return;
+  const std::vector<std::array<double, 9>> ofAll{turn};
+  if (history_.isKnown()) history_.turn(ofAll, partOf_);
+  turnWide(matrix_.solution(), ofAll, partOf_);
+  for (AlignedVector<S>* solution : guess_.known()) {
+    if (solution) turnWide(solution->data(), ofAll, partOf_);
+  }
+  const Eigen::Matrix<S, 3, 3> rounded = rotation.template cast<S>();
+  for (std::size_t slot = 0; slot < matrix_.slotCount(); ++slot) {
+    Eigen::Map<Eigen::Matrix<S, 3, 1>> v(&velocities_[4 * slot]);
+    v = (rounded * v).eval();
+  }
+}
+
 /// Of the steps before, only what the next one would not forget.
 template <class S>
 void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues) {

@@ -102,6 +102,15 @@ class TETSKIN_ELASTIC_API BodyDynamics {
     return &points_[4 * slot];
   }
 
+  /// Takes the body and all that it remembers along a rigid motion, a rotation about the origin and a translation: the
+  /// next step goes on from the last one there. Points and velocities are the caller's: see `rounded`.
+  /// turn  a matrix by rows;  turns  false: it is that of no rotation
+  void carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by);
+  /// True if this is the node's position, rounded.
+  bool isAt(std::size_t node, const S* point) const { return places_.isAt(matrix_.slotOf(node), point, S(0)); }
+  /// The node's position, rounded: 3 scalars.
+  void rounded(std::size_t node, S* point) const { places_.round(matrix_.slotOf(node), point); }
+
   /// The node's position minus its point.
   void remainder(std::size_t node, S* out) const {
     const std::size_t slot = matrix_.slotOf(node);

@@ -17,6 +17,8 @@ namespace {
 constexpr double kUnitRate = 240.0;
 /// Upper bound of stiffness and damping, which either precision can represent.
 constexpr double kStiffest = 1e9;
+/// Roundings of a position in the world, up to which an anchor is where it was.
+constexpr btScalar kRoundings = 4;
 /// Mean over all nodes that can move: the force needed to carry a body does not depend on how light the nodes at the
 /// point are.
 double meanNodeMass(const btSoftBody& body) {
@@ -190,6 +192,15 @@ void Joint::finish(btScalar seconds, const PointJoint* joints) {
     torque_ += (joints[k].anchor - joints[0].anchor).cross(joints[k].impulse) / seconds;
   }
   added_ = 0;
+}
+
+/// What the anchor was found to be before is rounded otherwise elsewhere, which is no motion.
+void Joint::shift(const btVector3& by) {
+  if (!anchor_.object) anchor_.frame.getOrigin() += by;
+  anchorBefore_.getOrigin() += by;
+  const btTransform now = anchor_.inWorld();
+  const btScalar rounding = kRoundings * SIMD_EPSILON * (by.length() + now.getOrigin().length());
+  if ((now.getOrigin() - anchorBefore_.getOrigin()).length() <= rounding) anchorBefore_.setOrigin(now.getOrigin());
 }
 
 void Joint::visitState(WorldStream& stream) {

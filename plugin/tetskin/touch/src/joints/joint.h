@@ -55,6 +55,7 @@ class Joint : public ActiveJoint {
   bool spent() const override { return !body(); }
   void addJoints(btScalar seconds, std::vector<PointJoint>& joints) override;
   void finish(btScalar seconds, const PointJoint* joints) override;
+  void shift(const btVector3& by) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
   void describe(BuildStream& stream) override;

@@ -77,6 +77,12 @@ void SurfaceJointRows::finish(btScalar seconds) {
   firsts_.clear();
 }
 
+void SurfaceJointRows::shift(const btVector3& by) {
+  for (const auto& joint : active_) {
+    if (!joint->spent()) joint->shift(by);
+  }
+}
+
 void SurfaceJointRows::visitState(WorldStream& stream) {
   for (const auto& joint : active_) {
     if (!joint->spent()) joint->visitState(stream);

@@ -34,6 +34,7 @@ class ActiveJoint {
   /// joints  those that addJoints has added, with their impulses
   virtual void finish(btScalar /*seconds*/, const PointJoint* /*joints*/) {}
 
+  virtual void shift(const btVector3& by) = 0;
   /// Writes or reads what changes, for snapshots.
   virtual void visitState(WorldStream& stream) = 0;
   /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
@@ -61,6 +62,7 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
   std::vector<PointJoint>* joints(btScalar seconds) override;
   void finish(btScalar seconds) override;
   void removeSoftBody(btSoftBody* body) override;
+  void shift(const btVector3& by) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
   const char* builderName() const override { return kBuilderName; }
