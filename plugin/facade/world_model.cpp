@@ -18,6 +18,18 @@ bool same(const BindingOptions& a, const BindingOptions& b) {
          a.maxDistance == b.maxDistance;
 }
 
+btHingeConstraint* hingeOf(const JointState& state) {
+  if (state.joint->getConstraintType() != HINGE_CONSTRAINT_TYPE) return nullptr;
+  return static_cast<btHingeConstraint*>(state.joint.get());
+}
+
+/// Also of a body without a surface to be seen, which no skin looks at. One that is asleep has been looked at.
+bool isFinite(const BodyState& body) {
+  const btSoftBody& soft = body.body->body();
+  const auto nodes = nodePositions(soft);
+  return !soft.isActive() || firstUnusable(nodes) == nodes.size();
+}
+
 }  // namespace
 
 btVector3 toBullet(const Vec3& vector, const char* name) {
@@ -53,7 +65,8 @@ World::~World() {
 }
 
 void World::checkStep(double dt, int substeps) {
-  if (!(dt >= 1e-6 && dt <= 10.0)) throw std::invalid_argument("dt: must be from 1e-6 to 10 seconds");
+  if (dt != 0.0 && !(dt >= 1e-6 && dt <= 10.0))
+    throw std::invalid_argument("dt: must be 0, or from 1e-6 to 10 seconds");
   if (substeps < 1 || substeps > 10000) throw std::invalid_argument("substeps: must be from 1 to 10000");
 }
 
@@ -65,13 +78,35 @@ btScalar World::substepOf(double dt, int substeps) {
   return step;
 }
 
-/// Bullet limits the motor of a hinge by its impulse in a step.
-void World::limitMotors(btScalar substep) {
-  for (const auto& state : joints_) {
-    if (state->joint->getConstraintType() != HINGE_CONSTRAINT_TYPE) continue;
-    static_cast<btHingeConstraint*>(state->joint.get())
-        ->setMaxMotorImpulse(static_cast<btScalar>(state->maxTorque) * substep);
+World::Alone::Alone(World& world) : world_(world) {
+  if (world.stepping_) {
+    fail(StatusCode::InvalidOption, "the world is within a step: it cannot be stepped or restored by what it calls");
   }
+  world.stepping_ = true;
+}
+
+World::MotorImpulses::MotorImpulses(World& world, btScalar substep) {
+  for (const auto& state : world.joints_) {
+    btHingeConstraint* hinge = hingeOf(*state);
+    if (!hinge) continue;
+    torques_.emplace_back(hinge, hinge->getMaxMotorImpulse());
+    hinge->setMaxMotorImpulse(torques_.back().second * substep);
+  }
+}
+World::MotorImpulses::~MotorImpulses() {
+  for (const auto& [hinge, torque] : torques_) hinge->setMaxMotorImpulse(torque);
+}
+
+bool World::step(Replay& replay) {
+  const Alone alone(*this);
+  if (!replay.step()) return false;
+  // A file has the impulses of steps.
+  for (const auto& state : joints_) {
+    if (btHingeConstraint* hinge = hingeOf(*state))
+      hinge->setMaxMotorImpulse(hinge->getMaxMotorImpulse() / replay.report().secondsPerStep);
+  }
+  updateSkins();
+  return true;
 }
 
 void World::updateSkins() {
@@ -82,8 +117,13 @@ void World::updateSkins() {
   statuses_.resize(skins_.size());
   SoftBodySkin::updateAll(skins_.data(), skins_.size(), statuses_.data(), 1, threads_.get());
   for (const StatusCode code : statuses_) {
-    if (code == StatusCode::NonFinite) fail(code, "a body has nodes that are not finite: the simulation is unstable");
     if (code == StatusCode::TopologyChanged) check(code, "World.step");
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (isFinite(*bodies_[b])) continue;
+    fail(StatusCode::NonFinite, "body " + std::to_string(b) +
+                                    " has nodes that are not finite: the simulation is unstable. Restore a snapshot, "
+                                    "or remove the body");
   }
 }
 
@@ -94,7 +134,19 @@ std::vector<char> World::save() const {
 }
 
 void World::restore(const void* snapshot, std::size_t size) {
+  const Alone alone(*this);
   check(world_->restore(snapshot, size));
+  updateTeleported();
+}
+
+std::unique_ptr<Replay> World::replay(const std::string& path) {
+  const Alone alone(*this);
+  std::unique_ptr<Replay> replay = take(Replay::open(*world_, path));
+  updateTeleported();
+  return replay;
+}
+
+void World::updateTeleported() {
   for (const auto& body : bodies_) {
     if (body->binding) body->skin.markTeleported();
   }

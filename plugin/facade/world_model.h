@@ -17,8 +17,11 @@
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
+#include <atomic>
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace tetskin::facade {
 
@@ -38,11 +41,11 @@ struct RigidState {
   bool removed = false;
 };
 
-/// A joint between rigid bodies; null: removed.
+/// A joint between rigid bodies; null: removed. The motor of a hinge is limited by a torque, which is where Bullet has
+/// an impulse: between steps, so that snapshots have it.
 struct JointState {
   std::shared_ptr<RigidState> first, second;
   std::unique_ptr<btTypedConstraint> joint;
-  double maxTorque = 0;  ///< of a hinge's motor
 };
 
 struct BodyState {
@@ -89,21 +92,31 @@ class World : public std::enable_shared_from_this<World> {
 
   DeformableWorld& bullet() { return *world_; }
   std::recursive_mutex& mutex() { return mutex_; }
+  std::atomic<unsigned> lockedIn{0};  ///< for who locks: the process, see Locked of the Python package
 
-  /// Steps, and updates all surfaces. Returns the number of substeps that were made.
+  /// Steps, and updates all surfaces. Returns the number of substeps that were made; none, if dt is 0. Throws after the
+  /// step if a body is not finite, before it for anything else.
   /// stepped  how the world is stepped: by itself, or by a recorder
   template <class Stepped>
   int step(double dt, int substeps, Stepped&& stepped) {
     checkStep(dt, substeps);
+    if (dt == 0.0) return 0;
+    const Alone alone(*this);
     const btScalar substep = substepOf(dt, substeps);
-    limitMotors(substep);
-    const int made = stepped(btScalar(dt), substeps, substep);
+    int made = 0;
+    {
+      const MotorImpulses impulses(*this, substep);
+      made = stepped(btScalar(dt), substeps, substep);
+    }
     updateSkins();
     return made;
   }
-  void updateSkins();
+  /// Makes the next step of a run, and updates all surfaces. False: there is none.
+  bool step(Replay& replay);
   std::vector<char> save() const;
   void restore(const void* snapshot, std::size_t size);
+  /// Opens a run, in the state in which recording began.
+  std::unique_ptr<Replay> replay(const std::string& path);
 
   std::shared_ptr<RigidState> addRigid(const ShapeModel& shape, double mass, const btTransform& pose, double friction,
                                        bool kinematic);
@@ -139,7 +152,31 @@ class World : public std::enable_shared_from_this<World> {
     std::weak_ptr<const ContactShape> shape;
   };
 
-  void limitMotors(btScalar substep);
+  /// Throws if the world is within a step or a restore of it, whose calls of the application it comes from.
+  class Alone {
+   public:
+    explicit Alone(World& world);
+    ~Alone() { world_.stepping_ = false; }
+    Alone(const Alone&) = delete;
+    Alone& operator=(const Alone&) = delete;
+
+   private:
+    World& world_;
+  };
+  /// Limits the motors of hinges within a step, as Bullet does it: by an impulse.
+  class MotorImpulses {
+   public:
+    MotorImpulses(World& world, btScalar substep);
+    ~MotorImpulses();
+    MotorImpulses(const MotorImpulses&) = delete;
+    MotorImpulses& operator=(const MotorImpulses&) = delete;
+
+   private:
+    std::vector<std::pair<btHingeConstraint*, btScalar>> torques_;
+  };
+
+  void updateSkins();
+  void updateTeleported();
   static void checkStep(double dt, int substeps);
   static btScalar substepOf(double dt, int substeps);
   Shared& sharedOf(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options);
@@ -157,6 +194,7 @@ class World : public std::enable_shared_from_this<World> {
   std::vector<std::shared_ptr<TouchState>> touches_;
   std::vector<SoftBodySkin*> skins_;
   std::vector<StatusCode> statuses_;
+  bool stepping_ = false;
 };
 
 /// Throw if the thing has been removed from its world.

@@ -76,6 +76,17 @@ TEST_F(RefusedSnapshots, NameABodyOfAnotherShape) {
   expectMismatch("object 2 (a rigid body, user index 2) has another shape");
 }
 
+TEST_F(RefusedSnapshots, NameADeterministicWorldAndOneThatIsNot) {
+  RigidScene other;
+  build(other);
+  other.world.deformableSolver().setDeterministic(true);
+  const Snapshot deterministic = saved(other.world);
+  expectRefused(scene, deterministic, StatusCode::SnapshotMismatch, "it was deterministic, and this one is not");
+  expectRefused(other, snapshot, StatusCode::SnapshotMismatch, "it was not deterministic, and this one is");
+  scene.world.deformableSolver().setDeterministic(true);
+  EXPECT_TRUE(restoreSnapshot(scene.world, deterministic.data(), deterministic.size()).ok());
+}
+
 TEST_F(RefusedSnapshots, SeeScaleMarginAndChildrenOfShapes) {
   btCollisionShape& box = *scene.bodies[1]->getCollisionShape();
   box.setLocalScaling(btVector3(1, 1, btScalar(1.01)));

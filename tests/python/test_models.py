@@ -3,8 +3,12 @@
 """Meshes and cages: from files and arrays, to files and pickles; long work with progress; what needs no world."""
 
 import json
+import os
 import pickle
+import signal
 import struct
+import threading
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -164,6 +168,17 @@ def test_long_work_tells_its_progress_and_can_be_cancelled(mesh, cage, work):
 
     with pytest.raises(KeyError):
         work(mesh, cage, fail)
+
+
+@pytest.mark.parametrize("progress", [None, True])
+def test_ctrl_c_is_heard_in_the_middle_of_long_work(mesh, progress, capsys):
+    """Of half a minute, if nobody interrupts it."""
+    timer = threading.Timer(0.1, os.kill, [os.getpid(), signal.SIGINT])
+    start = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        ts.create_cage(mesh, target_tets=3_000_000, progress=progress)
+    assert time.monotonic() - start < 8
 
 
 def test_bones_draw_the_surface_of_the_skin(mesh, cage):

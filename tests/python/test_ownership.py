@@ -5,6 +5,7 @@
 import gc
 import sys
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -141,6 +142,25 @@ def test_reference_counts_stay_flat_over_many_steps():
     # Counts of what the interpreter itself uses move by a few.
     assert all(abs(a - b) < 50 for a, b in zip(counts, after)), (counts, after)
     assert abs(sys.getallocatedblocks() - blocks) < 1000
+
+
+def test_a_call_that_mentions_its_replay_is_let_go(dropped, tmp_path):
+    world, _ = dropped
+    with ts.Recorder(world, tmp_path / "run") as recorder:
+        recorder.step()
+    gone = []
+    for _ in range(5):
+        replay = ts.Replay(world, tmp_path / "run")
+
+        def change(step, replay=replay, world=world):
+            return replay, world
+
+        replay.on_change(change)
+        replay.step()
+        gone.append(weakref.ref(change))
+        del replay, change
+    gc.collect()
+    assert not any(one() for one in gone)
 
 
 def test_threads_take_turns(dropped):

@@ -14,7 +14,7 @@ import tetskin as ts
 
 from conftest import torus
 
-PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
+PROTOCOLS = range(pickle.HIGHEST_PROTOCOL + 1)
 
 
 def grouped(tmp_path):

@@ -292,3 +292,262 @@ def test_a_hidden_surface_is_not_updated(dropped):
     body.visible = True
     world.step()
     assert not np.array_equal(body.positions, before)
+
+
+def motion(world, body, rigid):
+    return [body.nodes.copy(), body.velocities.copy(), rigid.position, rigid.rotation, rigid.velocity]
+
+
+def test_no_time_passes_in_a_step_of_none(mesh, cage, tmp_path):
+    world, body, box = scene(mesh, cage)
+    settle(world, 3)
+    body.apply_radial_impulse((0, 0, 0), 9, 5)
+    point = world.point_at_vertex(body, 0)
+    point.apply_force((0, 3, 0), 4)
+    before, state = motion(world, body, box), world.save()
+    assert world.step(0) == 0 and world.step(0.0, substeps=9) == 0
+    assert all(np.array_equal(*pair) for pair in zip(before, motion(world, body, box))) and world.save() == state
+    with ts.Recorder(world, tmp_path / "run") as recorder:
+        assert [recorder.step(dt) for dt in (1 / 60, 0, 1 / 60)] == [4, 0, 4] and recorder.steps == 2
+    replay = ts.Replay(world, tmp_path / "run")
+    while replay.step():
+        pass
+    assert replay.steps == 2 and not replay.differs
+    elastic = ts.ElasticBody(cage)
+    elastic.velocities = np.ones_like(cage.nodes)
+    assert elastic.step(0) == 0 and np.array_equal(elastic.positions, cage.nodes)
+
+
+def driven():
+    """An arm that a motor turns, by hardly more than it takes."""
+    world = ts.World(gravity=(0, 0, 0))
+    arm = world.add_box((0.5, 0.05, 0.05), mass=1, position=(0.5, 0, 0))
+    hinge = world.add_hinge(arm, pivot=(0, 0, 0), axis=(0, 0, 1))
+    finger = world.add_box((0.1, 0.1, 0.1), mass=1, position=(0, 2, 0))
+    slider = world.add_slider(finger, axis=(1, 0, 0))
+    return world, hinge, slider
+
+
+def turned(world, hinge, slider, frames=30):
+    settle(world, frames)
+    return hinge.coordinate, slider.coordinate
+
+
+def test_the_limits_of_motors_are_in_snapshots(tmp_path):
+    world, hinge, slider = driven()
+    hinge.set_motor(2.0, 0.5)
+    slider.set_motor(2.0, 0.5)
+    untouched = world.save()
+    with ts.Recorder(world, tmp_path / "run") as recorder:
+        for _ in range(5):
+            recorder.step()
+    settle(world, 5)
+    snapshot = world.save()
+    expected = turned(world, hinge, slider)
+    assert 0.1 < expected[0] < 0.9 and 0.01 < expected[1] < 0.9  # they lag behind
+    hinge.set_motor(0.0, 0.0)
+    slider.set_motor(0.0, 0.0)
+    world.restore(snapshot)
+    assert turned(world, hinge, slider) == expected
+    other, other_hinge, other_slider = driven()
+    other.restore(snapshot)
+    assert turned(other, other_hinge, other_slider) == expected
+    for taken in (untouched, None):  # before any step, and after those of a file
+        other, other_hinge, other_slider = driven()
+        if taken:
+            other.restore(taken)
+            settle(other, 5)
+        else:
+            replay = ts.Replay(other, tmp_path / "run")
+            while replay.step():
+                pass
+            assert replay.steps == 5 and not replay.differs
+        settle(other, 5)
+        assert turned(other, other_hinge, other_slider) == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_motors_limit_is_a_torque_whatever_the_steps():
+    ends = []
+    for dt, substeps in ((1 / 60, 1), (1 / 60, 8), (1 / 240, 1)):
+        world, hinge, slider = driven()
+        hinge.set_motor(50.0, 0.5)
+        for _ in range(round(0.5 / dt)):
+            world.step(dt, substeps=substeps)
+        ends.append(hinge.coordinate)
+    # Inertia of the arm about its end: (1 + 0.01) / 12 + 0.25.
+    assert ends == pytest.approx([0.5 * 0.5 / (1.01 / 12 + 0.25) * 0.5**2] * 3, rel=0.05)
+
+
+@pytest.mark.parametrize("surface", ["seen", "hidden", "none"])
+def test_a_body_that_is_not_finite_is_told_whatever_is_seen_of_it(mesh, cage, surface):
+    world = ts.World(gravity=(0, 0, 0))
+    world.add_body(cage, mesh, position=(9, 9, 9))
+    body = world.add_body(cage, None if surface == "none" else mesh)
+    if surface == "hidden":
+        body.visible = False
+    world.step()
+    snapshot = world.save()
+    for _ in range(2):
+        body.transform((1e18, 0, 0))  # further than what counts as finite
+    with pytest.raises(ts.Error, match="body 1 .*not finite") as error:
+        world.step()
+    assert error.value.code == ts.StatusCode.NON_FINITE
+    world.restore(snapshot)
+    world.step()
+    assert np.isfinite(body.nodes).all()
+
+
+@pytest.mark.parametrize("within", ["World.step", "Recorder.step", "Replay.step", "World.restore", "Replay"])
+def test_no_step_is_made_within_a_step(mesh, cage, tmp_path, within):
+    world, _, box = scene(mesh, cage)
+    snapshot = world.save()
+    with ts.Recorder(world, tmp_path / "run") as recorder:
+        recorder.step()
+        box.remove()
+        recorder.step()
+    other, body, twin = scene(mesh, cage)
+    replay = ts.Replay(other, tmp_path / "run")
+    calls = {
+        "World.step": other.step,
+        "Recorder.step": lambda: ts.Recorder(other, tmp_path / "other").step(),
+        "Replay.step": replay.step,
+        "World.restore": lambda: other.restore(snapshot),
+        "Replay": lambda: ts.Replay(other, tmp_path / "run"),
+    }
+    told = []
+
+    def change(step):
+        told.append(step)
+        with pytest.raises(ts.Error, match="within a step") as error:
+            calls[within]()
+        assert error.value.code == ts.StatusCode.INVALID_OPTION
+        twin.remove()
+
+    replay.on_change(change)
+    assert replay.step() and replay.step() and not replay.step() and told == [1]
+    assert not replay.differs
+    other.step()
+
+
+def test_what_a_replay_calls_may_be_replaced_by_itself(mesh, cage, tmp_path):
+    world, _, box = scene(mesh, cage)
+    with ts.Recorder(world, tmp_path / "run") as recorder:
+        recorder.step()
+        box.remove()
+        recorder.step()
+    other, _, twin = scene(mesh, cage)
+    replay = ts.Replay(other, tmp_path / "run")
+
+    def change(step):
+        replay.on_change(print)
+        twin.remove()
+
+    replay.on_change(change)
+    del change
+    assert replay.step() and replay.step() and not replay.differs
+
+
+def test_pins_let_go_of_a_body_that_flies_on(mesh, cage):
+    """Held at its top and led upwards for two seconds, then let go."""
+    world = ts.World()
+    body = world.add_body(cage, mesh, density=1000, youngs_modulus=2e5)
+    free_mass = body.mass
+    top = cage.nodes[:, 1] > 0.1
+    at, masses = cage.nodes[top], cage.masses / cage.masses.sum()
+    body.set_pinned(top)
+    assert body.mass < free_mass
+    for frame in range(120):
+        body.set_pinned_positions(top, at + [0, 0.5 * (frame + 1) / 60, 0])
+        world.step()
+
+    def flight():
+        body.set_pinned(top, False)
+        assert not body.pinned.any() and body.mass == pytest.approx(free_mass, rel=1e-6)
+        start, speed = masses @ body.nodes, masses @ body.velocities
+        settle(world, 18)
+        assert np.linalg.norm(body.velocities, axis=1).min() > 0.1  # none is at rest
+        return start, speed, masses @ body.nodes
+
+    snapshot = world.save()
+    first = flight()
+    start, speed, end = first
+    t, fall, half_substep = 0.3, 0.5 * 9.81 * 0.3**2, 1 / 480  # speeds are those at the middle of a substep
+    assert end[1] - start[1] == pytest.approx((speed[1] - 9.81 * half_substep) * t - fall, abs=0.001 * fall)
+    world.restore(snapshot)
+    assert np.array_equal(body.pinned, top)
+    assert all(np.array_equal(*pair) for pair in zip(first, flight()))
+
+
+def test_a_weld_does_not_outlive_its_rigid_body(mesh, cage):
+    def hanging():
+        world = ts.World()
+        body = world.add_body(cage, mesh, pinned=cage.nodes[:, 1] > 0.25, youngs_modulus=2e4, density=300)
+        return world, body
+
+    plain, alone = hanging()
+    world, body = hanging()
+    point = world.point_at_rest(body, (0, -0.35, 1))
+    sphere = world.add_sphere(0.1, mass=0.5, position=point.position - [0, 0.1, 0])
+    weld = world.add_weld(point, sphere)
+    settle(world, 30)
+    snapshot = world.save()
+    assert not weld.released
+    sphere.remove()
+    assert weld.released
+    other = world.add_sphere(0.1, mass=0.5, position=(1, -2, 1))
+    with pytest.raises(ts.Error) as error:
+        world.restore(snapshot)
+    assert error.value.code == ts.StatusCode.SNAPSHOT_MISMATCH
+    settle(world, 30)
+    dt, steps = 1 / 240, 120  # Bullet's fall by steps
+    assert other.position[1] == pytest.approx(-2 - 9.81 * dt**2 * steps * (steps + 1) / 2, abs=1e-4)
+    settle(world, 400)
+    settle(plain, 460)
+    sag = cage.nodes[:, 1].min() - alone.nodes[:, 1].min()
+    assert np.abs(body.nodes - alone.nodes).max() < 1e-3 * abs(sag) + 1e-5
+
+
+def test_what_things_are_is_said(mesh, cage, tmp_path):
+    world, body, box = scene(mesh, cage)
+    point = world.point_at_vertex(body, 0)
+    spring, weld = world.add_spring(point), world.add_weld(point, box)
+    hinge = world.add_hinge(box, pivot=(0, 0, 0), axis=(0, 0, 1))
+    world.step()
+    recorder = ts.Recorder(world, tmp_path / "run")
+    recorder.step()
+    tets = f"{cage.tet_count} tets"
+    words = {
+        mesh: "TriangleMesh: 800 vertices, 1600 triangles",
+        cage: f"Cage: {tets}, {cage.node_count} nodes",
+        ts.calibrate(cage): f"Cage: {tets}, {cage.node_count} nodes, calibrated",
+        ts.refine_quadratic(cage): "nodes, quadratic",
+        world: "World: 1 soft body, 2 rigid bodies",
+        body: f"Body: {tets}, 800 vertices",
+        ts.World().add_body(cage): f"Body: {tets}, no surface",
+        box: "RigidBody: Box at (",
+        ts.Shape.sphere(1): "Shape: SPHERE",
+        hinge: "Joint: hinge",
+        point: "SurfacePoint: at (",
+        spring: "Spring: holds",
+        weld: "Weld: holds",
+        world.raycast((1, 5, 0), (1, -5, 0)): "Hit: triangle ",
+        world.contacts(body): "Contacts: ",
+        world.forces_on(body): "AppliedForces: total force (",
+        world.forces_on(body).total: "Wrench: force (",
+        body.apply_radial_impulse((0, 0, 0), 9, 1): "ImpulseResult: 800 vertices, linear (",
+        recorder: "Recorder: 1 step",
+        ts.Skin(cage, mesh): "Skin: 800 vertices",
+        ts.BonePalette(cage, mesh): f"BonePalette: {cage.node_count} bones",
+        ts.ElasticBody(cage): f"ElasticBody: {cage.node_count} nodes",
+        ts.GlbWriter(tmp_path / "run.glb"): "GlbWriter: 0 frames",
+        ts.Film(world): "Film: 0 frames",
+    }
+    for thing, said in words.items():
+        assert repr(thing).startswith("<tetskin.") and said in repr(thing) and str(thing) == repr(thing)
+    recorder.close()
+    assert repr(ts.Replay(world, tmp_path / "run")) == "<tetskin.Replay: 0 steps played>"
+    box.remove()
+    body.remove()
+    for thing, said in {recorder: "closed", body: "removed", box: "removed", hinge: "removed", weld: "released"}.items():
+        assert repr(thing).endswith(f": {said}>")
+    assert repr(point) == "<tetskin.SurfacePoint: of a body that has been removed>"

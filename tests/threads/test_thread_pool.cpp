@@ -16,6 +16,11 @@
 #include <set>
 #include <thread>
 
+#ifdef __unix__
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 namespace tetskin {
 namespace {
 
@@ -133,6 +138,32 @@ TEST(ThreadPool, WaitsWithoutBurningTime) {
 TEST(ThreadPool, MayBeMadeAndDestroyedWithoutWork) {
   for (int k = 0; k < 100; ++k) const ThreadPool pool(4);
 }
+
+#ifdef __unix__
+TEST(ThreadPool, WorksAloneInAProcessThatWasForked) {
+  auto pool = std::make_unique<ThreadPool>(4);
+  expectEachTaskOnce(*pool, 100);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));  // its threads sleep, as the destructor would wait for
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(10);  // ends what waits for ever
+    std::vector<int> calls(100, 0);
+    runTasks(pool.get(), calls.size(), [&](std::size_t k) { ++calls[k]; });
+    bool right = std::count(calls.begin(), calls.end(), 1) == 100 && pool->threadCount() == 1;
+    pool.reset();
+    pool = std::make_unique<ThreadPool>(2);  // one of this process has threads
+    runTasks(pool.get(), calls.size(), [&](std::size_t k) { ++calls[k]; });
+    right = right && std::count(calls.begin(), calls.end(), 2) == 100 && pool->threadCount() == 2;
+    pool.reset();
+    _exit(right ? 0 : 1);
+  }
+  int ended = -1;
+  ASSERT_EQ(waitpid(child, &ended, 0), child);
+  EXPECT_EQ(ended, 0);
+  EXPECT_EQ(pool->threadCount(), 4u);
+  expectEachTaskOnce(*pool, 100);
+}
+#endif
 
 /// Positions, normals and bounding box of an update of a large mesh with these threads.
 struct Update {

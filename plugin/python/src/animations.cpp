@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "handles.h"
 
-#include <nanobind/stl/filesystem.h>
 #include <tetskin/io/animation.h>
 
 namespace tetskin::python {
@@ -11,8 +10,8 @@ namespace {
 /// A GLB with the bodies and rigid bodies of worlds, whose places each frame reads.
 class GlbAnimation {
  public:
-  GlbAnimation(const std::filesystem::path& path, double framesPerSecond)
-      : writer_(take(GlbWriter::create(path.u8string(), framesPerSecond))) {}
+  GlbAnimation(const PathLike& path, double framesPerSecond)
+      : writer_(take(GlbWriter::create(path.text(), framesPerSecond))) {}
 
   void addBody(const BodyHandle& body, const std::string& name) {
     const Locked lock(*body.world);
@@ -47,8 +46,9 @@ class GlbAnimation {
       places.push_back(placeOf(alive(rigid).getWorldTransform()));
     }
     check(writer_.addFrame(views, places));
-    begun_ = true;
+    ++frames_;
   }
+  std::size_t frameCount() const { return frames_; }
   void finish() {
     if (finished_) return;
     check(writer_.finish());
@@ -57,7 +57,7 @@ class GlbAnimation {
 
  private:
   void checkOpen() const {
-    if (begun_ || finished_) fail(StatusCode::InvalidOption, "what is shown is added before the first frame");
+    if (frames_ > 0 || finished_) fail(StatusCode::InvalidOption, "what is shown is added before the first frame");
   }
   static Eigen::Affine3d placeOf(const btTransform& pose) {
     Eigen::Affine3d place = Eigen::Affine3d::Identity();
@@ -71,7 +71,8 @@ class GlbAnimation {
   GlbWriter writer_;
   std::vector<BodyHandle> bodies_;
   std::vector<RigidHandle> rigids_;
-  bool begun_ = false, finished_ = false;
+  std::size_t frames_ = 0;
+  bool finished_ = false;
 };
 
 }  // namespace
@@ -80,7 +81,8 @@ void bindAnimations(nb::module_& module) {
   Class<GlbAnimation>(module, "GlbWriter",
                       "Writes a run as one animation, binary glTF 2.0, which engines and viewers play. A context "
                       "manager that finishes it.")
-      .def(nb::init<const std::filesystem::path&, double>(), "path"_a, "frames_per_second"_a = 60.0)
+      .words([](const GlbAnimation& g) { return counted(g.frameCount(), "frame", "frames"); })
+      .def(nb::init<const PathLike&, double>(), "path"_a, "frames_per_second"_a = 60.0)
       .def("add_body", &GlbAnimation::addBody, "body"_a, "name"_a = "body",
            "Shows a soft body, by its surface. Before the first frame.")
       .def("add_object", &GlbAnimation::addObject, "mesh"_a, "rigid_body"_a = nb::none(), "name"_a = "object",

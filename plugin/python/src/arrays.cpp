@@ -9,41 +9,28 @@
 namespace tetskin::python {
 namespace {
 
-/// The one letter of a native number's format; 0 for others.
-char letterOf(const char* format) {
-  if (!format) return 'B';
-  if (*format == '=' || *format == '@' || *format == '<') ++format;
+/// The one letter of a number's format, whatever its byte order; 0 for others.
+char letterOf(const Py_buffer& buffer) {
+  const char* format = buffer.format ? buffer.format : "B";
+  if (*format && std::strchr("@=<>!", *format)) ++format;
   return std::strlen(format) == 1 ? *format : '\0';
 }
 
-template <class From, class To>
-To read(const char* at) {
-  From number;
-  std::memcpy(&number, at, sizeof number);
-  return static_cast<To>(number);
+/// Numbers that become these without loss, or only by rounding of what has more than 53 bits.
+template <class Number>
+bool isTaken(const Py_buffer& buffer) {
+  const char letter = letterOf(buffer);
+  return letter && std::strchr(std::is_floating_point_v<Number> ? "bhilqBHILQefd" : "bhilqBHILQ", letter);
 }
 
-/// How a number of this format is read as one of the wanted kind; null if it must not be.
-template <class To>
-To (*readerOf(char letter, Py_ssize_t size))(const char*) {
-  if constexpr (std::is_floating_point_v<To>) {
-    if (letter == 'd') return read<double, To>;
-    if (letter == 'f') return read<float, To>;
-  } else {
-    if (std::strchr("bhilq", letter) && letter) {
-      return size == 8   ? read<std::int64_t, To>
-             : size == 4 ? read<std::int32_t, To>
-             : size == 2 ? read<std::int16_t, To>
-                         : read<std::int8_t, To>;
-    }
-    if (std::strchr("BHILQ", letter) && letter) {
-      return size == 8   ? read<std::uint64_t, To>
-             : size == 4 ? read<std::uint32_t, To>
-             : size == 2 ? read<std::uint16_t, To>
-                         : read<std::uint8_t, To>;
-    }
-  }
-  return nullptr;
+/// Whether these are the numbers themselves, side by side.
+template <class Number>
+bool areThese(const Py_buffer& buffer) {
+  const char letter = letterOf(buffer);
+  const bool ordered = buffer.format && *buffer.format && std::strchr("<>!", *buffer.format);
+  const bool same = std::is_floating_point_v<Number> ? letter == 'd' : letter && std::strchr("ilq", letter);
+  return same && !ordered && buffer.itemsize == sizeof(Number) && PyBuffer_IsContiguous(&buffer, 'C') &&
+         reinterpret_cast<std::uintptr_t>(buffer.buf) % alignof(Number) == 0;
 }
 
 std::string shapeOf(const Py_buffer& buffer) {
@@ -52,12 +39,13 @@ std::string shapeOf(const Py_buffer& buffer) {
   return text + (buffer.ndim == 1 ? ",)" : ")");
 }
 
-/// Lists and the like become arrays of NumPy; in these, a number without a point is a real one where such are wanted.
-nb::object asArray(const nb::object& object, bool real = false) {
-  if (PyObject_CheckBuffer(object.ptr())) return object;
-  const nb::object array = nb::module_::import_("numpy").attr("asarray")(object);
-  const bool whole = nb::cast<std::string>(array.attr("dtype").attr("kind")) == "i";
-  return real && whole ? array.attr("astype")("float64") : array;
+nb::object numpy(const char* function) {
+  return nb::module_::import_("numpy").attr(function);
+}
+
+/// Lists and the like become arrays of NumPy.
+nb::object asArray(const nb::object& object) {
+  return PyObject_CheckBuffer(object.ptr()) ? object : numpy("asarray")(object);
 }
 
 void getBuffer(const nb::object& array, Py_buffer& buffer, const char* name) {
@@ -70,42 +58,30 @@ void getBuffer(const nb::object& array, Py_buffer& buffer, const char* name) {
 
 template <class Number>
 Numbers<Number>::Numbers(const ArrayLike& array, const char* name, int columns) {
-  const bool real = std::is_floating_point_v<Number>;
-  getBuffer(asArray(array.object, real), buffer_, name);
-  const auto refuse = [&](auto fault, const std::string& what) {
+  constexpr bool kReal = std::is_floating_point_v<Number>;
+  const nb::object given = asArray(array.object);
+  getBuffer(given, buffer_, name);
+  const auto refused = [&](const std::string& what) {
     PyBuffer_Release(&buffer_);
-    throw fault((std::string(name) + ": " + what).c_str());
+    return std::string(name) + ": " + what;
   };
-  const auto make = [](const char* text) { return nb::type_error(text); };
-  const auto makeValue = [](const char* text) { return nb::value_error(text); };
-  const std::string wanted = columns ? "(n, " + std::to_string(columns) + ")" : "(n,)";
   if (buffer_.ndim != (columns ? 2 : 1) || (columns && buffer_.shape[1] != columns)) {
     // What is empty has no columns to be wrong about.
     if (buffer_.ndim == 1 && buffer_.shape[0] == 0) return;
-    refuse(makeValue, "the shape must be " + wanted + ", not " + shapeOf(buffer_));
+    const std::string wanted = columns ? "(n, " + std::to_string(columns) + ")" : "(n,)";
+    throw nb::value_error(refused("the shape must be " + wanted + ", not " + shapeOf(buffer_)).c_str());
   }
-  const auto reader = readerOf<Number>(letterOf(buffer_.format), buffer_.itemsize);
-  if (!reader) {
-    refuse(make, std::string("the numbers must be ") + (real ? "float32 or float64" : "integers") +
-                     ", not of the format '" + (buffer_.format ? buffer_.format : "B") + "'");
+  if (!isTaken<Number>(buffer_)) {
+    const std::string type = nb::cast<std::string>(numpy("asarray")(given).attr("dtype").attr("name"));
+    const std::string wanted = kReal ? "real, of 64 bits or fewer" : "integers";
+    throw nb::type_error(refused("the numbers must be " + wanted + ", not " + type).c_str());
   }
   rows_ = static_cast<std::size_t>(buffer_.shape[0]);
-  const Py_ssize_t row = buffer_.strides[0], column = columns ? buffer_.strides[1] : 0;
-  const auto width = static_cast<Py_ssize_t>(columns ? columns : 1), item = buffer_.itemsize;
-  const bool same = item == sizeof(Number) && letterOf(buffer_.format) == (real ? 'd' : letterOf(buffer_.format)) &&
-                    (real || std::strchr("ilq", letterOf(buffer_.format)));
-  const bool tight = row == width * item && (!columns || column == item);
-  const bool aligned = reinterpret_cast<std::uintptr_t>(buffer_.buf) % alignof(Number) == 0;
-  if (same && tight && aligned) {
-    data_ = static_cast<const Number*>(buffer_.buf);
-    return;
+  if (!areThese<Number>(buffer_)) {
+    PyBuffer_Release(&buffer_);
+    getBuffer(numpy("array")(given, kReal ? "float64" : "int64", "order"_a = "C"), buffer_, name);
   }
-  copy_.reserve(rows_ * static_cast<std::size_t>(width));
-  for (std::size_t i = 0; i < rows_; ++i) {
-    const char* at = static_cast<const char*>(buffer_.buf) + static_cast<Py_ssize_t>(i) * row;
-    for (Py_ssize_t k = 0; k < width; ++k) copy_.push_back(reader(at + k * column));
-  }
-  data_ = copy_.data();
+  data_ = static_cast<const Number*>(buffer_.buf);
 }
 
 template <class Number>
@@ -127,7 +103,7 @@ std::vector<int> indicesOf(const ArrayLike& array, const char* name, std::size_t
   const ArrayLike made{asArray(array.object)};
   Py_buffer buffer{};
   getBuffer(made.object, buffer, name);
-  const bool mask = letterOf(buffer.format) == '?' && buffer.ndim == 1;
+  const bool mask = letterOf(buffer) == '?' && buffer.ndim == 1;
   std::vector<int> indices;
   if (mask) {
     const bool fits = static_cast<std::size_t>(buffer.shape[0]) == count;
@@ -156,6 +132,37 @@ std::vector<int> indicesOf(const ArrayLike& array, const char* name, std::size_t
   return indices;
 }
 
+std::string PathLike::text() const {
+  const nb::object path = nb::steal(PyOS_FSPath(object.ptr()));
+  if (!path.is_valid()) throw nb::python_error();
+  nb::object bytes = path;
+  if (PyUnicode_Check(path.ptr())) {
+#ifndef _WIN32
+    bytes = nb::steal(PyUnicode_EncodeFSDefault(path.ptr()));
+#else
+    bytes = nb::steal(PyUnicode_AsUTF8String(path.ptr()));
+#endif
+    if (!bytes.is_valid()) {  // no file has such a name
+      PyErr_Clear();
+      bytes = nb::steal(PyUnicode_AsEncodedString(path.ptr(), "utf-8", "surrogatepass"));
+      if (!bytes.is_valid()) throw nb::python_error();
+    }
+  }
+  const std::string text(PyBytes_AsString(bytes.ptr()), static_cast<std::size_t>(PyBytes_Size(bytes.ptr())));
+  if (text.find('\0') != std::string::npos) throw nb::value_error("path: no file's name has the character 0");
+  return text;
+}
+
+nb::str textOf(const std::string& text) {
+  PyObject* made = PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace");
+  if (!made) throw nb::python_error();
+  return nb::steal<nb::str>(made);
+}
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
 Column<bool> newMask(const std::vector<char>& mask) {
   const auto owner = std::make_shared<std::vector<char>>(mask);
   return view1<bool>(reinterpret_cast<const bool*>(owner->data()), owner->size(), owner);
@@ -178,11 +185,11 @@ ProgressCall::ProgressCall(const nb::object& call, const char* what) : call_(cal
 }
 
 std::function<bool(double)> ProgressCall::function() {
-  if (call_.is_none()) return {};
   return [this](double fraction) {
     const nb::gil_scoped_acquire acquire;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      if (call_.is_none()) return true;
       const nb::object answer = call_(fraction);
       return answer.is_none() || PyObject_IsTrue(answer.ptr()) == 1;
     } catch (...) {

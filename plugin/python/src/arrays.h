@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -50,14 +51,22 @@ struct OutsideRules {
 struct Layouts {
   static constexpr auto kNames = nb::detail::const_name("typing.Literal['rows', 'columns']");
 };
+/// A file's name: text, bytes, or what has __fspath__.
+struct PathLike {
+  nb::object object;
+  /// In UTF-8, or, where that is how the system names files, as bytes of any kind.
+  std::string text() const;
+};
+/// Text from a file or of a path, of which what is not UTF-8 is written as \\x and two digits.
+nb::str textOf(const std::string& text);
 /// Called with the fraction done; True, which prints a bar; or None.
 struct Progress {
   nb::object call;
   operator const nb::object&() const { return call; }
 };
 
-/// Numbers of an argument, side by side in memory: those of the array itself where that is possible, otherwise a copy.
-/// Holds the array.
+/// Numbers of an argument, side by side in memory: those of the array itself where that is possible, otherwise a copy
+/// by NumPy. Holds the array.
 template <class Number>
 class Numbers {
  public:
@@ -74,7 +83,6 @@ class Numbers {
  private:
   const Number* data_ = nullptr;
   std::size_t rows_ = 0;
-  std::vector<Number> copy_;
   Py_buffer buffer_{};
 };
 extern template class Numbers<double>;
@@ -185,7 +193,43 @@ class Class : public nb::class_<T> {
     nb::class_<T>::def_prop_rw(std::forward<Args>(args)..., nb::rv_policy::automatic);
     return *this;
   }
+  /// What a thing is, in a few words, where Python would say where it is in memory.
+  template <class Words>
+  Class& words(Words words) {
+    const std::string name = nb::cast<std::string>(this->attr("__name__"));
+    return def("__repr__", [name, words](const T& self) { return "<tetskin." + name + ": " + words(self) + ">"; });
+  }
+  /// How it is pickled, by the oldest protocols, too.
+  /// get  a thing's state, as a tuple
+  /// set  a thing of a state, which may throw
+  template <class Get, class Set>
+  Class& pickled(Get get, Set set) {
+    def("__getstate__", get, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"));
+    const auto make = [set](T& self, const nb::tuple& state) {
+      try {
+        new (&self) T(set(state));
+      } catch (const nb::cast_error&) {
+        fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+      }
+    };
+    def("__setstate__", make, nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
+    const auto reduce = [](nb::handle self) {
+      const nb::object newObject = nb::module_::import_("copyreg").attr("__newobj__");
+      return nb::make_tuple(newObject, nb::make_tuple(self.type()), self.attr("__getstate__")());
+    };
+    return def("__reduce__", reduce, nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+  }
 };
+/// "2 tets", "1 tet".
+std::string counted(std::size_t count, const char* one, const char* many);
+/// "(0, 1, -2.5)"
+template <class V>
+std::string wordsOf(const V& v) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g)", static_cast<double>(v[0]), static_cast<double>(v[1]),
+                static_cast<double>(v[2]));
+  return text;
+}
 
 /// An array that has been made, whose type in the stub is `Of`'s.
 template <class Of>
@@ -215,13 +259,14 @@ class Kept {
   mutable nb::object array_;
 };
 
-/// The bytes of a vector, for pickle, and back.
-template <class T>
-nb::bytes bytesOf(const std::vector<T>& values) {
-  return nb::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+/// The bytes of a vector or a text, for pickle, and back.
+template <class Values>
+nb::bytes bytesOf(const Values& values) {
+  return nb::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
 }
-template <class T>
-void readBytes(nb::handle object, std::vector<T>& values) {
+template <class Values>
+void readBytes(nb::handle object, Values& values) {
+  using T = typename Values::value_type;
   const auto bytes = nb::cast<nb::bytes>(object);
   if (bytes.size() % sizeof(T) != 0) fail(StatusCode::Malformed, "not a pickled object of tetskin");
   values.resize(bytes.size() / sizeof(T));
@@ -239,8 +284,8 @@ auto released(Work&& work) {
   return work();
 }
 
-/// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. Ctrl-C cancels,
-/// too. True: a bar that is printed; None or False: nothing.
+/// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. True: a bar that
+/// is printed; None or False: nothing. Ctrl-C cancels with any of them.
 class ProgressCall {
  public:
   /// what  is done, before a bar
@@ -264,6 +309,14 @@ struct type_caster<tetskin::python::ArrayLike> {
   bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
     value.object = borrow(source);
     return true;
+  }
+};
+template <>
+struct type_caster<tetskin::python::PathLike> {
+  NB_TYPE_CASTER(tetskin::python::PathLike, const_name("str | bytes | os.PathLike[str]"))
+  bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+    value.object = borrow(source);
+    return PyUnicode_Check(source.ptr()) || PyBytes_Check(source.ptr()) || hasattr(source, "__fspath__");
   }
 };
 template <>

@@ -167,6 +167,9 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, c
 
 Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
   Class<ImpulseResult>(module, "ImpulseResult", "Sums over all vertices that a radial impulse has pushed.")
+      .words([](const ImpulseResult& r) {
+        return counted(static_cast<std::size_t>(r.vertices), "vertex", "vertices") + ", linear " + wordsOf(r.linear);
+      })
       .def_prop_ro(
           "linear", [](const ImpulseResult& r) { return vectorOf(r.linear); },
           "(3,) float64: the impulse, world space.")
@@ -177,7 +180,12 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
 
   Class<BodyHandle> body(module, "Body", "A soft body of a world, which keeps it. Made by World.add_body.");
   bindIdentity(body);
-  body.def_prop_ro(
+  body.words([](const BodyHandle& b) {
+        if (b.state->removed) return std::string("removed");
+        return counted(b.state->cage.cage->mesh.tetCount(), "tet", "tets") + ", " +
+               (b.state->mesh.mesh ? counted(b.state->mesh.mesh->vertexCount(), "vertex", "vertices") : "no surface");
+      })
+      .def_prop_ro(
           "positions", [](const BodyHandle& b) { return surfaceOf(b, b.state->positions, b.arrays.positions); },
           "(vertices, 3) float32, world space: the surface. A read-only view, which each step overwrites.")
       .def_prop_ro(

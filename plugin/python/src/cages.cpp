@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "models.h"
 
-#include <nanobind/stl/filesystem.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/io/files.h>
@@ -98,14 +97,19 @@ void bindCages(nb::module_& module) {
   Class<CageModel>(module, "Cage",
                    "Tets at rest, and what is known about the mesh in them. Immutable; can be pickled. An array that "
                    "is empty tells of nothing.")
+      .words([](const CageModel& m) {
+        const Cage& c = *m.cage;
+        return counted(c.mesh.tetCount(), "tet", "tets") + ", " + counted(c.mesh.nodeCount(), "node", "nodes") +
+               (c.quadraticTet.empty() ? "" : ", quadratic") + (c.stiffnessFactor.empty() ? "" : ", calibrated");
+      })
+      .pickled(stateOf, cageOfState)
       .def(
           "__init__",
           [](CageModel* self, const ArrayLike& nodes, const ArrayLike& tets) {
             new (self) CageModel(made(nodes, tets));
           },
           "nodes"_a, "tets"_a,
-          "A cage of tets alone. nodes: (n, 3) float32 or float64, any unit; tets: (t, 4) integers, of which those "
-          "that are "
+          "A cage of tets alone. nodes: (n, 3) numbers, any unit; tets: (t, 4) integers, of which those that are "
           "oriented negatively are reversed.")
       .def_prop_ro(
           "nodes", [](const CageModel& m) { return view3(viewOf(m.cage->mesh.nodes), m.cage); },
@@ -140,8 +144,8 @@ void bindCages(nb::module_& module) {
           "How it was made, and how well it fits, in words. Empty for a cage from a file or arrays.")
       .def(
           "save",
-          [](const CageModel& m, const std::filesystem::path& path) {
-            released([&] { check(saveCage(*m.cage, path.u8string())); });
+          [](const CageModel& m, const PathLike& path) {
+            released([&, name = path.text()] { check(saveCage(*m.cage, name)); });
           },
           "path"_a, "Writes a .vtk file, with all data of the cage, or the tets alone as .node and .ele, or .msh.")
       .def(
@@ -154,15 +158,7 @@ void bindCages(nb::module_& module) {
             check(validate(cage));
             return CageModel{sharedOf(std::move(cage)), m.report};
           },
-          "scale"_a, "A copy of another size, with its masses.")
-      .def("__getstate__", stateOf)
-      .def("__setstate__", [](CageModel& self, const nb::tuple& state) {
-        try {
-          new (&self) CageModel(cageOfState(state));
-        } catch (const nb::cast_error&) {
-          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
-        }
-      });
+          "scale"_a, "A copy of another size, with its masses.");
 
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
@@ -189,8 +185,8 @@ void bindCages(nb::module_& module) {
              "their body.");
   module.def(
       "load_cage",
-      [](const std::filesystem::path& path) {
-        return CageModel{sharedOf(released([&] { return take(loadCage(path.u8string())); })), {}};
+      [](const PathLike& path) {
+        return CageModel{sharedOf(released([name = path.text()] { return take(loadCage(name)); })), {}};
       },
       "path"_a, "Reads what Cage.save writes; tets of .vtk, .node and .ele, .msh (Gmsh) and .mesh (Medit) files.");
 }

@@ -77,6 +77,7 @@ const btCollisionObject& objectOf(const Either& either) {
 
 void bindContacts(nb::module_& module, Class<World>& world) {
   Class<ContactArrays>(module, "Contacts", "Contact points of the last substep, as arrays with a row for each.")
+      .words([](const ContactArrays& c) { return counted(c.distances.size(), "point", "points"); })
       .def_prop_ro(
           "points", [](const ContactArrays& c) { return newRows3(std::vector<float>(c.points)); },
           "(n, 3) float32, world space.")
@@ -94,11 +95,13 @@ void bindContacts(nb::module_& module, Class<World>& world) {
       .def("__len__", [](const ContactArrays& c) { return c.distances.size(); });
 
   Class<Wrench>(module, "Wrench", "A force, and its torque about the centre of mass of what it acts on, world space.")
+      .words([](const Wrench& w) { return "force " + wordsOf(w.force) + ", torque " + wordsOf(w.torque); })
       .def_prop_ro(
           "force", [](const Wrench& w) { return vectorOf(w.force); }, "(3,) float64, mass length / s^2.")
       .def_prop_ro(
           "torque", [](const Wrench& w) { return vectorOf(w.torque); }, "(3,) float64, mass length^2 / s^2.");
   Class<AppliedForces>(module, "AppliedForces", "Forces by cause: the mean over the last step.")
+      .words([](const AppliedForces& f) { return "total force " + wordsOf(f.total().force); })
       .def_ro("contact", &AppliedForces::contact, "Normal forces of contacts.")
       .def_ro("friction", &AppliedForces::friction, "Friction forces, tangential to the contacts.")
       .def_ro("joints", &AppliedForces::joints, "Springs, welds and forces applied to points.")

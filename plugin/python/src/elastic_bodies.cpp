@@ -44,6 +44,7 @@ void assign(PointView<double> target, const ArrayLike& array, const char* name) 
 void bindElasticBodies(nb::module_& module) {
   Class<ElasticModel>(module, "ElasticBody",
                       "A body of elastic tets by itself, without contact, in an engine of any kind.")
+      .words([](const ElasticModel& m) { return counted(m.body->nodeCount(), "node", "nodes"); })
       .def(
           "__init__",
           [](ElasticModel* self, const CageModel& cage, double youngsModulus, double poissonRatio,
@@ -76,11 +77,14 @@ void bindElasticBodies(nb::module_& module) {
       .def(
           "step",
           [](ElasticModel& m, double dt, const Vec3& acceleration) {
-            if (!(dt > 0.0 && dt <= 1e6)) throw nb::value_error("dt: must be above 0, and finite");
-            return m.body->step(dt, finite(acceleration, "acceleration"));
+            if (!(dt >= 0.0 && dt <= 1e6)) throw nb::value_error("dt: must be 0 or more, and finite");
+            finite(acceleration, "acceleration");
+            if (dt == 0.0) return 0;
+            return m.body->step(dt, acceleration);
           },
           "dt"_a, "acceleration"_a = Vec3{},
-          "Advances by dt seconds; returns the number of iterations. acceleration: of all nodes that are not pinned, "
+          "Advances by dt seconds; returns the number of iterations: none for 0 seconds. acceleration: of all nodes "
+          "that are not pinned, "
           "such as gravity.")
       .def(
           "forces",

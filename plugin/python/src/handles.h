@@ -12,14 +12,11 @@
 
 namespace tetskin::python {
 
-/// A world's lock, for a call with the GIL: waits without it. Calls from within the world's own calls pass.
+/// A world's lock, for a call with the GIL: waits without it. Calls from within the world's own calls pass. Throws if
+/// it was held by a thread of the process that this one was forked from, which does not let go of it here.
 class Locked {
  public:
-  explicit Locked(World& world) : lock_(world.mutex(), std::try_to_lock) {
-    if (lock_.owns_lock()) return;
-    const nb::gil_scoped_release release;
-    lock_.lock();
-  }
+  explicit Locked(World& world);
 
  private:
   std::unique_lock<std::recursive_mutex> lock_;
@@ -27,8 +24,8 @@ class Locked {
 /// Runs without the GIL, and with the world's lock.
 template <class Work>
 auto unlocked(World& world, Work&& work) {
+  const Locked lock(world);
   const nb::gil_scoped_release release;
-  const std::lock_guard<std::recursive_mutex> lock(world.mutex());
   return work();
 }
 

@@ -46,8 +46,7 @@ void setMotor(JointHandle& joint, std::optional<double> velocity, double maxForc
   if (!(maxForce >= 0.0 && maxForce < 1e12)) throw nb::value_error("max_force: must be 0 or more, and finite");
   const auto v = static_cast<btScalar>(velocity.value_or(0.0)), f = static_cast<btScalar>(maxForce);
   if (auto* h = hinge(joint)) {
-    joint.state->maxTorque = maxForce;
-    h->enableAngularMotor(velocity.has_value(), v, h->getMaxMotorImpulse());
+    h->enableAngularMotor(velocity.has_value(), v, f);
   } else if (auto* s = slider(joint)) {
     s->setPoweredLinMotor(velocity.has_value());
     s->setTargetLinMotorVelocity(v);
@@ -168,6 +167,13 @@ void bindJoints(nb::module_& module, Class<World>& world) {
       "A joint between a rigid body and another one, or the world. Made by World.add_hinge and its like.");
   bindIdentity(joint);
   joint
+      .words([](const JointHandle& j) {
+        if (!j.state->joint) return "removed";
+        return hinge(j)                                                             ? "hinge"
+               : slider(j)                                                          ? "slider"
+               : j.state->joint->getConstraintType() == POINT2POINT_CONSTRAINT_TYPE ? "point"
+                                                                                    : "fixed";
+      })
       .def_prop_ro(
           "coordinate",
           [](const JointHandle& j) {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "models.h"
 
-#include <nanobind/stl/filesystem.h>
 #include <tetskin/io/files.h>
 
 namespace tetskin::python {
@@ -28,11 +27,13 @@ void checkLength(std::size_t length, std::size_t vertices, const char* name) {
        std::string(name) + ": " + std::to_string(length) + " for " + std::to_string(vertices) + " vertices");
 }
 
+/// names  of positions and triangles, as whoever gives them knows them
 MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const std::optional<ArrayLike>& normals,
-               const std::optional<ArrayLike>& texcoords) {
+               const std::optional<ArrayLike>& texcoords,
+               const std::array<const char*, 2>& names = {"positions", "triangles"}) {
   auto mesh = std::make_shared<TriangleMesh>();
-  mesh->positions = pointsOf(positions, "positions");
-  mesh->triangles = indexRowsOf<3>(triangles, "triangles");
+  mesh->positions = pointsOf(positions, names[0]);
+  mesh->triangles = indexRowsOf<3>(triangles, names[1]);
   mesh->normals = floatRows<Eigen::Vector3f>(normals, "normals", 3);
   mesh->texcoords = floatRows<Eigen::Vector2f>(texcoords, "texcoords", 2);
   check(validate(*mesh));
@@ -41,9 +42,9 @@ MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const std
   return {std::move(mesh)};
 }
 
-MeshModel loaded(const std::filesystem::path& path) {
+MeshModel loaded(const PathLike& path) {
   MeshFileReport report;
-  Result<TriangleMesh> mesh = released([&] { return loadMesh(path.u8string(), &report); });
+  Result<TriangleMesh> mesh = released([&, name = path.text()] { return loadMesh(name, &report); });
   if (mesh.status().code == StatusCode::UnsupportedFormat) {
     fail(StatusCode::UnsupportedFormat, mesh.status().message +
                                             "\nThis package reads OBJ, PLY, STL, OFF and glTF 2.0. trimesh reads more: "
@@ -56,7 +57,8 @@ nb::tuple stateOf(const MeshModel& model) {
   const TriangleMesh& mesh = *model.mesh;
   nb::list groups;
   for (const TriangleGroup& group : mesh.groups) {
-    groups.append(nb::make_tuple(group.name, group.material, group.firstTriangle, group.triangleCount));
+    groups.append(
+        nb::make_tuple(bytesOf(group.name), bytesOf(group.material), group.firstTriangle, group.triangleCount));
   }
   return nb::make_tuple(bytesOf(mesh.positions), bytesOf(mesh.triangles), bytesOf(mesh.normals), bytesOf(mesh.tangents),
                         bytesOf(mesh.texcoords), groups);
@@ -73,8 +75,9 @@ MeshModel meshOfState(const nb::tuple& state) {
   std::size_t next = 0;
   for (nb::handle item : nb::cast<nb::list>(state[5])) {
     const auto group = nb::cast<nb::tuple>(item);
-    mesh->groups.push_back({nb::cast<std::string>(group[0]), nb::cast<std::string>(group[1]),
-                            nb::cast<std::size_t>(group[2]), nb::cast<std::size_t>(group[3])});
+    mesh->groups.push_back({{}, {}, nb::cast<std::size_t>(group[2]), nb::cast<std::size_t>(group[3])});
+    readBytes(group[0], mesh->groups.back().name);
+    readBytes(group[1], mesh->groups.back().material);
     const TriangleGroup& read = mesh->groups.back();
     if (read.firstTriangle != next || read.triangleCount > mesh->triangleCount() - next)
       fail(StatusCode::Malformed, "a group of triangles is out of range");
@@ -107,21 +110,34 @@ MeshModel meshOf(const MeshLike& mesh) {
   if (nb::hasattr(mesh.object, "geometry") && nb::hasattr(mesh.object, "to_mesh")) {
     throw nb::type_error("mesh: a scene of trimesh; scene.to_mesh() joins its meshes into one, which is taken here");
   }
-  if (!nb::hasattr(mesh.object, "vertices") || !nb::hasattr(mesh.object, "faces")) {
-    throw nb::type_error(
-        "mesh: neither a tetskin.TriangleMesh nor a mesh with `vertices` and `faces`, as trimesh has them");
-  }
-  const nb::object numpy = nb::module_::import_("numpy");
-  const auto plain = [&](const char* attribute) {
-    return ArrayLike{numpy.attr("asarray")(mesh.object.attr(attribute))};
+  const auto has = [&](const char* attribute) { return nb::hasattr(mesh.object, attribute); };
+  const auto plain = [](const nb::object& array) {
+    return ArrayLike{nb::module_::import_("numpy").attr("asarray")(array)};
   };
-  return made(plain("vertices"), plain("faces"), {}, texcoordsOf(mesh.object));
+  for (const char* const triangles : {"faces", "triangles"}) {
+    if (!has("vertices") || !has(triangles)) continue;
+    return made(plain(mesh.object.attr("vertices")), plain(mesh.object.attr(triangles)), {}, texcoordsOf(mesh.object),
+                {"vertices", triangles});
+  }
+  if (has("points") && has("get_cells_type")) {
+    return made(plain(mesh.object.attr("points")), plain(mesh.object.attr("get_cells_type")("triangle")), {}, {},
+                {"points", "cells"});
+  }
+  throw nb::type_error(
+      "mesh: neither a tetskin.TriangleMesh nor a mesh with `vertices` and `faces`, as trimesh has them, `vertices` "
+      "and "
+      "`triangles` (Open3D), or `points` and `cells` (meshio)");
 }
 
 void bindMeshes(nb::module_& module) {
   Class<MeshModel>(module, "TriangleMesh",
                    "A render mesh at rest. Immutable; can be pickled. Vertices may coincide, surfaces may be open, "
                    "and there may be several components.")
+      .words([](const MeshModel& m) {
+        return counted(m.mesh->vertexCount(), "vertex", "vertices") + ", " +
+               counted(m.mesh->triangleCount(), "triangle", "triangles");
+      })
+      .pickled(stateOf, meshOfState)
       .def(
           "__init__",
           [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles,
@@ -129,7 +145,7 @@ void bindMeshes(nb::module_& module) {
             new (self) MeshModel(made(positions, triangles, normals, texcoords));
           },
           "positions"_a, "triangles"_a, nb::kw_only(), "normals"_a = nb::none(), "texcoords"_a = nb::none(),
-          "positions: (n, 3) float32 or float64, any unit; triangles: (m, 3) integers, counter-clockwise from outside; "
+          "positions: (n, 3) numbers, any unit; triangles: (m, 3) integers, counter-clockwise from outside; "
           "normals: (n, 3), unit length, or None; texcoords: (n, 2), or None.")
       .def_prop_ro(
           "positions", [](const MeshModel& m) { return view3(viewOf(m.mesh->positions), m.mesh); },
@@ -155,20 +171,12 @@ void bindMeshes(nb::module_& module) {
       .def_prop_ro(
           "vertex_count", [](const MeshModel& m) { return m.mesh->vertexCount(); }, "Number of vertices.")
       .def_prop_ro(
-          "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.")
-      .def("__getstate__", stateOf)
-      .def("__setstate__", [](MeshModel& self, const nb::tuple& state) {
-        try {
-          new (&self) MeshModel(meshOfState(state));
-        } catch (const nb::cast_error&) {
-          fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
-        }
-      });
+          "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.");
 
   module.def(
       "load_mesh", loaded, "path"_a,
       "Reads a render mesh: .obj, .ply, .stl, .off, and .gltf, .glb and .vrm of glTF 2.0. Other formats: trimesh, "
-      "whose meshes are taken wherever a TriangleMesh is.");
+      "whose meshes, and those of Open3D and meshio, are taken wherever a TriangleMesh is.");
 }
 
 }  // namespace tetskin::python

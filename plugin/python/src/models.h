@@ -10,7 +10,7 @@
 
 namespace tetskin::python {
 
-/// A TriangleMesh, or what has `vertices` and `faces`: a mesh of trimesh.
+/// A TriangleMesh, or a mesh of another package: see Mesh in tetskin/typing.py.
 struct MeshLike {
   nb::object object;
 };
@@ -28,6 +28,8 @@ void bindContacts(nb::module_& module, Class<World>& world);
 void bindTouch(nb::module_& module, Class<World>& world);
 Class<World> bindWorlds(nb::module_& module);
 void bindRuns(nb::module_& module, Class<World>& world);
+/// Once all functions are there: what raises a TypeError for its arguments' names says which is wrong. keywords.cpp
+void nameFaults(nb::module_& module);
 
 }  // namespace tetskin::python
 

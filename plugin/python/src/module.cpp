@@ -51,7 +51,7 @@ void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
   } catch (const Failure& failure) {
-    nb::object error = nb::handle(errorType)(failure.what());
+    nb::object error = nb::handle(errorType)(textOf(failure.what()));
     error.attr("code") = nb::cast(failure.code);
     PyErr_SetObject(errorType, error.ptr());
   }
@@ -91,4 +91,5 @@ NB_MODULE(_core, module) {
   bindRuns(module, world);
   bindAnimations(module);
   bindPages(module, world, body);
+  nameFaults(module);
 }

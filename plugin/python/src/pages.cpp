@@ -6,7 +6,6 @@
 #include "handles.h"
 #include "shape_meshes.h"
 
-#include <nanobind/stl/filesystem.h>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -59,7 +58,7 @@ TriangleMesh moved(TriangleMesh mesh, const Eigen::Affine3d& place) {
 }
 
 /// A body's name in facts: "2 bodies", "1 body".
-std::string counted(std::size_t count, const char* one, const char* many) {
+std::string fact(std::size_t count, const char* one, const char* many) {
   return view::withCommas(count) + " " + (count == 1 ? one : many);
 }
 
@@ -225,9 +224,9 @@ class PageWriter {
       tets += body.state->cage.cage->mesh.tetCount();
     }
     std::vector<std::string> facts;
-    if (bodies_.size() > 1) facts.push_back(counted(bodies_.size(), "soft body", "soft bodies"));
-    if (vertices > 0) facts.push_back(counted(vertices, "vertex", "vertices"));
-    if (tets > 0) facts.push_back(counted(tets, "tet", "tets"));
+    if (bodies_.size() > 1) facts.push_back(fact(bodies_.size(), "soft body", "soft bodies"));
+    if (vertices > 0) facts.push_back(fact(vertices, "vertex", "vertices"));
+    if (tets > 0) facts.push_back(fact(tets, "tet", "tets"));
     return facts;
   }
 
@@ -294,16 +293,14 @@ void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body
           nb::kw_only(), "height"_a = 480, kShowWords)
       .def(
           "save_page",
-          [](const std::shared_ptr<World>& w, const std::filesystem::path& path) {
-            page().attr("save_world")(w, path);
-          },
+          [](const std::shared_ptr<World>& w, const PathLike& path) { page().attr("save_world")(w, path.object); },
           "path"_a, kSaveWords);
   body.def(
           "show", [](const BodyHandle& b, int height) { page().attr("show_world")(b.world, b, "height"_a = height); },
           nb::kw_only(), "height"_a = 480, kShowWords)
       .def(
           "save_page",
-          [](const BodyHandle& b, const std::filesystem::path& path) { page().attr("save_world")(b.world, path, b); },
+          [](const BodyHandle& b, const PathLike& path) { page().attr("save_world")(b.world, path.object, b); },
           "path"_a, kSaveWords);
 }
 

@@ -63,6 +63,7 @@ std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const s
 void bindRigidBodies(nb::module_& module, Class<World>& world) {
   Class<ShapeModel>(module, "Shape",
                     "A collision shape, which any number of rigid bodies share. Lengths are world lengths.")
+      .words([](const ShapeModel& s) { return std::string(s.shape->getName()); })
       .def_static("plane", plane, "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0,
                   "All below a plane: what has normal . x < offset.")
       .def_static("box", box, "half_extents"_a)
@@ -85,6 +86,11 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
     };
   };
   rigid
+      .words([](const RigidHandle& r) {
+        if (r.state->removed) return std::string("removed");
+        const Locked lock(*r.world);
+        return r.state->shape.shape->getName() + (" at " + wordsOf(r.state->body->getWorldTransform().getOrigin()));
+      })
       .def_prop_rw(
           "position", locked([](btRigidBody& b) { return vectorOf(b.getWorldTransform().getOrigin()); }),
           [](RigidHandle& r, const Vec3& at) {

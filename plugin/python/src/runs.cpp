@@ -2,14 +2,24 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "handles.h"
 
-#include <nanobind/stl/filesystem.h>
-
 namespace tetskin::python {
 namespace {
 
+/// With the world's lock, unless it cannot be had in a process that was forked: then the memory stays.
+template <class T>
+void letGo(World& world, std::unique_ptr<T>& thing) noexcept {
+  if (!thing) return;
+  try {
+    const Locked lock(world);
+    thing.reset();
+  } catch (const Failure&) {
+    (void)thing.release();
+  }
+}
+
 /// A recording, or, once it is closed, none. The world outlives it.
 struct RecorderHandle {
-  ~RecorderHandle() { close(); }
+  ~RecorderHandle() { letGo(*world, recorder); }
   void close() {
     if (!recorder) return;
     const Locked lock(*world);
@@ -25,16 +35,41 @@ struct RecorderHandle {
 };
 
 struct ReplayHandle {
-  ~ReplayHandle() {
-    const Locked lock(*world);
-    replay.reset();
+  ReplayHandle(std::shared_ptr<World> ofWorld, std::unique_ptr<Replay> ofFile)
+      : world(std::move(ofWorld)), replay(std::move(ofFile)) {
+    replay->onChange([this](std::size_t step) {
+      const nb::gil_scoped_acquire acquire;
+      const nb::object call = change;  // which may set another one
+      if (!call.is_valid()) return;
+      try {
+        call(step);
+      } catch (...) {
+        raised = std::current_exception();
+      }
+    });
   }
+  ~ReplayHandle() { letGo(*world, replay); }
 
   std::shared_ptr<World> world;
   std::unique_ptr<Replay> replay;
   nb::object change;
   std::exception_ptr raised;
 };
+
+/// What `change` refers to may refer to the replay: Python's collector finds such circles, and opens them.
+int traverse(PyObject* self, visitproc visit, void* arg) {
+#if PY_VERSION_HEX >= 0x03090000
+  Py_VISIT(Py_TYPE(self));
+#endif
+  if (nb::inst_ready(self)) Py_VISIT(nb::inst_ptr<ReplayHandle>(self)->change.ptr());
+  return 0;
+}
+int clear(PyObject* self) {
+  const nb::object change = std::move(nb::inst_ptr<ReplayHandle>(self)->change);
+  return 0;
+}
+PyType_Slot replaySlots[] = {
+    {Py_tp_traverse, reinterpret_cast<void*>(traverse)}, {Py_tp_clear, reinterpret_cast<void*>(clear)}, {0, nullptr}};
 
 int recordedStep(RecorderHandle& r, double dt, int substeps) {
   (void)r.open();
@@ -48,27 +83,10 @@ int recordedStep(RecorderHandle& r, double dt, int substeps) {
 }
 
 bool replayedStep(ReplayHandle& r) {
-  const bool made = unlocked(*r.world, [&] {
-    const bool stepped = r.replay->step();
-    if (stepped) r.world->updateSkins();
-    return stepped;
-  });
+  const bool made = unlocked(*r.world, [&] { return r.world->step(*r.replay); });
   if (r.raised) std::rethrow_exception(std::exchange(r.raised, nullptr));
   check(r.replay->status());
   return made;
-}
-
-void onChange(ReplayHandle& r, const nb::typed<nb::callable, nb::object(std::size_t)>& change) {
-  const Locked lock(*r.world);
-  r.change = change;
-  r.replay->onChange([&r](std::size_t step) {
-    const nb::gil_scoped_acquire acquire;
-    try {
-      r.change(step);
-    } catch (...) {
-      r.raised = std::current_exception();
-    }
-  });
 }
 
 }  // namespace
@@ -77,15 +95,18 @@ void bindRuns(nb::module_& module, Class<World>&) {
   Class<RecorderHandle>(module, "Recorder",
                         "Writes a run to a file, from which Replay plays it again to the last bit. Step by it in "
                         "place of the world; a context manager.")
+      .words([](const RecorderHandle& r) {
+        return r.recorder ? counted(r.recorder->steps(), "step", "steps") : std::string("closed");
+      })
       .def(
           "__init__",
-          [](RecorderHandle* self, const std::shared_ptr<World>& world, const std::filesystem::path& path,
+          [](RecorderHandle* self, const std::shared_ptr<World>& world, const PathLike& path,
              const std::string& description, int snapshotEvery) {
             RecorderOptions options;
             options.description = description;
             options.snapshotEvery = snapshotEvery;
             const Locked lock(*world);
-            auto recorder = take(Recorder::start(world->bullet(), path.u8string(), options));
+            auto recorder = take(Recorder::start(world->bullet(), path.text(), options));
             new (self) RecorderHandle{world, std::move(recorder)};
           },
           "world"_a, "path"_a, nb::kw_only(), "description"_a = "", "snapshot_every"_a = 240,
@@ -102,23 +123,25 @@ void bindRuns(nb::module_& module, Class<World>&) {
           nb::sig("def __exit__(self, *args: object) -> None"));
 
   Class<ReplayHandle>(
-      module, "Replay",
+      module, "Replay", nb::type_slots(replaySlots),
       "Plays a run from a file, in a world with the same bodies as the recorded one, made in the same order.")
+      .words([](const ReplayHandle& r) { return counted(r.replay->report().steps, "step", "steps") + " played"; })
       .def(
           "__init__",
-          [](ReplayHandle* self, const std::shared_ptr<World>& world, const std::filesystem::path& path) {
+          [](ReplayHandle* self, const std::shared_ptr<World>& world, const PathLike& path) {
             const Locked lock(*world);
-            auto replay = take(Replay::open(world->bullet(), path.u8string()));
-            new (self) ReplayHandle{world, std::move(replay), nb::none(), nullptr};
-            world->updateSkins();
+            new (self) ReplayHandle(world, world->replay(path.text()));
           },
           "world"_a, "path"_a, "Puts the world into the state in which recording began.")
       .def("step", replayedStep,
            "Makes the next step of the file. False, and none is made, at its end, or after a step that has ended in "
            "another state than the recorded one.")
-      .def("on_change", onChange, "change"_a,
-           "Called with the number of the step before which bodies, objects or joints were added or removed: does it "
-           "again.")
+      .def(
+          "on_change",
+          [](ReplayHandle& r, const nb::typed<nb::callable, nb::object(std::size_t)>& change) { r.change = change; },
+          "change"_a,
+          "Called with the number of the step before which bodies, objects or joints were added or removed: does it "
+          "again.")
       .def_prop_ro(
           "steps", [](const ReplayHandle& r) { return r.replay->report().steps; }, "Steps played.")
       .def_prop_ro(
@@ -131,9 +154,8 @@ void bindRuns(nb::module_& module, Class<World>&) {
           "cut_short", [](const ReplayHandle& r) { return r.replay->report().cutShort; },
           "The file ends within a step.")
       .def_static(
-          "description_of",
-          [](const std::filesystem::path& path) { return take(Replay::descriptionOf(path.u8string())); }, "path"_a,
-          "The description that a file was recorded with.");
+          "description_of", [](const PathLike& path) { return textOf(take(Replay::descriptionOf(path.text()))); },
+          "path"_a, "The description that a file was recorded with.");
 }
 
 }  // namespace tetskin::python

@@ -114,6 +114,7 @@ Row4<Number> rows4(const std::vector<std::array<Number, 4>>& rows) {
 
 void bindSkins(nb::module_& module) {
   Class<Skin>(module, "Skin", "A render mesh carried by the nodes of a cage, however they are moved. Needs no world.")
+      .words([](const Skin& s) { return counted(s.positions->size() / 3, "vertex", "vertices"); })
       .def(
           "__init__",
           [](Skin* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
@@ -135,7 +136,7 @@ void bindSkins(nb::module_& module) {
             return rowsOf(skin.positions, skin.positionsArray);
           },
           "nodes"_a,
-          "Computes the surface for these nodes: (n, 3) float32 or float64, world space, in the cage's order. Returns "
+          "Computes the surface for these nodes: (n, 3) numbers, world space, in the cage's order. Returns "
           "positions. On an Error, the surface stays as it was.")
       .def_prop_ro(
           "positions", [](const Skin& skin) { return rowsOf(skin.positions, skin.positionsArray); },
@@ -153,6 +154,7 @@ void bindSkins(nb::module_& module) {
   Class<Palette>(
       module, "BonePalette",
       "Affine bones, one per node, with which an engine's own linear blend skinning draws the surface. Needs no world.")
+      .words([](const Palette& p) { return counted(p.count(), "bone", "bones"); })
       .def(
           "__init__",
           [](Palette* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
@@ -170,7 +172,7 @@ void bindSkins(nb::module_& module) {
             palette.update({numbers.data(), numbers.rows()});
             return palette.array();
           },
-          "nodes"_a, "Computes the bones for these nodes, (n, 3) float32 or float64, world space. Returns bones.")
+          "nodes"_a, "Computes the bones for these nodes, (n, 3) numbers, world space. Returns bones.")
       .def_prop_ro("bones", &Palette::array,
                    "(n, 3, 4) or (n, 4, 4) float32. A read-only view, which each update overwrites.")
       .def_prop_ro("bone_count", &Palette::count, "Number of nodes, of which each has a bone.")

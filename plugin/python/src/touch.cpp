@@ -105,6 +105,11 @@ auto release() {
 
 void bindTouch(nb::module_& module, Class<World>& world) {
   Class<PointHandle>(module, "SurfacePoint", "A point of a body's surface. Made by World.point_at_vertex and its like.")
+      .words([](const PointHandle& p) {
+        if (p.body.state->removed) return std::string("of a body that has been removed");
+        const Locked lock(*p.body.world);
+        return "at " + wordsOf(*alivePoint(p).point.position());
+      })
       .def_prop_ro("body", [](const PointHandle& p) { return p.body; })
       .def_prop_ro(
           "position",
@@ -152,6 +157,9 @@ void bindTouch(nb::module_& module, Class<World>& world) {
           "force"_a, "substeps"_a = 1, "Mass times length / s^2, world space, through the next substeps.");
 
   Class<HitHandle>(module, "Hit", "The first intersection of a ray with a surface.")
+      .words([](const HitHandle& h) {
+        return "triangle " + std::to_string(h.hit.triangle) + " at " + wordsOf(h.hit.point);
+      })
       .def_prop_ro("body", [](const HitHandle& h) { return h.body; })
       .def_prop_ro(
           "triangle", [](const HitHandle& h) { return h.hit.triangle; }, "Index of the triangle in the mesh.")
@@ -171,7 +179,7 @@ void bindTouch(nb::module_& module, Class<World>& world) {
       module, "Spring",
       "Pulls a point of a surface to a point in space, or of a rigid body. Made by World.add_spring.");
   bindIdentity(springs);
-  springs
+  springs.words([](const SpringHandle& s) { return s.state->spring ? "holds" : "released"; })
       .def(
           "set_target",
           [](SpringHandle& s, const Vec3& target) {
@@ -203,7 +211,7 @@ void bindTouch(nb::module_& module, Class<World>& world) {
 
   Class<WeldHandle> welds(module, "Weld", "Fixes a rigid body to a point of a surface. Made by World.add_weld.");
   bindIdentity(welds);
-  welds
+  welds.words([](const WeldHandle& w) { return w.state->weld ? "holds" : "released"; })
       .def_prop_ro("force", locked<WeldHandle>([](const WeldHandle& w) { return vectorOf(weld(w).force()); }),
                    "(3,) float64 on the soft body in the last step, world space.")
       .def_prop_ro("torque", locked<WeldHandle>([](const WeldHandle& w) { return vectorOf(weld(w).torque()); }),

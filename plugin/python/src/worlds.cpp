@@ -2,10 +2,21 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "handles.h"
 
+#include <chrono>
+#include <thread>
 #include <vector>
 
 namespace tetskin::python {
 namespace {
+
+/// How often this process has come from another one by `fork`, with one thread of those that there were.
+std::atomic<unsigned> forks{0};
+
+void countForks() {
+  const nb::module_ os = nb::module_::import_("os");
+  if (nb::hasattr(os, "register_at_fork"))
+    os.attr("register_at_fork")("after_in_child"_a = nb::cpp_function([] { ++forks; }));
+}
 
 std::unique_ptr<ParallelFor> poolOf(int threads) {
   if (threads < 1 || threads > 256) throw nb::value_error("threads: must be from 1 to 256");
@@ -13,7 +24,6 @@ std::unique_ptr<ParallelFor> poolOf(int threads) {
   return std::make_unique<ThreadPool>(static_cast<std::size_t>(threads));
 }
 
-/// Steps may not be called from a replay's own call of on_change: the world's lock lets its thread in.
 int step(const std::shared_ptr<World>& world, double dt, int substeps) {
   return unlocked(*world, [&] {
     return world->step(dt, substeps, [&](btScalar whole, int count, btScalar substep) {
@@ -35,11 +45,33 @@ void restore(const std::shared_ptr<World>& world, const nb::bytes& snapshot) {
 
 }  // namespace
 
+Locked::Locked(World& world) : lock_(world.mutex(), std::try_to_lock) {
+  if (!lock_.owns_lock()) {
+    const nb::gil_scoped_release release;
+    // A thread of this process that has the lock says so at once.
+    for (int look = 0; world.lockedIn != forks && !lock_.try_lock(); ++look) {
+      if (look == 100) {
+        fail(StatusCode::InvalidOption,
+             "the world was in a call of another thread when this process was forked, which leaves it as it was then: "
+             "start processes by 'spawn' (multiprocessing.get_context), or fork between steps");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!lock_.owns_lock()) lock_.lock();
+  }
+  world.lockedIn = forks.load();
+}
+
 Class<World> bindWorlds(nb::module_& module) {
+  countForks();
   Class<World> world(
       module, "World",
       "A world of soft and rigid bodies, which it keeps. It belongs to one thread at a time: calls of others wait.");
   world
+      .words([](const World& w) {
+        return counted(w.bodies().size(), "soft body", "soft bodies") + ", " +
+               counted(w.rigids().size(), "rigid body", "rigid bodies");
+      })
       .def(
           "__init__",
           [](World* self, const Vec3& gravity, int threads, bool deterministic, bool recordForces) {
@@ -50,9 +82,11 @@ Class<World> bindWorlds(nb::module_& module) {
           "gravity: world length / s^2. threads: number that work on a step; results are the same to the bit with any. "
           "deterministic: the same bits on other "
           "processors, for some percent of the time. record_forces: for forces_on.")
-      .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
-           "Goes on by dt seconds, in so many steps of Bullet's, and updates all surfaces; returns the number of steps "
-           "made. The GIL is released.")
+      .def(
+          "step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
+          "Goes on by dt seconds, in so many steps of Bullet's, and updates all surfaces; returns the number of steps "
+          "made: none for 0 seconds. The GIL is released. An Error of the code NON_FINITE comes after the step: a body "
+          "has exploded.")
       .def("save", save,
            "The state of the world, as bytes, from which restore goes on to the last bit: in this process or another, "
            "on any number of threads.")
@@ -66,6 +100,7 @@ Class<World> bindWorlds(nb::module_& module) {
                 "cannot pickle a World. Pickle what builds it, a function with its meshes and cages, and world.save(), "
                 "which restore() of a world built alike takes");
           },
+          nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"),
           "Raises a TypeError: what travels is what builds a world, and its snapshot.")
       .def_prop_rw(
           "gravity",

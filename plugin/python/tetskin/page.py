@@ -40,6 +40,9 @@ class Film:
         """Number of frames added."""
         return self._writer.frame_count
 
+    def __repr__(self) -> str:
+        return f"<tetskin.Film: {len(self)} frame{'s' * (len(self) != 1)}>"
+
     def add_frame(self) -> None:
         """Adds the world as it is now. An Error, and nothing is added, if something shown was removed or exploded."""
         self._writer.add_frame()

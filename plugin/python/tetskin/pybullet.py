@@ -71,7 +71,8 @@ class Skin:
 
     def __init__(self, body_id: int, cage: _core.Cage, mesh: Any, client: int = 0, *, normals: Normals = "none",
                  interpolation: Interpolation = "linear") -> None:
-        self.body_id, self.client = int(body_id), int(client)
+        self.body_id: int = int(body_id)
+        self.client: int = int(client)
         self._skin = _core.Skin(cage, mesh, normals=normals, interpolation=interpolation)
         self.update()
 
@@ -234,7 +235,8 @@ class Mirror:
     """
 
     def __init__(self, client: int, world: _core.World, bodies: Iterable[int] | None = None) -> None:
-        self.client, self.world = int(client), world
+        self.client: int = int(client)
+        self.world: _core.World = world
         self._bodies: dict[int, list[_Part]] = {}
         self._forces: dict[tuple[int, int], tuple[np.ndarray, np.ndarray]] = {}
         p = _connected(self.client)

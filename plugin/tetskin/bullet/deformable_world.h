@@ -223,7 +223,7 @@ TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyD
 /// the one that was saved, to the last bit, in this process or another one, on any number of threads.
 ///
 /// world     with the same bodies, objects and joints as when it was saved, created in the same order or the very
-///           same ones; others may have been added and removed again since
+///           same ones; others may have been added and removed again since. Both are deterministic, or both are not
 /// snapshot  size bytes, not aligned, as `saveSnapshot` has written them; only read
 /// Errors    Malformed: the bytes are damaged; UnsupportedFormat: they are of another version, precision or kind of
 ///           machine; SnapshotMismatch: the world is another one, the message names what was added, removed or is

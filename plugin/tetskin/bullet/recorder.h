@@ -74,10 +74,11 @@ class TETSKIN_BULLET_API Recorder {
 
 /// What playing a file has found.
 struct ReplayReport {
-  std::size_t steps = 0;  ///< steps played
-  bool differs = false;   ///< the last of these has ended in another state than the recorded one
-  std::string object;     ///< if so, the first object whose motion differs: its place in the world, and what it is
-  bool cutShort = false;  ///< the file ends within a step, as that of a program that was killed
+  std::size_t steps = 0;        ///< steps played
+  btScalar secondsPerStep = 0;  ///< of Bullet's steps in the last of these
+  bool differs = false;         ///< the last of these has ended in another state than the recorded one
+  std::string object;           ///< if so, the first object whose motion differs: its place in the world, and its kind
+  bool cutShort = false;        ///< the file ends within a step, as that of a program that was killed
 };
 
 /// Plays a run from a file, one step after the other.

@@ -12,7 +12,8 @@
 namespace tetskin {
 
 /// A fixed number of threads: for applications that have no scheduler of their own. They sleep until there is work;
-/// after a `run` they look for the next one for some microseconds, in which a step of a body makes it.
+/// after a `run` they look for the next one for some microseconds, in which a step of a body makes it. In a process that
+/// was forked while no `run` was in progress, a pool has the calling thread alone, for the same results.
 ///
 ///     ThreadPool pool;                 // as many threads as the machine has
 ///     options.threads = &pool;         // of a skin; the pool outlives it
@@ -27,7 +28,8 @@ class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Number of threads, including the calling one. Less than requested if the system provided fewer.
+  /// Number of threads, including the calling one. Less than requested if the system provided fewer; 1 in a process
+  /// that was forked.
   std::size_t threadCount() const;
 
   /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and waits only

@@ -32,6 +32,14 @@ single: np.typing.NDArray[np.float32] = mesh.normals
 cage = ts.create_cage(mesh, target_tets=10, progress=told)
 cage = ts.calibrate(cage, progress=lambda fraction: print(fraction))
 cage.save(Path("cage.vtk"))
+
+
+class Scan:  # as Open3D has it
+    vertices = np.zeros((4, 3))
+    triangles = np.zeros((4, 3), np.int32)
+
+
+scan: ts.Cage = ts.create_cage(Scan())
 where: Vector = np.zeros(3)
 world = ts.World(gravity=[0, -9.81, 0])
 body = world.add_body(cage, mesh, position=where, pinned=cage.nodes[:, 0] < 0, normals="transformed")
@@ -111,6 +119,11 @@ def test_right_programs_are_right(mypy, tmp_path):
     program = tmp_path / "right.py"
     program.write_text(RIGHT)
     said, content = mypy(program)
+    assert content, said
+
+
+def test_every_name_of_the_package_has_a_whole_type(mypy):
+    said, content = mypy("-p", "tetskin")
     assert content, said
 
 

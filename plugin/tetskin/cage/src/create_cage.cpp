@@ -256,7 +256,7 @@ Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
 }
 
 /// The build itself: everything in the report except for the time.
-Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) {
+Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageReport& report) try {
   report.targetTets = options.targetTets;
   if (Status status = checkInput(mesh, options); !status.ok()) return status;
   Progress progress(options.progress);
@@ -280,6 +280,8 @@ Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageRep
   Cage cage = cageOf(mesh, surface, std::move(bound));
   if (!progress.reach(1.0)) return cancelled();
   return cage;
+} catch (const Cancellation&) {
+  return cancelledStatus("createCage");
 }
 
 }  // namespace

@@ -15,9 +15,22 @@
 #include <thread>
 #include <vector>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <pthread.h>
+#endif
+
 namespace tetskin {
 
 namespace {
+
+/// How often this process has come from another one by `fork`, which leaves all threads but its own behind.
+unsigned forksSoFar() {
+  static std::atomic<unsigned> forks{0};
+#if defined(__unix__) || defined(__APPLE__)
+  [[maybe_unused]] static const int told = pthread_atfork(nullptr, nullptr, [] { ++forks; });
+#endif
+  return forks.load(std::memory_order_relaxed);
+}
 
 /// How long threads look for work, and a caller for the end of others' tasks, before they sleep: longer than waking a
 /// thread takes, and short, as a thread that another program has displaced ends its task only when it gets a core.
@@ -65,6 +78,8 @@ class ThreadPool::Workers {
   Workers& operator=(const Workers&) = delete;
 
   std::size_t size() const { return threads_.size(); }
+  /// The threads are those of another process: they do not work here, and what they wait at cannot be destroyed.
+  bool leftBehind() const { return forks_ != forksSoFar(); }
 
   void run(std::size_t count, Task task) {
     assert(count > 0 && !threads_.empty());
@@ -139,6 +154,7 @@ class ThreadPool::Workers {
     }
   }
 
+  const unsigned forks_ = forksSoFar();
   std::vector<std::thread> threads_;
   std::mutex oneAtATime_;
   // Written while no thread is inside a run.
@@ -159,14 +175,16 @@ ThreadPool::ThreadPool(std::optional<std::size_t> threadCount) {
   workers_ = std::make_unique<Workers>(all - 1);
 }
 
-ThreadPool::~ThreadPool() = default;
+ThreadPool::~ThreadPool() {
+  if (workers_->leftBehind()) (void)workers_.release();
+}
 
 std::size_t ThreadPool::threadCount() const {
-  return workers_->size() + 1;
+  return workers_->leftBehind() ? 1 : workers_->size() + 1;
 }
 
 void ThreadPool::run(std::size_t count, Task task) {
-  if (workers_->size() > 0 && count > 1) return workers_->run(count, task);
+  if (workers_->size() > 0 && count > 1 && !workers_->leftBehind()) return workers_->run(count, task);
   for (std::size_t k = 0; k < count; ++k) task(k);
 }
 

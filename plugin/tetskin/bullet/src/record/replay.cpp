@@ -148,8 +148,9 @@ Status Replay::Impl::prepare(const StepChunk& step) {
 Status Replay::Impl::make(const StepChunk& step) {
   const LedToTargets led(world(), step.kinematic);
   if (!led.fits()) return malformed(path, "other bodies are kinematic in step " + std::to_string(next));
-  world().stepSimulation(static_cast<btScalar>(step.seconds), step.maxSubSteps,
-                         static_cast<btScalar>(step.fixedTimeStep));
+  const auto seconds = static_cast<btScalar>(step.seconds), fixed = static_cast<btScalar>(step.fixedTimeStep);
+  world().stepSimulation(seconds, step.maxSubSteps, fixed);
+  report.secondsPerStep = step.maxSubSteps > 0 ? fixed : seconds;
   ++next;
   return {};
 }

@@ -68,6 +68,8 @@ void checkAnchors(WorldStream& stream, const btSoftBody& body) {
 }  // namespace
 
 void checkForces(WorldStream& stream, DeformableSolver& solver) {
+  stream.same(solver.deterministic(), solver.deterministic() ? "it was not deterministic, and this one is"
+                                                             : "it was deterministic, and this one is not");
   const std::vector<btDeformableLagrangianForce*> forces = forcesOf(solver);
   const char* const kOthers = "other soft bodies, contacts of soft bodies, springs or welds were there";
   std::unordered_set<const btSoftBody*> solvedHere;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/fit/cage_binding.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <cassert>
 #include <cmath>
@@ -20,6 +21,7 @@ std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const La
   const auto indexOf = [&](const LatticeTet& tet) { return lattice.indexOf(set, tet); };
   std::vector<int> result(points.size(), -1);
   for (std::size_t p = 0; p < points.size(); ++p) {
+    Progress::goOn();
     const LatticeTet home = locate(frame.toLattice(points[p]));
     const int tet = indexOf(home);
     if (tet >= 0 && holds(lattice.mesh, tet, points[p])) {

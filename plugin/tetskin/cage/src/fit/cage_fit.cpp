@@ -13,6 +13,7 @@
 #include <tetskin/cage/src/lattice/surface_cover.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/tets_around_nodes.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -113,9 +114,11 @@ class CageFit {
     for (int sweep = 0; sweep < kSweeps && moved; ++sweep) {
       moved = false;
       for (std::size_t n = 0; n < mesh_.nodeCount(); ++n) {
+        Progress::goOn();
         if (boundary_[n] && pull(static_cast<int>(n))) moved = true;
       }
       for (std::size_t n = 0; n < mesh_.nodeCount(); ++n) {
+        Progress::goOn();
         if (!boundary_[n] && smooth(static_cast<int>(n))) moved = true;
       }
     }

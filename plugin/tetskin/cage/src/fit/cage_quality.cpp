@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,7 @@ std::array<double, 6> dihedralCosines(const TetCorners& p) {
 std::vector<int> componentNumbers(const TetMesh& mesh) {
   DisjointSets sets(mesh.nodeCount());
   for (const Tet& tet : mesh.tets) {
+    Progress::goOn();
     for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
   std::vector<int> number(mesh.nodeCount(), -1), components;
@@ -42,6 +44,7 @@ DihedralRange dihedralRange(const TetMesh& mesh) {
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   double smallest = 1.0, largest = -1.0;  // cosines of the angles
   for (const Tet& tet : mesh.tets) {
+    Progress::goOn();
     for (const double c : cage_detail::dihedralCosines(cornersOf(mesh, tet))) {
       smallest = std::min(smallest, c);
       largest = std::max(largest, c);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/lattice/inside_fill.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -148,6 +149,7 @@ class InsideFill {
   template <class F>
   void forUntouched(F f) const {
     for (std::size_t i = 0; i < touchedMask_.size(); ++i) {
+      Progress::goOn();
       const int count = wasTouched_[i] ? kTetsPerCube : 1;
       for (int local = 0; local < count; ++local) {
         if (untouched(i, local)) f(i, local);

@@ -5,6 +5,7 @@
 //   Tomas Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001 (separating axes of a triangle and a convex
 //   body)
 #include <tetskin/cage/src/lattice/surface_cover.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -183,6 +184,7 @@ bool coverAll(const Surface& surface, const LatticeFrame& frame, Cover& cover) {
     points[p].deep = isDeep(points[p].position);
   }
   for (std::uint32_t k = 0; k < surface.triangles.size(); ++k) {
+    Progress::goOn();
     const auto& t = surface.triangles[k];
     cover.setTriangle(k);
     const Located &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];

@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/lattice/surface_cover.h>
 #include <tetskin/cage/src/material/tet_material.h>
 #include <tetskin/cage/src/surface/triangle_crossing.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -73,6 +74,7 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
   MaterialFinder finder(surface, winding, frame);
   const std::uint32_t* values = material.triangles.values.data();
   for (std::size_t cube = 0; cube < set.cubeCount(); ++cube) {
+    Progress::goOn();
     for (int local = 0; local < kTetsPerCube; ++local) {
       const int t = lattice.tetOf[kTetsPerCube * cube + static_cast<std::size_t>(local)];
       if (t < 0) continue;

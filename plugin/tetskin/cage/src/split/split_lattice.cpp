@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/split/split_lattice.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/core/src/base/mesh/face_neighbours.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -141,6 +142,7 @@ class Splitter {
     std::vector<int> nodeOf(4 * kept_.size(), -1), tetOf(kept_.size(), -1);
     std::map<Tet, int> made;  // duplicates with the same nodes are one tet
     for (std::size_t k = 0; k < kept_.size(); ++k) {
+      Progress::goOn();
       if (!kept_[k]) continue;
       const int copy = static_cast<int>(k);
       Tet nodes{};
@@ -198,6 +200,7 @@ std::vector<std::uint8_t> openFacesOf(const CageTets& cage) {
   const Lists<> beyond = faceNeighbours(cage.mesh);
   std::vector<std::uint8_t> open(cage.mesh.tetCount(), 0);
   for (std::size_t t = 0; t < open.size(); ++t) {
+    Progress::goOn();
     for (std::size_t corner = 0; corner < 4; ++corner) {
       bool closed = false;
       for (std::uint32_t k = beyond.starts[4 * t + corner]; k < beyond.starts[4 * t + corner + 1]; ++k) {

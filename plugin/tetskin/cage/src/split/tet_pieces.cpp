@@ -3,6 +3,7 @@
 #include <tetskin/cage/src/split/tet_clip.h>
 #include <tetskin/cage/src/split/tet_pieces.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
 #include <cassert>
@@ -46,7 +47,10 @@ class PieceFinder {
   TetPieces run() {
     joinSurface();
     findMaterial();
-    for (std::size_t t = 0; t < tetCount(); ++t) joinWithin(static_cast<int>(t));
+    for (std::size_t t = 0; t < tetCount(); ++t) {
+      Progress::goOn();
+      joinWithin(static_cast<int>(t));
+    }
     return numbered();
   }
 
@@ -76,6 +80,7 @@ class PieceFinder {
 
   void joinSurface() {
     for (std::size_t t = 0; t < tetCount(); ++t) {
+      Progress::goOn();
       if (first(t) == last(t)) continue;
       joinTriangles(static_cast<int>(t), mapOf(t));
       for (std::size_t e = first(t); e < last(t); ++e) layered_[t] |= united(first(t), e) ? 0 : 1;

@@ -4,25 +4,41 @@
 
 #include <tetskin/core/types.h>
 
+#include <chrono>
 #include <functional>
 
 namespace tetskin {
 
-/// Tells an application how much of a long computation is done, and learns whether to go on.
-class Progress {
+/// Thrown by `Progress::goOn`: caught by the computation that has a Progress.
+struct TETSKIN_CORE_API Cancellation {};
+
+/// Tells an application how much of a long computation is done, and learns whether to go on. Of several in a
+/// thread, the last one begun is asked.
+class TETSKIN_CORE_API Progress {
  public:
   /// tell  returns false to cancel; may be empty; must outlive this
-  explicit Progress(const std::function<bool(double fraction)>& tell) : tell_(tell) {}
+  explicit Progress(const std::function<bool(double fraction)>& tell);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
 
   /// Tells the fraction, unless the application has cancelled. Returns false if it has, now or before.
-  bool reach(double fraction) {
-    if (!cancelled_ && tell_) cancelled_ = !tell_(fraction);
-    return !cancelled_;
-  }
+  bool reach(double fraction);
   bool cancelled() const { return cancelled_; }
 
+  /// For whatever takes part in the computation of this thread, in loops: asks the application, some times in a second.
+  /// Throws Cancellation if it cancels. Costs a nanosecond or two. Where no computation has begun, nothing happens.
+  static void goOn();
+  /// The same for rounds of milliseconds, of which each looks at the clock.
+  static void goOnWithRound();
+
  private:
+  using Clock = std::chrono::steady_clock;
+
   const std::function<bool(double)>& tell_;
+  double fraction_ = 0.0;  ///< told last
+  Clock::time_point told_ = Clock::now();
+  Progress* outer_;  ///< in whose midst this one has begun; null: none
   bool cancelled_ = false;
 };
 

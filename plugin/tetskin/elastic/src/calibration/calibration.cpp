@@ -118,7 +118,7 @@ std::string CalibrationReport::describe() const {
   return text.str();
 }
 
-Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& options) {
+Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& options) try {
   const auto start = std::chrono::steady_clock::now();
   if (Status status = check(cage, options); !status.ok()) return status;
   Progress progress(options.progress);
@@ -144,6 +144,8 @@ Result<CalibrationReport> calibrate(Cage& cage, const CalibrationOptions& option
   cage.stiffnessFactor = std::move(factors);
   result.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;
+} catch (const Cancellation&) {
+  return cancelledStatus("calibrate");
 }
 
 }  // namespace tetskin

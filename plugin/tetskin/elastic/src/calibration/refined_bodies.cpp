@@ -3,6 +3,7 @@
 //
 // This work is based on:
 //   James Bramble, Joseph Pasciak and Jinchao Xu, "Parallel Multilevel Preconditioners", Math. Comp. 55, 1990
+#include <tetskin/core/src/base/progress.h>
 #include <tetskin/elastic/src/calibration/refined_bodies.h>
 #include <tetskin/elastic/src/calibration/strain_energies.h>
 
@@ -99,6 +100,7 @@ RefinedBodies::RefinedBodies(Cage cage, double poissonRatio, int refinements)
       direct_(coarsest_) {
   assert(refinements >= 0 && refinements <= 2);
   for (int k = 1; k <= refinements; ++k) {
+    Progress::goOnWithRound();
     Refinement made = refineUniformly(k == 1 ? cage_.mesh : at(1).refinement.mesh);
     std::vector<double> fill = fillAt(cage_, k);
     const Cage quadratic = refinements == 1 ? quadraticCage(cage_, made.mesh, fill) : Cage();
@@ -160,6 +162,7 @@ Fields RefinedBodies::solve(std::size_t level, const Fields& loads, const Fields
   Fields directions = Fields::Zero(loads.rows(), loads.cols());
   Eigen::RowVectorXd before = Eigen::RowVectorXd::Zero(loads.cols());
   for (int k = 0; k < kMaxSolveIterations; ++k) {
+    Progress::goOnWithRound();
     const Fields steps = precondition(level, residuals);
     const Eigen::RowVectorXd now = products(residuals, steps);
     if ((now.array() <= kTolerance * products(loads, displacements).array()).all()) break;

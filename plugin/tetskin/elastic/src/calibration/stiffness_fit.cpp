@@ -117,6 +117,7 @@ LoadSet applied(const RefinedBodies& bodies, const Fields& accelerations) {
   Fields displacements;
   std::vector<Eigen::MatrixXd> energies;
   for (std::size_t level = 0; level <= last; ++level) {
+    Progress::goOnWithRound();
     displacements = level == 0 ? bodies.direct().solve(loads[0])
                                : bodies.solve(level, loads[level], bodies.refined(level - 1, displacements));
     set.works.push_back(products(loads[level], displacements));
@@ -287,6 +288,7 @@ bool StiffnessFit::regionsPredict() const {
 double StiffnessFit::spreadWith(const std::vector<double>& factors, const LoadSet& loads) const {
   Eigen::RowVectorXd ratios = loads.ratios(0);
   if (!factors.empty()) {
+    Progress::goOnWithRound();
     Cage cage = bodies_.cage();
     cage.stiffnessFactor = factors;
     const RestBody body(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
@@ -298,6 +300,7 @@ double StiffnessFit::spreadWith(const std::vector<double>& factors, const LoadSe
 }
 
 StiffnessFit::Ratios StiffnessFit::ratiosWith(const std::vector<double>& factors) const {
+  Progress::goOnWithRound();
   Cage cage = bodies_.cage();
   cage.stiffnessFactor = factors;
   const RestBody body(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));

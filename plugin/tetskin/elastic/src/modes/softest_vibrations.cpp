@@ -7,6 +7,7 @@
 //   Ulrich Hetmaniuk, Rich Lehoucq, "Basis selection in LOBPCG", J. Comput. Phys. 218, 2006 (all bases orthonormal)
 //   Andreas Stathopoulos, Kesheng Wu, "A Block Orthogonalization Procedure with Constant Synchronization Requirements",
 //     SIAM J. Sci. Comput. 23, 2002 (by the eigenvectors of the products)
+#include <tetskin/core/src/base/progress.h>
 #include <tetskin/elastic/src/modes/softest_vibrations.h>
 #include <tetskin/elastic/src/modes/start_vectors.h>
 
@@ -181,6 +182,7 @@ Vibrations softestVibrations(const VibrationProblem& problem, int count, const s
   Vibrations result;
   double told = 0.0;
   while (!result.converged && result.iterations < kMaxModeIterations) {
+    Progress::goOnWithRound();
     const double left = iteration.advance();
     result.converged = left == 0.0;
     ++result.iterations;

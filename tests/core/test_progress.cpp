@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <gtest/gtest.h>
+#include <tetskin/core/src/base/progress.h>
+
+#include <chrono>
+#include <vector>
+
+namespace tetskin {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Goes on until the application is asked, for some seconds at most.
+void goOnUntilAsked(const std::vector<double>& told) {
+  const std::size_t before = told.size();
+  for (const auto start = Clock::now(); told.size() == before && Clock::now() - start < std::chrono::seconds(5);) {
+    Progress::goOn();
+  }
+  EXPECT_EQ(told.size(), before + 1);
+}
+
+TEST(Progress, AsksInTheMiddleOfALoopWithTheFractionThatWasTold) {
+  std::vector<double> told;
+  const std::function<bool(double)> tell = [&](double fraction) {
+    told.push_back(fraction);
+    return told.size() < 4;
+  };
+  Progress progress(tell);
+  EXPECT_TRUE(progress.reach(0.0));
+  EXPECT_TRUE(progress.reach(0.5));
+  for (int k = 0; k < 1000; ++k) Progress::goOn();  // sooner than anybody is asked again
+  EXPECT_EQ(told.size(), 2u);
+  goOnUntilAsked(told);
+  EXPECT_FALSE(progress.cancelled());
+  EXPECT_THROW(goOnUntilAsked(told), Cancellation);
+  EXPECT_TRUE(progress.cancelled());
+  EXPECT_EQ(told, (std::vector<double>{0.0, 0.5, 0.5, 0.5}));
+}
+
+TEST(Progress, WithinAnotherOneIsAskedInItsPlace) {
+  std::vector<double> outer, inner;
+  const std::function<bool(double)> tellOuter = [&](double fraction) { return outer.push_back(fraction), true; };
+  const std::function<bool(double)> tellInner = [&](double fraction) { return inner.push_back(fraction), true; };
+  const std::function<bool(double)> nobody;
+  Progress begun(tellOuter);
+  {
+    Progress other(tellInner);
+    goOnUntilAsked(inner);
+    Progress silent(nobody);
+    for (const auto start = Clock::now(); Clock::now() - start < std::chrono::milliseconds(250);) Progress::goOn();
+  }
+  EXPECT_EQ(inner.size(), 1u);
+  EXPECT_TRUE(outer.empty());
+  goOnUntilAsked(outer);
+}
+
+}  // namespace
+}  // namespace tetskin
