@@ -32,10 +32,10 @@ Status checkOptions(const SoftBodyOptions& options) {
     return {StatusCode::InvalidOption,
             "the mass of a soft body, or its density, must be above 0, and both must be finite"};
   }
-  if (!(options.friction >= 0.0 && finite(options.friction)) ||
-      (options.margin && !(*options.margin >= 0.0 && finite(*options.margin)))) {
-    return {StatusCode::InvalidOption, "the friction and margin of a soft body must be finite and not negative"};
-  }
+  if (!(options.friction >= 0.0 && options.friction <= 1.0))
+    return {StatusCode::InvalidOption, "friction: that of a soft body must be from 0 to 1"};
+  if (options.margin && !(*options.margin >= 0.0 && finite(*options.margin)))
+    return {StatusCode::InvalidOption, "margin: that of a soft body must be finite, and not negative"};
   if ((options.youngsModulus && !positive(*options.youngsModulus)) || !(options.relativeStiffness > 0.0) ||
       !(options.stiffnessDamping >= 0.0) || !(options.timeStep > 0.0) || !finite(options.relativeStiffness) ||
       !finite(options.stiffnessDamping) || !finite(options.timeStep)) {
