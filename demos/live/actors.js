@@ -4,6 +4,8 @@
 // What a running scene shows: bodies that the graphics card skins, by the bones of each frame; rigid bodies; and the
 // stage with both.
 
+/** To the camera of the first view where the room is narrow: what is long is then seen more from its end, and larger. */
+const NARROW_DIRECTION = [0.75, 0.55, 1.0];
 const CAGE_COLOUR = 0xe0661a, TETS_COLOUR = 0xf0b487;
 
 /** Has a material leave out what is on one side of a plane in rest space. cut: uniforms {axis, at} */
@@ -234,6 +236,11 @@ class LiveStage extends Stage {
     this.ballRadius = 0.06 * this.radius;
     this.marker = this.makeMarker();
     this.show(scene.state);
+  }
+
+  resetView() {
+    const isNarrow = this.freeWidth * this.camera.aspect < 0.8 * this.freeHeight;
+    super.resetView(isNarrow ? NARROW_DIRECTION : FIRST_DIRECTION);
   }
 
   seenPoints() {

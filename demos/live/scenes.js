@@ -147,14 +147,15 @@ function addTwist(builder) {
   });
 }
 
-/** In the order of the page's row. focus: the box that the first view fits. */
+/** In the order of the page's row. focus: the box that the first view fits; skin: 'linear' where nothing is said. */
 const SCENES = {
   serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
   heap: {title: 'Heap of eight', build: addHeap, tets: 1000, focus: [[-1.2, 0, -1.2], [1.2, 1.6, 1.2]]},
   pit: {title: 'Ball pit on a mat', build: addPit, tets: 800, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
   gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.75, 0, -0.5], [1.75, 2.05, 0.5]]},
   stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
-  twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
+  twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]],
+    skin: 'quadratic'},
 };
 
 /** The meshes of scenes by name; the serpent is the page's own. */
