@@ -534,6 +534,7 @@ class Live {
     const panel = element('panel').getBoundingClientRect(), isShown = panel.width > 0;
     const isBeside = isShown && panel.width < 0.5 * width, isBelow = isShown && !isBeside;
     const bottom = height - (isBelow ? panel.top : footer.top), right = isBeside ? width - panel.left : 0;
+    element('hint').style.right = `${right}px`;
     if (this.stage) this.stage.resize(width, height, top, bottom, right);
     this.changed = true;
   }

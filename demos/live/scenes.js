@@ -147,9 +147,11 @@ function addTwist(builder) {
   });
 }
 
-/** In the order of the page's row. focus: the box that the first view fits; skin: 'linear' where nothing is said. */
+/** In the order of the page's row. focus: the box that the first view fits; narrow: likewise, where the screen is
+    narrow; skin: 'linear' where nothing is said. */
 const SCENES = {
-  serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
+  serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]],
+    narrow: [[-0.9, 0, -0.6], [1.1, 1.6, 0.7]]},
   heap: {title: 'Heap of eight', build: addHeap, tets: 1000, focus: [[-1.2, 0, -1.2], [1.2, 1.6, 1.2]]},
   pit: {title: 'Ball pit on a mat', build: addPit, tets: 800, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
   gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.75, 0, -0.5], [1.75, 2.05, 0.5]]},

@@ -380,7 +380,8 @@ class Simulation {
 
   description() {
     return {
-      name: this.name, title: SCENES[this.name].title, focus: SCENES[this.name].focus, settings: this.settings,
+      name: this.name, title: SCENES[this.name].title, focus: SCENES[this.name].focus,
+      narrow: SCENES[this.name].narrow, settings: this.settings,
       models: this.models.map(model => model.description()),
       bodies: this.parts.map(({model, colour}) => ({model: model.number, colour})), rigids: this.rigids,
       tets: this.parts.reduce((sum, {model}) => sum + model.cage.tetCount, 0),
