@@ -4,7 +4,7 @@
 // What a running scene shows: bodies that the graphics card skins, by the bones of each frame; rigid bodies; and the
 // stage with both.
 
-/** To the camera of the first view where the room is narrow: what is long is then seen more from its end, and larger. */
+/** To the camera of the first view where the room is narrow: what is long is seen more from its end, and larger. */
 const NARROW_DIRECTION = [0.75, 0.7, 1.0];
 const CAGE_COLOUR = 0xe0661a, TETS_COLOUR = 0xf0b487;
 

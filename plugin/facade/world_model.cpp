@@ -141,9 +141,8 @@ void World::remove(RigidState& rigid) {
   if (rigid.removed) return;
   rigid.removed = true;
   removeEach(touches_, [&](const TouchState& touch) { return touch.rigid.get() == &rigid; });
-  removeEach(joints_, [&](const JointState& joint) {
-    return joint.first.get() == &rigid || joint.second.get() == &rigid;
-  });
+  removeEach(joints_,
+             [&](const JointState& joint) { return joint.first.get() == &rigid || joint.second.get() == &rigid; });
   world_->removeRigidBody(rigid.body.get());
   forget(rigids_, rigid);
 }

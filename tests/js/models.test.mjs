@@ -64,7 +64,7 @@ test("a glb that its node mirrors has its outside outside", () => {
     let sum = 0;
     for (let t = 0; t < triangles.length; t += 3) {
       const [a, b, c] = [0, 1, 2].map(k => positions.subarray(3 * triangles[t + k], 3 * triangles[t + k] + 3));
-      sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+      for (let k = 0, l = 1, m = 2; k < 3; [k, l, m] = [k + 1, m, k]) sum += a[k] * (b[l] * c[m] - b[m] * c[l]);
     }
     return sum / 6;
   };

@@ -23,7 +23,7 @@ function checkAttached(buffer, name) {
   try {
     new Uint8Array(buffer);
   } catch {
-    throw invalid(`${name}: its memory has gone. Get a view anew after a call that may have grown the module's memory; ` +
+    throw invalid(`${name}: its memory has gone. Get a view anew after calls, which may have grown the module's memory; ` +
       "a buffer that was transferred is the other thread's");
   }
 }

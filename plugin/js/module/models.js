@@ -129,8 +129,8 @@ class Tetskin {
         throw new TetskinError("SizeMismatch", `${name}: ${array.length} numbers for ${positions.length / 3} vertices`);
       }
     }
-    return this.withMemory([doubles(positions), indices(triangles), doubles(normals), doubles(texcoords)], (...places) =>
-      new Mesh(this.hidden.instance, this.core.createMesh(...places)));
+    const arrays = [doubles(positions), indices(triangles), doubles(normals), doubles(texcoords)];
+    return this.withMemory(arrays, (...places) => new Mesh(this.hidden.instance, this.core.createMesh(...places)));
   }
   meshFromBytes(bytes) {
     return this.withBytes(bytesOf(bytes, "bytes"), (at, count) =>

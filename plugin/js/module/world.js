@@ -57,7 +57,8 @@ class World extends Thing {
     return this.addRigid("addCylinder", options, numberOf(radius, "radius"), numberOf(height, "height"));
   }
   addConvexHull(points, options) {
-    return this.withMemory([doubles(numbersOf(points, "points", 3))], at => this.addRigid("addConvexHull", options, at));
+    const arrays = [doubles(numbersOf(points, "points", 3))];
+    return this.withMemory(arrays, at => this.addRigid("addConvexHull", options, at));
   }
   addMesh(mesh, options) {
     return this.addRigid("addMesh", options, handleIn(this.hidden.instance, mesh, Mesh, "mesh"));
@@ -103,7 +104,8 @@ class World extends Thing {
 
   forcesOn(thing, other) {
     const places = [...this.placesOf(thing, "thing"), ...this.placesOf(other ?? null, "other", true)];
-    const numbers = this.copy(Float64Array, this.core.forcesOn(own(this), ...places)), at = i => numbers.slice(i, i + 3);
+    const numbers = this.copy(Float64Array, this.core.forcesOn(own(this), ...places));
+    const at = i => numbers.slice(i, i + 3);
     return Object.fromEntries(kCauses.map((cause, i) => [cause, {force: at(6 * i), torque: at(6 * i + 3)}]));
   }
 
@@ -266,7 +268,8 @@ class Body extends Member {
     return this.view(Float32Array, this.core.bodyVelocities(own(this)));
   }
   set velocities(velocities) {
-    this.withMemory([doubles(numbersOf(velocities, "velocities", 3))], at => this.core.setBodyVelocities(own(this), at));
+    const arrays = [doubles(numbersOf(velocities, "velocities", 3))];
+    this.withMemory(arrays, at => this.core.setBodyVelocities(own(this), at));
   }
   get positions() {
     return this.view(Float32Array, this.core.bodyPositions(own(this)));
