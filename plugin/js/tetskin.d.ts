@@ -323,7 +323,7 @@ export interface World extends Thing {
   /**
    * Goes on by dt seconds, in so many of Bullet's steps; 1/60 and 4.
    * @returns the number of steps made
-   * @throws NonFinite, if the simulation is unstable: restore a snapshot
+   * @throws NonFinite, after the step, if the simulation is unstable: restore a snapshot
    */
   step(dt?: number, substeps?: number): number;
   /** Of the last step. */

@@ -5,7 +5,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {failure, load} from "./module.mjs";
+import {failure, load, TetskinError} from "./module.mjs";
 import {tube} from "./shapes.mjs";
 
 const tetskin = await load();
@@ -273,6 +273,19 @@ test("a snapshot goes on to the last bit, here and in another instance", async (
   assert.equal(world.hash, end);
 });
 
+test("time goes on with a step that has made the world unstable, and with no other that throws", () => {
+  const {world} = drop(), {core} = world.hidden.instance, {step} = core;
+  assert.throws(() => world.step(-1), failure("InvalidArgument"));
+  assert.equal(world.time, 0);
+  core.step = () => { throw new TetskinError("NonFinite", "after the step"); };
+  try {
+    assert.throws(() => world.step(0.5), failure("NonFinite"));
+  } finally {
+    core.step = step;
+  }
+  assert.equal(world.time, 0.5);
+});
+
 test("milliseconds of the stages add up", () => {
   const {world} = drop();
   steps(world, 100);
@@ -384,7 +397,8 @@ test("bad arguments are named, and the world stays as it was", () => {
   const other = drop();
   const hit = world.raycast([1, 5, 0], [1, -5, 0]), before = world.hash;
   const refused = [
-    [() => world.step(0), "InvalidArgument", /dt/],
+    [() => world.step(-1), "InvalidArgument", /dt/],
+    [() => world.step(1n), "InvalidArgument", /dt/],
     [() => world.step(NaN), "InvalidArgument", /dt/],
     [() => world.step(1 / 60, 0), "InvalidArgument", /substeps/],
     [() => world.step(1 / 60, 1.5), "InvalidArgument", /substeps/],

@@ -28,9 +28,14 @@ class World extends Thing {
     this.core.setGravity(own(this), vectorOf(gravity, "gravity"));
   }
   step(dt = 1 / 60, substeps = 4) {
-    const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
-    this.hidden.time += dt;
-    return made;
+    try {
+      const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
+      this.hidden.time += dt;
+      return made;
+    } catch (error) {
+      if (error.code === "NonFinite") this.hidden.time += dt;  // the step was made
+      throw error;
+    }
   }
   get times() {
     const numbers = this.view(Float64Array, this.core.times(own(this)));
