@@ -123,7 +123,13 @@ std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass
     rigid->body->setActivationState(DISABLE_DEACTIVATION);
   }
   rigids_.push_back(rigid);
-  world_->addRigidBody(rigid->body.get());
+  try {
+    world_->addRigidBody(rigid->body.get());
+  } catch (...) {  // as if nothing had been added
+    world_->removeRigidBody(rigid->body.get());
+    rigids_.pop_back();
+    throw;
+  }
   return rigid;
 }
 
@@ -224,11 +230,11 @@ std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel
   body->body = take(DeformableBody::add(*world_, placed, options.material));
   try {
     if (mesh.mesh) bindSurface(*body, options);
+    bodies_.push_back(body);
   } catch (...) {  // as if nothing had been added
     if (soft_ && body->softContact) soft_->remove(body->body->body());
     throw;
   }
-  bodies_.push_back(body);
   return body;
 }
 

@@ -9,9 +9,23 @@ const kMostBytes = 0x7fffffff;  // of an address space of 32 bits, whose numbers
 const doubles = values => ({Type: Float64Array, values});
 const indices = values => ({Type: Int32Array, values: checkedIndices(values)});
 
+/** What C++ throws passes Guarded only where there is no memory for what goes in or comes out. */
+function withoutExceptions(call) {
+  return (...values) => {
+    try {
+      return call(...values);
+    } catch (error) {
+      throw error instanceof WebAssembly.Exception ? errorOf("OutOfMemory") : error;
+    }
+  };
+}
+
 class Instance {
   constructor(core) {
     this.core = core;
+    for (const [name, call] of Object.entries(core)) {
+      if (typeof call === "function" && /^[a-z]/.test(name)) core[name] = withoutExceptions(call);
+    }
     this.memoryVersion = 0;
     this.seen = this.buffer;
   }

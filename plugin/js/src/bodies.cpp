@@ -56,11 +56,18 @@ BodyHandle* addBody(WorldHandle& handle, const CageModel& cage, const MeshModel*
   checkNodes(pinned, cage.cage->mesh.nodeCount());
   if (!mesh && (soft.softContact || soft.selfContact))
     fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
-  auto state =
+  auto body = std::make_unique<BodyHandle>(BodyHandle{handle.world, {}, {}, {}});
+  body->state =
       handle.world->addBody(cage, mesh ? *mesh : MeshModel(), placementOf(soft.position, soft.rotation), options);
-  for (const std::int32_t node : pinned) check(state->body->setPinned(node));
-  if (state->binding && !soft.visible) state->skin.setVisible(false);
-  return new BodyHandle{handle.world, std::move(state), {}, {}};
+  BodyState& state = *body->state;
+  try {
+    for (const std::int32_t node : pinned) check(state.body->setPinned(node));
+    if (state.binding && !soft.visible) state.skin.setVisible(false);
+  } catch (...) {  // as if nothing had been added
+    handle.world->remove(state);
+    throw;
+  }
+  return body.release();
 }
 void remove(BodyHandle& body) {
   body.world->remove(*body.state);

@@ -6,9 +6,18 @@
 #include <tetskin/bullet/src/exported/state_hash.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <new>
 
 namespace tetskin::js {
 namespace {
+
+/// Bullet writes to what it asked for, whether it got it or not.
+void* allocated(std::size_t bytes) {
+  void* const memory = std::malloc(bytes);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
 
 WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces) {
   return new WorldHandle{std::make_shared<World>(gravity, nullptr, deterministic, recordForces), {}, {}};
@@ -94,6 +103,7 @@ std::string hashOfState(WorldHandle& handle) {
 }  // namespace
 
 EMSCRIPTEN_BINDINGS(worlds) {
+  btAlignedAllocSetCustom(allocated, std::free);
   emscripten::value_array<Vec3>("Vec3")
       .element(emscripten::index<0>())
       .element(emscripten::index<1>())
