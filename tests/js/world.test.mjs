@@ -368,6 +368,51 @@ test("all can be deleted where there is no memory left", async () => {
   assert.ok(spring.deleted && world.deleted);
 });
 
+test("where memory ends within a call, it is said, and all goes on to the same bits", async () => {
+  const calls = {
+    addBody: ({world, few, one}) => world.addBody(few, one, {position: [0, 3, 0]}),
+    softContact: ({world, few, one}) => world.addBody(few, one, {position: [0, 3, 0], softContact: true}),
+    addSphere: ({world}) => world.addSphere(0.2, {mass: 1, position: [0, 3, 0]}),
+    addSpring: ({world}) => world.addSpring(world.raycast([1, 9, 0], [1, -9, 0])),
+    save: ({world}) => world.save(),
+    nodes: ({body}) => body.nodes,
+    report: ({few}) => few.report,
+  };
+  const {grow} = WebAssembly.Memory.prototype, said = {};
+  for (const [name, call] of Object.entries(calls)) {
+    for (let room = 64; room < 3e6 && said[name] !== "made"; room *= 2) {
+      const own = await load(), one = own.createMesh(shape.positions, shape.triangles);
+      const few = own.createCage(one, {targetTets: 60}), {core} = own.hidden.instance, taken = [];
+      const [{world, body}, other] = [0, 1].map(() => {
+        const world = own.createWorld({deterministic: true});
+        world.addPlane();
+        return {world, body: world.addBody(few, one, {position: [0, 0.4, 0]})};
+      });
+      for (const one of [world, other.world]) steps(one, 4);
+      const hole = core._malloc(room);
+      WebAssembly.Memory.prototype.grow = () => { throw new RangeError("full"); };
+      try {
+        for (let size = 1 << 24; size >= 8; size >>= 1) for (let at; (at = core._malloc(size)) !== 0;) taken.push(at);
+        core._free(hole);
+        call({world, body, few, one});
+        said[name] = "made";
+      } catch (error) {
+        assert.ok(failure("OutOfMemory")(error), `${name}, ${room}: ${error}`);
+        said[name] ??= "refused";
+      } finally {
+        WebAssembly.Memory.prototype.grow = grow;
+      }
+      if (said[name] === "made") continue;
+      for (const at of taken) core._free(at);
+      assert.deepEqual([world.bodies.length, world.rigidBodies.length], [1, 1], `${name}, ${room}`);
+      for (const one of [world, other.world]) steps(one, 20);
+      assert.equal(world.hash, other.world.hash, `${name}, ${room}`);
+      world.delete();
+    }
+    assert.ok(said[name], name);
+  }
+});
+
 test("worlds that come and go leave no memory behind", () => {
   const once = () => {
     const {world} = drop();
