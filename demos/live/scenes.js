@@ -107,10 +107,12 @@ function addGripper(builder) {
   const fingers = [-1, 1].map(side => builder.addBox([0.09, 0.55, 0.3],
     {...options, position: [at.across + side * (at.half + 0.09), 0.65, 0]}, 'finger'));
   const carriage = builder.addBox([0.95, 0.07, 0.16], {...options, position: [at.across, 1.3, 0]}, 'carriage');
+  const arm = builder.addBox([0.07, 2, 0.07], {...options, position: [at.across, 3.37, 0]}, 'carriage');
   builder.beforeFrame(frame => {
     const {half, up, across} = gripperAt(frame * FRAME);
     fingers.forEach((finger, k) => finger.position = [across + (k ? 1 : -1) * (half + 0.09), 0.65 + up, 0]);
     carriage.position = [across, 1.3 + up, 0];
+    arm.position = [across, 3.37 + up, 0];
   });
 }
 
