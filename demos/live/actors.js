@@ -4,6 +4,8 @@
 // What a running scene shows: bodies that the graphics card skins, by the bones of each frame; rigid bodies; and the
 // stage with both.
 
+/** To the camera of the first view where the room is narrow: what is long is seen more from its end, and larger. */
+const NARROW_DIRECTION = [0.75, 0.7, 1.0];
 const CAGE_COLOUR = 0xe0661a, TETS_COLOUR = 0xf0b487;
 
 /** Has a material leave out what is on one side of a plane in rest space. cut: uniforms {axis, at} */
@@ -215,6 +217,16 @@ function obstaclesOf(rigids) {
   return groups.length > 0 && {positions: Float32Array.from(positions), triangles: Uint32Array.from(triangles), groups};
 }
 
+function boxOf([min, max]) {
+  return new THREE.Box3(new THREE.Vector3(...min), new THREE.Vector3(...max));
+}
+
+function cornersOf({min, max}) {
+  const points = [];
+  for (let k = 0; k < 8; ++k) points.push(k & 1 ? min.x : max.x, k & 2 ? min.y : max.y, k & 4 ? min.z : max.z);
+  return points;
+}
+
 /** The stage of a scene that the worker runs. */
 class LiveStage extends Stage {
   /** scene: the worker's description; renderer: one for all scenes */
@@ -222,6 +234,7 @@ class LiveStage extends Stage {
     const [min, max] = scene.focus, focus = {min, max};
     const obstacles = obstaclesOf(scene.rigids);
     super(canvas, {focus, moments: 1, materials, bodies: [], models: [], props: [], obstacles, renderer});
+    if (scene.narrow) this.narrow = boxOf(scene.narrow);
     this.materials = new Materials(materials);
     this.models = [];
     this.soft = [];
@@ -236,11 +249,13 @@ class LiveStage extends Stage {
     this.show(scene.state);
   }
 
-  seenPoints() {
-    const {min, max} = this.focus, points = [];
-    for (let k = 0; k < 8; ++k) points.push(k & 1 ? min.x : max.x, k & 2 ? min.y : max.y, k & 4 ? min.z : max.z);
-    return points;
+  resetView() {
+    const isNarrow = this.freeWidth * this.camera.aspect < 0.8 * this.freeHeight;
+    this.seen = cornersOf(isNarrow && this.narrow || this.focus);
+    super.resetView(isNarrow ? NARROW_DIRECTION : FIRST_DIRECTION);
   }
+
+  seenPoints() { return cornersOf(this.focus); }
 
   addRigid(shape) {
     const actor = new RigidActor(shape, this.materials);

@@ -29,16 +29,17 @@
 // All but `state`, `errors`, `scenes` and `notice` return promises; those of frames resolve to the state then.
 'use strict';
 
+/** Until the page is seen, or is not looked at. */
+const seen = () => new Promise(resolve => {
+  requestAnimationFrame(() => setTimeout(resolve));
+  setTimeout(resolve, 200);
+});
+
 async function startLive() {
-  const reason = whyNot();
-  if (reason) {
-    showTrouble(reason);
-    return reason;
-  }
   window.live = new Live();
+  await seen();
   try {
-    await window.live.start();
-    return null;
+    return await window.live.start();
   } catch (error) {
     const sentence = sentenceOf(error, 'The page', 'Load it again');
     window.live.fail(sentence);
@@ -69,6 +70,7 @@ window.tetskinLive = {
     const {live} = window;
     await quietly(live);
     Object.assign(live.settings, settings);
+    live.skinIsChosen = live.skinIsChosen || 'skin' in settings;
     live.showSettings();
     await live.open(name);
     return this.state();

@@ -17,8 +17,20 @@ const SECONDS_OF_NOTICE = 7;
 
 const STAGES = {
   prediction: 'elasticity', rigidSearch: 'search, rigid', softSearch: 'search, soft', rows: 'contact rows',
-  system: 'contact solve', other: 'Bullet', bones: 'bones',
+  system: 'contact solve', other: 'Bullet', bones: 'bones', page: 'snapshots, hash',
 };
+
+/** Settings as the page's address has them: what each may be, by its text. */
+const numberFrom = (least, most) => text => {
+  const number = text === '' ? NaN : Number(text);
+  return number >= least && number <= most ? number : undefined;
+};
+const oneOf = (...values) => text => values.find(value => String(value) === text);
+const ADDRESSED = {
+  stiffness: numberFrom(10, 1000), damping: numberFrom(0.001, 0.2), gravity: numberFrom(0, 20),
+  tets: oneOf(0, ...TETS), elements: oneOf('linear', 'quadratic'), skin: oneOf('linear', 'quadratic'),
+};
+const PAUSE_OF_ADDRESS = 400;  // milliseconds after the last change: browsers refuse to be told often
 
 /** What a person can do about an error. what: has failed; cure: where there is too little memory for it */
 function sentenceOf(error, what, cure = 'Choose fewer tets') {
@@ -44,20 +56,60 @@ class Live {
     this.opened = 0;
     this.data = JSON.parse(element('model').textContent);
     this.workerText = element('module').textContent + '\n' + element('worker').textContent;
-    this.renderer = makeRenderer(element('canvas'));
     const stopped = text => this.fail(`The simulation has stopped: ${text} Load the page again.`);
     this.port = new Port(this.workerText, stopped);
     this.hands = new Hands(element('canvas'), this);
     this.makeScenes();
     this.listen();
+    this.scene = this.readAddress();
+    this.work(`${SCENES[this.scene].title}: loading`);
     this.showSettings();
   }
 
+  /** Shows the first scene. Returns null, or the sentence that tells why not. */
   async start() {
     const zipped = Uint8Array.from(atob(this.data.zipped), c => c.charCodeAt(0));
-    await this.port.ask('start', {model: this.data.serpent, zipped, materials: this.data.materials});
-    await this.open(Object.keys(SCENES).find(name => location.hash === `#${name}`) || 'serpent');
+    const started = this.port.ask('start', {model: this.data.serpent, zipped, materials: this.data.materials});
+    const opened = Promise.all([started, this.open(this.scene)]);
+    opened.catch(() => {});  // until it is waited for: the worker is at work while WebGL starts
+    const reason = whyNot();
+    if (reason) {
+      this.port.end();
+      showTrouble(reason);
+      return reason;
+    }
+    this.renderer = makeRenderer(element('canvas'));
+    await opened;
     this.run();
+    return null;
+  }
+
+  // --- The address
+
+  /** Takes the settings that the page's address has, as in #twist&stiffness=100; the scene that it names. */
+  readAddress() {
+    const words = new URLSearchParams(location.hash.slice(1));
+    Object.assign(this.settings, USUAL);
+    for (const [name, valueOf] of Object.entries(ADDRESSED)) {
+      const value = words.has(name) ? valueOf(words.get(name)) : undefined;
+      if (value !== undefined) this.settings[name] = value;
+    }
+    this.skinIsChosen = words.has('skin');
+    return Object.keys(SCENES).find(name => words.has(name)) || 'serpent';
+  }
+
+  /** Has the address open this scene with these settings. */
+  writeAddress() {
+    clearTimeout(this.addressing);
+    this.addressing = setTimeout(() => {
+      const changed = Object.keys(ADDRESSED).filter(name => name === 'skin' ? this.skinIsChosen
+        : this.settings[name] !== USUAL[name]);
+      const textOf = value => typeof value === 'number' ? Number(value.toPrecision(3)) : value;
+      const words = [this.scene, ...changed.map(name => `${name}=${textOf(this.settings[name])}`)].join('&');
+      try {
+        history.replaceState(null, '', `#${words}`);
+      } catch {}  // where a browser forbids it, the page goes on without
+    }, PAUSE_OF_ADDRESS);
   }
 
   // --- Scenes
@@ -86,12 +138,13 @@ class Live {
 
   async open(name) {
     const number = ++this.opened;
-    this.work(`${SCENES[name].title} \u2026`);
+    this.work(`${SCENES[name].title}: loading`);
+    if (!this.skinIsChosen) this.settings.skin = SCENES[name].skin || USUAL.skin;
     try {
       const scene = await this.port.ask('open', {name, settings: this.settings});
       if (number === this.opened) this.show(scene);
     } finally {
-      if (number === this.opened) this.work(null);
+      if (number === this.opened && this.drawn) this.work(null);
     }
   }
 
@@ -99,6 +152,9 @@ class Live {
     if (this.stage) this.stage.dispose();
     this.hands.held = null;
     this.description = scene;
+    this.scene = scene.name;
+    this.meanTimes = this.counted = null;
+    this.tell(null);
     this.ofScene = {tets: scene.tets, triangles: scene.triangles};
     this.stage = new LiveStage(element('canvas'), scene, this.data.materials, this.renderer);
     this.stage.setLook(this.look());
@@ -109,6 +165,8 @@ class Live {
     this.resize();
     this.take(scene.state);
     this.showFacts();
+    this.showSettings();
+    this.writeAddress();
   }
 
   showFacts() {
@@ -145,7 +203,7 @@ class Live {
     this.asking = true;
     try {
       const state = await this.port.ask(type, data);
-      if (stage === this.stage) this.take(state);
+      if (stage && stage === this.stage) this.take(state);
       return state;
     } catch (error) {
       this.play(false);
@@ -170,21 +228,31 @@ class Live {
     this.changed = true;
   }
 
-  showFigures({times, milliseconds, hash, compared, frame, bodies}) {
-    const now = performance.now();
-    const mean = this.meanTimes || {...times, step: milliseconds};
-    for (const [stage, ms] of Object.entries({...times, step: milliseconds})) mean[stage] += 0.1 * (ms - mean[stage]);
-    this.meanTimes = mean;
+  showFigures({times, milliseconds, hash, compared, frame, bodies, timed}) {
+    const now = performance.now(), all = {...times, step: milliseconds}, mean = this.meanTimes || {...all};
+    if (timed) {
+      for (const [stage, ms] of Object.entries(all)) mean[stage] += 0.1 * (ms - mean[stage]);
+      this.meanTimes = mean;
+    }
     if (this.playing && now - (this.figuresAt || 0) < 200) return;
     this.figuresAt = now;
     const rows = Object.entries(STAGES).map(([stage, text]) => `<tr><td>${text}<td>${mean[stage].toFixed(2)} ms`);
     const asleep = bodies.filter(body => body.asleep).length;
     rows.push(`<tr class="sum"><td>a frame, in all<td>${mean.step.toFixed(2)} ms`,
+      `<tr><td>frames per second, of 60<td>${this.rateAt(now, frame)}`,
       `<tr><td>frame<td>${withCommas(frame)}`,
       `<tr><td>bodies at rest<td>${asleep} of ${bodies.length}`);
     element('figures').innerHTML = rows.join('');
     element('hash').textContent = `state ${hash}`;
     this.showNative(compared);
+  }
+
+  /** Frames that were shown per second, of the last half second or so in which time went on. */
+  rateAt(now, frame) {
+    const {since = now, from = frame} = this.counted || {}, seconds = (now - since) / 1000;
+    if (seconds >= 0.5 && this.playing && frame > from) this.rate = Math.round((frame - from) / seconds);
+    if (seconds >= 0.5 || !this.counted || !this.playing) this.counted = {since: now, from: frame};
+    return this.rate || '';
   }
 
   /** compared: {frame, hash}, the last state to compare with that of the library in C++; null: none */
@@ -213,6 +281,7 @@ class Live {
   async reset() {
     this.meanTimes = null;
     const state = await this.ask('reset');
+    if (!state) return null;
     Object.assign(this.description, this.ofScene);  // without what was dropped
     this.showFacts();
     return state;
@@ -249,7 +318,9 @@ class Live {
   /** Settings that a running world takes. */
   set(settings) {
     Object.assign(this.settings, settings);
+    this.skinIsChosen = this.skinIsChosen || 'skin' in settings;
     this.showSettings();
+    this.writeAddress();
     this.ask('set', settings);
   }
 
@@ -272,6 +343,8 @@ class Live {
     element('restart').onclick = () => this.reset();
     element('back').onclick = () => this.rewind(REWOUND);
     element('view').onclick = () => this.resetView();
+    element('full').onclick = () => this.toggleFullScreen();
+    element('full').hidden = !document.fullscreenEnabled;
     element('settings').onclick = () => this.showPanel(element('panel').hidden);
     element('file').onchange = ({target}) => {
       if (target.files[0]) this.drop(target.files[0]);
@@ -281,6 +354,7 @@ class Live {
     this.listenToSlider();
     this.listenToFiles();
     window.addEventListener('resize', () => this.resize());
+    window.addEventListener('hashchange', () => this.change(this.readAddress()));
     window.addEventListener('keydown', event => this.key(event));
     for (const what of ['pointerdown', 'wheel', 'keydown']) {
       window.addEventListener(what, () => element('hint').classList.add('gone'), {passive: true, once: true});
@@ -335,7 +409,7 @@ class Live {
 
   relook() {
     this.showSettings();
-    this.stage.setLook(this.look());
+    if (this.stage) this.stage.setLook(this.look());
     this.changed = true;
   }
 
@@ -345,8 +419,14 @@ class Live {
     if (this.stage) this.resize();
   }
 
+  toggleFullScreen() {
+    if (!document.fullscreenEnabled) return;
+    if (document.fullscreenElement) document.exitFullscreen();
+    else document.documentElement.requestFullscreen().catch(() => {});  // where a browser forbids it
+  }
+
   resetView() {
-    this.stage.resetView();
+    if (this.stage) this.stage.resetView();
     this.changed = true;
   }
 
@@ -362,7 +442,7 @@ class Live {
       Backspace: () => this.rewind(REWOUND), Home: () => this.reset(), v: () => this.resetView(),
       s: () => element('surface').click(), c: () => next(element('cage')), q: () => next(element('skin')),
       h: () => this.choose('hold'), p: () => this.hands.act('push'), b: () => this.hands.act('ball'),
-      m: () => this.showPanel(element('panel').hidden),
+      m: () => this.showPanel(element('panel').hidden), f: () => this.toggleFullScreen(),
     };
     names.forEach((name, k) => actions[k + 1] = () => this.change(name));
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -378,6 +458,7 @@ class Live {
   /** Reads it and makes its cage in a worker of its own, whose memory is given back afterwards. */
   async drop(file) {
     if (this.cages) return this.tell('Another mesh is being read.');
+    this.tell(null);
     if (file.size > LONGEST_FILE) {
       const [has, most] = [file.size, LONGEST_FILE].map(bytes => Math.round(bytes / 1e6));
       return this.tell(`${file.name} has ${has} MB; this page reads up to ${most}.`);
@@ -419,10 +500,10 @@ class Live {
 
   // --- What is told
 
-  /** A sentence, for some seconds. */
+  /** A sentence, for some seconds; null: none any more. */
   tell(sentence) {
     element('notice').textContent = sentence;
-    element('notice').hidden = false;
+    element('notice').hidden = sentence === null;
     clearTimeout(this.noticed);
     this.noticed = setTimeout(() => element('notice').hidden = true, 1000 * SECONDS_OF_NOTICE);
   }
@@ -453,6 +534,7 @@ class Live {
     const panel = element('panel').getBoundingClientRect(), isShown = panel.width > 0;
     const isBeside = isShown && panel.width < 0.5 * width, isBelow = isShown && !isBeside;
     const bottom = height - (isBelow ? panel.top : footer.top), right = isBeside ? width - panel.left : 0;
+    element('hint').style.right = `${right}px`;
     if (this.stage) this.stage.resize(width, height, top, bottom, right);
     this.changed = true;
   }
@@ -463,6 +545,16 @@ class Live {
     if (!this.changed) return;
     this.changed = false;
     this.stage.draw();
+    if (!this.drawn) this.reveal();
+  }
+
+  /** Waits for the first picture: where the processor draws, its shaders take seconds, and the canvas is black. */
+  reveal() {
+    const context = this.renderer.getContext();
+    context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+    this.drawn = true;
+    element('canvas').classList.add('drawn');
+    this.work(null);
   }
 }
 
@@ -474,7 +566,6 @@ function showTrouble(sentence) {
   if (!window.live || !window.live.stage) {
     for (const part of ['footer', 'aside', 'header']) document.querySelector(part).hidden = true;
     element('hint').hidden = true;
-    element('canvas').style.visibility = 'hidden';  // black, where nothing has been drawn
   }
 }
 

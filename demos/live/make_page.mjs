@@ -94,8 +94,10 @@ if (!folder) {
   process.exit(2);
 }
 const notice = text(VIEW, 'three_notice.txt');
+const {homepage} = JSON.parse(text(folder, 'package.json'));
 const page = filled(text(HERE, 'live.html'), {
   '@STYLE@': text(VIEW, 'view.css') + text(HERE, 'live.css'),
+  '@SOURCE@': homepage ? `<a href="${asText(homepage)}" target="_blank" rel="noopener">Source</a>` : '',
   '@LICENCES@': asText([...licencesIn(folder), notice].join('\n\n')),
   '@NOTICE@': notice,
   '@MODULE@': escaped(plainScript(readFileSync(module, 'utf8'))),

@@ -107,10 +107,12 @@ function addGripper(builder) {
   const fingers = [-1, 1].map(side => builder.addBox([0.09, 0.55, 0.3],
     {...options, position: [at.across + side * (at.half + 0.09), 0.65, 0]}, 'finger'));
   const carriage = builder.addBox([0.95, 0.07, 0.16], {...options, position: [at.across, 1.3, 0]}, 'carriage');
+  const arm = builder.addBox([0.07, 2, 0.07], {...options, position: [at.across, 3.37, 0]}, 'carriage');
   builder.beforeFrame(frame => {
     const {half, up, across} = gripperAt(frame * FRAME);
     fingers.forEach((finger, k) => finger.position = [across + (k ? 1 : -1) * (half + 0.09), 0.65 + up, 0]);
     carriage.position = [across, 1.3 + up, 0];
+    arm.position = [across, 3.37 + up, 0];
   });
 }
 
@@ -147,14 +149,17 @@ function addTwist(builder) {
   });
 }
 
-/** In the order of the page's row. focus: the box that the first view fits. */
+/** In the order of the page's row. focus: the box that the first view fits; narrow: likewise, where the screen is
+    narrow; skin: 'linear' where nothing is said. */
 const SCENES = {
-  serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]]},
+  serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]],
+    narrow: [[-0.9, 0, -0.6], [1.1, 1.6, 0.7]]},
   heap: {title: 'Heap of eight', build: addHeap, tets: 1000, focus: [[-1.2, 0, -1.2], [1.2, 1.6, 1.2]]},
   pit: {title: 'Ball pit on a mat', build: addPit, tets: 800, focus: [[-1.15, 0, -1.15], [1.15, 1.2, 1.15]]},
   gripper: {title: 'Gripper', build: addGripper, tets: 600, focus: [[-1.75, 0, -0.5], [1.75, 2.05, 0.5]]},
   stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
-  twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]]},
+  twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]],
+    skin: 'quadratic'},
 };
 
 /** The meshes of scenes by name; the serpent is the page's own. */

@@ -4,6 +4,8 @@
 // A scene that runs in the worker: its world, what is held and thrown, and snapshots of the last ten seconds.
 
 const SUBSTEPS = 4;
+/** Of the module's stages, those that the page shows; the others are with what is left of a frame. */
+const TIMED = ['prediction', 'rigidSearch', 'softSearch', 'rows', 'system', 'other'];
 /** Frames between two snapshots, and how many frames and bytes of them are kept. */
 const KEEP_EVERY = 10, KEPT_FRAMES = 600, KEPT_BYTES = 64e6;
 const MOST_THROWN = 12, THROWN_MASS = 0.5;
@@ -178,6 +180,9 @@ class Simulation {
     this.frame = 0;
     this.touched = !this.isUsual();  // by hands or settings: what follows is not what a native run has
     this.compared = null;            // {frame, hash}, the last one to compare with a native run
+    this.spent = null;  // on frames of which `state` has not told yet: {frames, all, stages}, milliseconds
+    this.times = Object.fromEntries([...TIMED, 'bones', 'page'].map(stage => [stage, 0]));
+    this.milliseconds = 0;
     this.kept = [];     // snapshots, the oldest first
     this.spare = [];    // memory of former ones
     SCENES[name].build(new Builder(this));
@@ -206,17 +211,17 @@ class Simulation {
   // --- Time
 
   step(frames) {
-    const began = performance.now();
-    let simulated = 0;
+    const began = performance.now(), stages = TIMED.map(() => 0);
     for (let k = 0; k < frames; ++k) {
       if (this.script) this.script(this.frame + 1);
       this.world.step(FRAME, SUBSTEPS);
-      simulated += this.world.times.total;
+      const {times} = this.world;
+      TIMED.forEach((stage, i) => stages[i] += times[stage]);
       ++this.frame;
       if (this.frame % KEEP_EVERY === 0) this.keep();
       if (this.frame % COMPARED_EVERY === 0 && !this.touched) this.compared = {frame: this.frame, hash: this.world.hash};
     }
-    this.milliseconds = (performance.now() - began) / Math.max(1, frames);
+    if (frames > 0) this.spent = {frames, all: performance.now() - began, stages};
   }
 
   /** Everything that tells whether a snapshot can be restored, beside it. */
@@ -375,7 +380,8 @@ class Simulation {
 
   description() {
     return {
-      name: this.name, title: SCENES[this.name].title, focus: SCENES[this.name].focus, settings: this.settings,
+      name: this.name, title: SCENES[this.name].title, focus: SCENES[this.name].focus,
+      narrow: SCENES[this.name].narrow, settings: this.settings,
       models: this.models.map(model => model.description()),
       bodies: this.parts.map(({model, colour}) => ({model: model.number, colour})), rigids: this.rigids,
       tets: this.parts.reduce((sum, {model}) => sum + model.cage.tetCount, 0),
@@ -383,23 +389,28 @@ class Simulation {
     };
   }
 
-  /** What is drawn of this frame; all arrays are new. */
+  /** What is drawn of this frame; all arrays are new. timed: whether it tells the milliseconds of new frames */
   state() {
     const began = performance.now(), {skin} = this.settings;
     const bodies = this.parts.map(({body, model}) =>
       ({bones: model.palette(skin).update(body).slice(), nodes: body.nodes.slice(), asleep: body.asleep}));
     const bones = performance.now() - began;
-    return {
+    const state = {
       frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, compared: this.compared, skin, bodies,
       poses: this.world.poses().slice(),
-      balls: this.thrown.length, held: this.held && [...this.held.spring.position],
-      times: {...this.timesOf(), bones}, milliseconds: this.milliseconds || 0,
+      balls: this.thrown.length, held: this.held && [...this.held.spring.position], timed: this.spent !== null,
     };
+    if (this.spent) this.tellTimes(this.spent, bones, performance.now() - began);
+    return {...state, times: this.times, milliseconds: this.milliseconds};
   }
 
-  timesOf() {
-    const {prediction, rigidSearch, softSearch, rows, system, other} = this.world.times;
-    return {prediction, rigidSearch, softSearch, rows, system, other};
+  /** Of each of the frames that were made, by stage; what is left of a frame is scripts, snapshots and hashes. */
+  tellTimes({frames, all, stages}, bones, told) {
+    const whole = (all + told) / frames, shares = [...stages, bones].map(milliseconds => milliseconds / frames);
+    const rest = shares.reduce((left, share) => left - share, whole);
+    this.times = Object.fromEntries([...TIMED, 'bones', 'page'].map((stage, i) => [stage, [...shares, rest][i]]));
+    this.milliseconds = whole;
+    this.spent = null;
   }
 
   memory() {

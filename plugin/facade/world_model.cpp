@@ -175,7 +175,13 @@ std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass
     rigid->body->setActivationState(DISABLE_DEACTIVATION);
   }
   rigids_.push_back(rigid);
-  world_->addRigidBody(rigid->body.get());
+  try {
+    world_->addRigidBody(rigid->body.get());
+  } catch (...) {  // as if nothing had been added
+    world_->removeRigidBody(rigid->body.get());
+    rigids_.pop_back();
+    throw;
+  }
   return rigid;
 }
 
@@ -192,14 +198,9 @@ void World::place(RigidState& rigid, const btTransform& pose) {
 void World::remove(RigidState& rigid) {
   if (rigid.removed) return;
   rigid.removed = true;
-  const std::vector<std::shared_ptr<TouchState>> touches = touches_;
-  for (const auto& touch : touches) {
-    if (touch->rigid.get() == &rigid) remove(*touch);
-  }
-  const std::vector<std::shared_ptr<JointState>> joints = joints_;
-  for (const auto& joint : joints) {
-    if (joint->first.get() == &rigid || joint->second.get() == &rigid) remove(*joint);
-  }
+  removeEach(touches_, [&](const TouchState& touch) { return touch.rigid.get() == &rigid; });
+  removeEach(joints_,
+             [&](const JointState& joint) { return joint.first.get() == &rigid || joint.second.get() == &rigid; });
   world_->removeRigidBody(rigid.body.get());
   forget(rigids_, rigid);
 }
@@ -281,21 +282,18 @@ std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel
   body->body = take(DeformableBody::add(*world_, placed, options.material));
   try {
     if (mesh.mesh) bindSurface(*body, options);
+    bodies_.push_back(body);
   } catch (...) {  // as if nothing had been added
     if (soft_ && body->softContact) soft_->remove(body->body->body());
     throw;
   }
-  bodies_.push_back(body);
   return body;
 }
 
 void World::remove(BodyState& body) {
   if (body.removed) return;
   body.removed = true;
-  const std::vector<std::shared_ptr<TouchState>> touches = touches_;
-  for (const auto& touch : touches) {
-    if (touch->body.get() == &body) remove(*touch);
-  }
+  removeEach(touches_, [&](const TouchState& touch) { return touch.body.get() == &body; });
   if (soft_ && body.softContact) soft_->remove(body.body->body());
   body.contact.reset();
   // The body itself is kept as long as a view of its nodes may be.
@@ -347,7 +345,7 @@ ImpulseResult World::radialImpulse(BodyState& body, const RadialImpulse& impulse
 }
 
 ForceRecord& World::forces() {
-  if (!record_) fail(StatusCode::NotAdded, "forces are not recorded: the world was made with record_forces=False");
+  if (!record_) fail(StatusCode::NotAdded, "record_forces: the world was made with this false, and records no forces");
   return *record_;
 }
 

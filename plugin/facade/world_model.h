@@ -181,6 +181,11 @@ class World : public std::enable_shared_from_this<World> {
   static btScalar substepOf(double dt, int substeps);
   Shared& sharedOf(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options);
   void bindSurface(BodyState& body, const BodyOptions& options);
+  /// Removes those that a condition holds for, in their order. Needs no memory: what is to be freed can be.
+  template <class State, class Condition>
+  void removeEach(std::vector<std::shared_ptr<State>>& all, Condition&& condition) {
+    for (std::size_t i = 0; i < all.size();) condition(*all[i]) ? remove(*std::shared_ptr<State>(all[i])) : void(++i);
+  }
 
   std::recursive_mutex mutex_;
   std::unique_ptr<ParallelFor> threads_;

@@ -3,6 +3,7 @@
 //
 // Makes the npm package of what Emscripten has made: the module in one file, its types, licences and pages.
 //   node pack.mjs core.js core.wasm FOLDER   the folder is replaced
+// The variable TETSKIN_REPOSITORY is the address of the public repository, which package.json then tells as its own.
 //
 // WebAssembly is deflated, and in base64, in that file: less than half of what it would be otherwise. All is in one
 // function, whose names nothing else sees; the last line is the only one of an ES module, so that a page may replace
@@ -16,6 +17,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const repository = join(here, "../..");
 const [script, binary, folder] = process.argv.slice(2);
 const read = path => readFileSync(path, "utf8");
+const address = (process.env.TETSKIN_REPOSITORY ?? "").replace(/(\.git|\/)$/, "");
 
 const header = read(join(repository, "plugin/tetskin/tetskin.h"));
 const version = ["MAJOR", "MINOR", "PATCH"].map(part => new RegExp(`VERSION_${part} (\\d+)`).exec(header)[1]).join(".");
@@ -40,7 +42,9 @@ rmSync(folder, {recursive: true, force: true});
 mkdirSync(join(folder, "licences"), {recursive: true});
 writeFileSync(join(folder, "tetskin.js"), module);
 const description = JSON.parse(read(join(here, "package.json")));
-writeFileSync(join(folder, "package.json"), JSON.stringify({...description, version}, null, 2) + "\n");
+const places = address && {homepage: address, repository: {type: "git", url: `git+${address}.git`},
+  bugs: `${address}/issues`};
+writeFileSync(join(folder, "package.json"), JSON.stringify({...description, version, ...places}, null, 2) + "\n");
 cpSync(join(here, "tetskin.d.ts"), join(folder, "tetskin.d.ts"));
 cpSync(join(here, "README.md"), join(folder, "README.md"));
 cpSync(join(repository, "LICENSE"), join(folder, "LICENSE"));

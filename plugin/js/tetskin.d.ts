@@ -28,7 +28,9 @@ export type ErrorCode =
   /** There is not enough memory for this. What there was is unharmed. */
   | "OutOfMemory"
   /** The browser has no WebAssembly with SIMD and exceptions: see the page on JavaScript for the versions that have. */
-  | "Unsupported";
+  | "Unsupported"
+  /** A fault of tetskin's own, which its message asks to report. */
+  | "Internal";
 
 /** What all functions throw. When one has thrown, nothing has changed. */
 export class TetskinError extends Error {
@@ -43,6 +45,13 @@ export type Numbers = ArrayLike<number>;
 export type Vector = Numbers;
 /** x, y, z, w; need not be of unit length. */
 export type Quaternion = Numbers;
+
+declare global {
+  interface SymbolConstructor {
+    /** As TypeScript's lib esnext.disposable has it, for programs that are compiled without. */
+    readonly dispose: unique symbol;
+  }
+}
 
 /** What has memory of the module's. It is freed by `delete()`, or by `using` at the end of a block. */
 export interface Thing {
@@ -204,6 +213,28 @@ export interface WorldOptions {
   gravity?: Vector;
   /** The same bits in every browser and on every processor, as natively, for some percent of the time; false */
   deterministic?: boolean;
+  /** For `forcesOn`: some time per contact point; false. It changes nothing else. */
+  recordForces?: boolean;
+}
+
+/** A force, and its torque about the centre of mass of what it acts on; world space. */
+export interface Wrench {
+  /** Mass length / s^2, a new array */
+  readonly force: Float64Array;
+  /** Mass length^2 / s^2, a new array */
+  readonly torque: Float64Array;
+}
+
+/** Forces by cause: the mean over the last step. */
+export interface AppliedForces {
+  /** Normal forces of contacts */
+  readonly contact: Wrench;
+  /** Tangential to the contacts */
+  readonly friction: Wrench;
+  /** Springs */
+  readonly joints: Wrench;
+  /** The sum of all */
+  readonly total: Wrench;
 }
 
 /** Milliseconds of the last `step`, by stage, in the order in which each substep runs them. */
@@ -274,6 +305,12 @@ export interface BodyOptions {
   softContact?: boolean;
   /** The same, and contact with itself; false */
   selfContact?: boolean;
+  /** Collision margin of the nodes, world length; without it, 2 % of the size */
+  margin?: number;
+  /** Of the solver: forces left, relative to those that act, 0 to below 1; 0.005 */
+  solverTolerance?: number;
+  /** Of each solve, at most; 100 */
+  maxIterations?: number;
   /** The distance kept, world length; without it, 0.2 % of the size */
   contactMargin?: number;
   /** Triangles with longer edges get points in between that collide, too, rest length; without it, by the tets' size */
@@ -286,7 +323,7 @@ export interface World extends Thing {
   /**
    * Goes on by dt seconds, in so many of Bullet's steps; 1/60 and 4.
    * @returns the number of steps made
-   * @throws NonFinite, if the simulation is unstable: restore a snapshot
+   * @throws NonFinite, after the step, if the simulation is unstable: restore a snapshot
    */
   step(dt?: number, substeps?: number): number;
   /** Of the last step. */
@@ -322,6 +359,13 @@ export interface World extends Thing {
   addSpring(hit: Hit, options?: SpringOptions): Spring;
   /** Mass times velocity, at the point of a hit, at once. */
   applyImpulse(hit: Hit, impulse: Vector): void;
+
+  /**
+   * Forces on a soft body from all that it touches or is attached to, or on a rigid body from all soft ones; with
+   * `other`, from this alone.
+   * @throws NotAdded, where the world was made without `recordForces`
+   */
+  forcesOn(thing: Body | RigidBody, other?: Body | RigidBody): AppliedForces;
 
   /** Bytes of a snapshot now. */
   readonly snapshotSize: number;

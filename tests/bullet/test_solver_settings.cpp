@@ -204,6 +204,9 @@ TEST(DeformableSolver, RefusesValuesThatMakeNoSense) {
   EXPECT_EQ(refused([](SoftBodyOptions& o) { o.solverTolerance = 1.0; }), StatusCode::InvalidOption);
   EXPECT_EQ(refused([&](SoftBodyOptions& o) { o.solverTolerance = nan; }), StatusCode::InvalidOption);
   EXPECT_EQ(refused([](SoftBodyOptions& o) { o.maxIterations = 0; }), StatusCode::InvalidOption);
+  for (const double bad : {nan, -0.1, 1.001, HUGE_VAL}) {
+    EXPECT_EQ(refused([&](SoftBodyOptions& o) { o.friction = bad; }), StatusCode::InvalidOption) << bad;
+  }
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 

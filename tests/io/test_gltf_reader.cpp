@@ -77,6 +77,31 @@ TEST(LoadGltf, AMirroredMeshStaysTheRightWayOut) {
   EXPECT_LT((mesh.normals[0] - Eigen::Vector3f(0.6f, 0, -0.8f)).norm(), 1e-6f);
 }
 
+/// As glTF says: where the transforms of a node and those above it mirror an odd number of times, all together.
+TEST(LoadGltf, WindingIsTurnedAsOftenAsNodesMirror) {
+  struct Case {
+    const char* nodes;
+    Eigen::Vector3d scale;
+  };
+  for (const auto& [nodes, scale] : {
+           Case{R"({"mesh":1,"scale":[-1,1,1]})", {-1, 1, 1}},
+           Case{R"({"mesh":1,"scale":[-2,-2,-2]})", {-2, -2, -2}},
+           Case{R"({"mesh":1,"scale":[-1,-1,1]})", {-1, -1, 1}},
+           Case{R"({"mesh":1,"matrix":[1,0,0,0,0,-1,0,0,0,0,1,0,0,0,0,1]})", {1, -1, 1}},
+           Case{R"({"children":[1],"scale":[-1,1,1]},{"mesh":1})", {-1, 1, 1}},
+           Case{R"({"children":[1],"scale":[-1,1,1]},{"mesh":1,"scale":[1,1,-1]})", {-1, 1, -1}},
+       }) {
+    SCOPED_TRACE(nodes);
+    const TriangleMesh mesh = loadMeshText("m.gltf", gltf(nodes)).value();
+    ASSERT_EQ(mesh.triangleCount(), 1u);
+    const Triangle& t = mesh.triangles[0];
+    const auto at = [&](int k) { return mesh.positions[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+    // The triangle faces along z where nothing mirrors; its outside goes where the mirror puts it.
+    EXPECT_GT((at(1) - at(0)).cross(at(2) - at(0)).z() * scale.z(), 0.0);
+    EXPECT_LT((mesh.positions[1] - scale.cwiseProduct(Eigen::Vector3d(2, 0, 1))).norm(), 1e-12);
+  }
+}
+
 TEST(LoadGltf, FillsWhatOnlySomeMeshesHave) {
   const TriangleMesh mesh = loadMeshText("m.gltf", gltf(R"({"children":[1,2]},{"mesh":1},{"mesh":0})")).value();
   ASSERT_EQ(mesh.normals.size(), 6u);

@@ -59,6 +59,25 @@ for (const format of Object.keys(files)) {
   });
 }
 
+test("a glb that its node mirrors has its outside outside", () => {
+  const volume = ({positions, triangles}) => {
+    let sum = 0;
+    for (let t = 0; t < triangles.length; t += 3) {
+      const [a, b, c] = [0, 1, 2].map(k => positions.subarray(3 * triangles[t + k], 3 * triangles[t + k] + 3));
+      for (let k = 0, l = 1, m = 2; k < 3; [k, l, m] = [k + 1, m, k]) sum += a[k] * (b[l] * c[m] - b[m] * c[l]);
+    }
+    return sum / 6;
+  };
+  const whole = volume(mesh);
+  assert.ok(whole > 0.5);
+  for (const scale of [[-1, 1, 1], [1, -1, 1], [-1, -1, -1], [-1, -1, 1]]) {
+    const mirrored = tetskin.readMesh(files.glb(shape, {scale}), "glb");
+    assert.ok(Math.abs(mirrored.positions[3 * 500] - scale[0] * mesh.positions[3 * 500]) < 1e-6);
+    assert.ok(Math.abs(volume(mirrored) / whole - 1) < 1e-6, `${scale}`);
+    assert.equal(tetskin.createCage(mirrored, {targetTets: 100}).vertexTets.length, mesh.vertexCount);
+  }
+});
+
 test("formats that are not read are named", () => {
   assert.throws(() => tetskin.readMesh(new Uint8Array(100), "dragon.fbx"), failure("UnsupportedFormat", /fbx/));
   assert.throws(() => tetskin.readMesh(new Uint8Array(100), "../x/y"), failure("UnsupportedFormat"));
@@ -138,6 +157,72 @@ test("bones at rest leave the mesh where it is", () => {
   }
 });
 
+/** Takes memory until the next larger piece makes it grow. Takes what memory there is where it cannot. */
+function fill(instance, least = 64) {
+  const {core} = instance.hidden.instance, before = instance.memoryBytes, {grow} = WebAssembly.Memory.prototype;
+  WebAssembly.Memory.prototype.grow = () => { throw new RangeError("full"); };
+  try {
+    for (let size = 1 << 24; size >= least; size >>= 1) while (core._malloc(size) !== 0);
+  } finally {
+    WebAssembly.Memory.prototype.grow = grow;
+  }
+  assert.equal(instance.memoryBytes, before);
+}
+
+test("arguments may be views of the module's own memory, also where the call makes it grow", async () => {
+  const own = await load(), small = own.createMesh(shape.positions, shape.triangles);
+  const of = own.createCage(small, {targetTets: 300}), world = own.createWorld(), body = world.addBody(of, small);
+  const all = Array.from({length: of.nodeCount}, (_, node) => node), palette = own.createPalette(of, small);
+  body.setPinned(all);
+  const calls = {
+    positionsBefore: () => own.createMesh(small.positions.map(x => 2 * x), small.triangles).triangles,
+    positions: () => own.createMesh(small.positions, small.triangles).positions,
+    normals: () => own.createMesh(shape.positions, small.triangles, {normals: small.positions}).normals,
+    texcoords: () => own.createMesh(shape.positions, shape.triangles,
+      {texcoords: small.positions.subarray(0, 2 * small.vertexCount)}).texcoords,
+    tets: () => own.cageOfTets(of.nodes, of.tets).tets,
+    pinned: () => body.setPinnedPositions(all, body.nodes) ?? body.pinned,
+    velocities: () => { body.velocities = body.nodes; return body.pinned; },
+    hull: () => world.addConvexHull(small.positions).position,
+    bones: () => palette.update(body.nodes),
+    pinnedFromTheStart: () => world.addBody(of, small, {pinned: of.tets.subarray(0, 4)}).pinned,
+    bytes: () => own.readMesh(own.hidden.instance.view(Uint8Array, file), "obj").triangles,
+  };
+  const text = files.obj(shape), file = {at: own.hidden.instance.core._malloc(text.length), count: text.length};
+  own.hidden.instance.view(Uint8Array, file).set(text);
+  for (const [name, call] of Object.entries(calls)) {
+    const expected = call().slice(), before = own.memoryVersion;
+    for (let k = 0; k < 5 && own.memoryVersion === before; ++k) {  // the call itself is to make memory grow
+      fill(own);
+      assert.deepEqual(call().slice(), expected, name);
+    }
+    assert.ok(own.memoryVersion > before, `${name}: memory has not grown`);
+  }
+});
+
+test("a view that has lost its memory is refused, not taken for an empty array", async () => {
+  const own = await load(), one = own.createMesh(shape.positions, shape.triangles), {triangles} = one;
+  own.createCage(one, {targetTets: 60000});
+  assert.equal(triangles.length, 0);
+  assert.throws(() => own.createMesh(one.positions, triangles), failure("InvalidArgument", /^triangles: its memory/));
+  const bytes = one.toBytes();
+  structuredClone(bytes.buffer, {transfer: [bytes.buffer]});
+  assert.throws(() => own.meshFromBytes(bytes), failure("InvalidArgument", /^bytes: .*transferred/));
+  assert.equal(own.createMesh(one.positions, new Int32Array(0)).triangleCount, 0);
+});
+
+test("what tells the progress may delete what is in use", async () => {
+  const own = await load(), one = own.createMesh(shape.positions, shape.triangles);
+  const expected = own.createCage(one, {targetTets: 300});
+  const cage = own.createCage(one, {targetTets: 300, progress: () => one.delete()});
+  assert.deepEqual(cage.nodes, expected.nodes);
+  const calibrated = own.calibrate(expected, {modeCount: 3});
+  const other = own.calibrate(cage, {modeCount: 3, progress: () => cage.delete()});
+  assert.ok(one.deleted && cage.deleted);
+  assert.deepEqual(other.nodes, calibrated.nodes);
+  assert.equal(own.createMesh(shape.positions, shape.triangles).triangleCount, mesh.triangleCount);
+});
+
 test("bad arguments are named, and nothing is made", () => {
   const cage = tetskin.createCage(mesh, {targetTets: 100});
   const refused = [
@@ -147,6 +232,15 @@ test("bad arguments are named, and nothing is made", () => {
     [() => tetskin.createMesh([0, 0, 0], [0, 1.5, 0]), "InvalidArgument", /whole/],
     [() => tetskin.createMesh([0, NaN, 0], [0, 0, 0]), "NonFinite", /./],
     [() => tetskin.createMesh([], []), "Empty", /./],
+    [() => tetskin.createMesh(new BigInt64Array(9), [0, 1, 2]), "InvalidArgument", /positions/],
+    [() => tetskin.createMesh([0n, 0, 0], [0, 0, 0]), "InvalidArgument", /^positions: .* 0 is a bigint/],
+    [() => tetskin.createMesh([0, null, 0], [0, 0, 0]), "InvalidArgument", /^positions: .* 1 is/],
+    [() => tetskin.createMesh([0, "1", 0], [0, 0, 0]), "InvalidArgument", /^positions: .* 1 is a string/],
+    [() => tetskin.createMesh([0, 0, 0], [0, 0n, 0]), "InvalidArgument", /^triangles: .* 1 is a bigint/],
+    [() => tetskin.createMesh({length: 3}, [0, 0, 0]), "InvalidArgument", /^positions/],
+    [() => tetskin.createCage(mesh, {progress: 5}), "InvalidArgument", /^progress: must be a function/],
+    [() => tetskin.createCage(mesh, {toString: 5}), "InvalidArgument", /there is no toString/],
+    [() => tetskin.createCage(mesh, {targetTets: 100n}), "InvalidArgument", /targetTets/],
     [() => tetskin.createMesh([0, 0, 0], [0, 0, 0], {normals: [1]}), "SizeMismatch", /normals/],
     [() => tetskin.createCage({}), "InvalidArgument", /mesh/],
     [() => tetskin.createCage(cage), "InvalidArgument", /mesh/],

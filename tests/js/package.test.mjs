@@ -52,6 +52,25 @@ test("the package tells the library's version, and its own", () => {
   for (const file of [description.main, description.types, description.exports["."].types]) assert.ok(read(file));
 });
 
+test("where the repository is public, the package tells its address", () => {
+  const copy = mkdtempSync(join(tmpdir(), "tetskin-")), pack = join(repository, "plugin/js/pack.mjs");
+  try {
+    for (const name of ["core.js", "core.wasm"]) writeFileSync(join(copy, name), "");
+    const described = TETSKIN_REPOSITORY => {
+      execFileSync("node", [pack, join(copy, "core.js"), join(copy, "core.wasm"), join(copy, "package")],
+        {env: {...process.env, TETSKIN_REPOSITORY}});
+      return JSON.parse(readFileSync(join(copy, "package/package.json"), "utf8"));
+    };
+    const {homepage, repository: {url}, bugs, author} = described("https://host.example/people/tetskin.git");
+    assert.deepEqual([homepage, url, bugs, author], ["https://host.example/people/tetskin",
+      "git+https://host.example/people/tetskin.git", "https://host.example/people/tetskin/issues",
+      "the tetskin authors"]);
+    assert.equal(described("").homepage, undefined);
+  } finally {
+    rmSync(copy, {recursive: true});
+  }
+});
+
 test("codes of errors are those of the library, in its order and in the types", () => {
   const header = readFileSync(join(repository, "plugin/tetskin/core/types.h"), "utf8");
   const [, list] = /enum class \[\[nodiscard\]\] StatusCode\{([\s\S]*?)\};/.exec(header);
@@ -62,6 +81,7 @@ test("codes of errors are those of the library, in its order and in the types", 
   const [, types] = /export type ErrorCode =([\s\S]*?);\n/.exec(read("tetskin.d.ts"));
   const typed = types.match(/"\w+"/g).map(word => word.slice(1, -1));
   assert.deepEqual(codes.filter(code => code !== "Ok" && !typed.includes(code)), []);
+  for (const [, code] of source.matchAll(/return \{"(\w+)"/g)) assert.ok(typed.includes(code), code);
 });
 
 test("all that the types tell of is there", async () => {

@@ -60,12 +60,13 @@ export const files = {
     });
     return bytes;
   },
-  glb({positions, triangles}) {
+  /** node: of the scene, with what else it has */
+  glb({positions, triangles}, node = {}) {
     const points = Float32Array.from(positions), corners = Uint32Array.from(triangles);
     const content = Buffer.concat([Buffer.from(points.buffer), Buffer.from(corners.buffer)]);
     const column = k => rows(points, 3).map(p => p[k]);
     const scene = JSON.stringify({
-      asset: {version: "2.0"}, scene: 0, scenes: [{nodes: [0]}], nodes: [{mesh: 0}],
+      asset: {version: "2.0"}, scene: 0, scenes: [{nodes: [0]}], nodes: [{mesh: 0, ...node}],
       meshes: [{primitives: [{attributes: {POSITION: 0}, indices: 1}]}],
       buffers: [{byteLength: content.length}],
       bufferViews: [{buffer: 0, byteLength: points.byteLength},

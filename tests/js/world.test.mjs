@@ -5,7 +5,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {failure, load} from "./module.mjs";
+import {failure, load, TetskinError} from "./module.mjs";
 import {tube} from "./shapes.mjs";
 
 const tetskin = await load();
@@ -168,6 +168,54 @@ test("impulses push", () => {
   assert.ok(body.bounds[1] > 10);
 });
 
+test("forces on bodies and on what they touch are told by cause", () => {
+  const world = tetskin.createWorld({recordForces: true}), ground = world.addBox([5, 0.5, 5], {position: [0, -0.5, 0]});
+  const body = world.addBody(cage, mesh, {position: [0, 0.35, 0]}), ball = world.addSphere(0.1, {position: [0, 9, 0]});
+  steps(world, 120);
+  const weight = 9.81 * body.mass, {contact, friction, joints, total} = world.forcesOn(body);
+  assert.ok(Math.abs(contact.force[1] / weight - 1) < 0.02, `${contact.force[1]} for ${weight}`);
+  assert.deepEqual([...joints.force, ...joints.torque], [0, 0, 0, 0, 0, 0]);
+  for (let k = 0; k < 3; ++k) {
+    assert.ok(Math.abs(total.force[k] - contact.force[k] - friction.force[k]) < 1e-5 * weight);
+    assert.ok(Math.abs(world.forcesOn(ground, body).total.force[k] + total.force[k]) < 1e-5 * weight);
+  }
+  assert.deepEqual(world.forcesOn(body, ground), world.forcesOn(body));
+  assert.deepEqual([...world.forcesOn(ball).total.force], [0, 0, 0]);
+  const other = drop();
+  assert.throws(() => other.world.forcesOn(other.body), failure("NotAdded", /^recordForces:/));
+  assert.throws(() => world.forcesOn(other.body), failure("NotInWorld", /^thing:/));
+  assert.throws(() => world.forcesOn(body, mesh), failure("InvalidArgument", /^other:/));
+  ball.delete();
+  assert.throws(() => world.forcesOn(body, ball), failure("Deleted", /^other:/));
+});
+
+test("forces are recorded without a change of the run", () => {
+  const hashes = [false, true].map(recordForces => {
+    const world = tetskin.createWorld({deterministic: true, recordForces});
+    world.addPlane();
+    world.addBody(cage, mesh, {position: [0, 0.4, 0]});
+    steps(world, 60);
+    return world.hash;
+  });
+  assert.equal(hashes[0], hashes[1]);
+});
+
+test("margin, solverTolerance and maxIterations are those of C++", () => {
+  const lowestAfter = options => {
+    const world = tetskin.createWorld({deterministic: true});
+    world.addPlane();
+    const body = world.addBody(cage, mesh, {position: [0, 0.5, 0], ...options});
+    steps(world, 60);
+    return [lowest(body.nodes), world.hash];
+  };
+  const [, usual] = lowestAfter({});
+  assert.equal(lowestAfter({solverTolerance: 5e-3, maxIterations: 100})[1], usual);
+  assert.notEqual(lowestAfter({solverTolerance: 1e-6})[1], usual);
+  assert.notEqual(lowestAfter({maxIterations: 1})[1], usual);
+  const [near, far] = [0.01, 0.2].map(margin => lowestAfter({surfaceContact: false, margin})[0]);
+  assert.ok(Math.abs(near - 0.01) < 0.02 && Math.abs(far - 0.2) < 0.02, `${near}, ${far}`);
+});
+
 test("materials change while it runs", () => {
   const {world, body} = drop({youngsModulus: 1e4, mass: 5});
   assert.ok(Math.abs(body.mass - 5) < 1e-3 && Math.abs(body.youngsModulus - 1e4) < 1e-6);
@@ -225,6 +273,19 @@ test("a snapshot goes on to the last bit, here and in another instance", async (
   assert.equal(world.hash, end);
 });
 
+test("time goes on with a step that has made the world unstable, and with no other that throws", () => {
+  const {world} = drop(), {core} = world.hidden.instance, {step} = core;
+  assert.throws(() => world.step(-1), failure("InvalidArgument"));
+  assert.equal(world.time, 0);
+  core.step = () => { throw new TetskinError("NonFinite", "after the step"); };
+  try {
+    assert.throws(() => world.step(0.5), failure("NonFinite"));
+  } finally {
+    core.step = step;
+  }
+  assert.equal(world.time, 0.5);
+});
+
 test("milliseconds of the stages add up", () => {
   const {world} = drop();
   steps(world, 100);
@@ -276,6 +337,82 @@ test("what is deleted is gone, with what hangs on it", () => {
   world.delete();
 });
 
+test("what could not be deleted is there, and is deleted later", () => {
+  const {world, body} = drop(), {core} = world.hidden.instance, {removeBody} = core, rest = world.addSphere(0.1);
+  core.removeBody = () => { throw new RangeError("no memory"); };
+  try {
+    assert.throws(() => body.delete(), RangeError);
+  } finally {
+    core.removeBody = removeBody;
+  }
+  assert.ok(!body.deleted && world.bodies[0] === body && body.nodes.length > 0);
+  body.delete();
+  assert.ok(body.deleted && world.bodies.length === 0 && world.rigidBodies.includes(rest));
+  world.step();
+});
+
+test("all can be deleted where there is no memory left", async () => {
+  const own = await load(), one = own.createMesh(shape.positions, shape.triangles);
+  const few = own.createCage(one, {targetTets: 100}), world = own.createWorld(), {core} = world.hidden.instance;
+  world.addPlane();
+  const body = world.addBody(few, one, {position: [0, 1, 0]}), ball = world.addSphere(0.1, {mass: 1});
+  world.step();
+  const spring = world.addSpring(world.raycast([1, 9, 0], [1, -9, 0])), {grow} = WebAssembly.Memory.prototype;
+  WebAssembly.Memory.prototype.grow = () => { throw new RangeError("full"); };
+  try {
+    for (let size = 1 << 24; size >= 8; size >>= 1) while (core._malloc(size) !== 0);
+    for (const thing of [ball, body, world, few, one]) thing.delete();
+  } finally {
+    WebAssembly.Memory.prototype.grow = grow;
+  }
+  assert.ok(spring.deleted && world.deleted);
+});
+
+test("where memory ends within a call, it is said, and all goes on to the same bits", async () => {
+  const calls = {
+    addBody: ({world, few, one}) => world.addBody(few, one, {position: [0, 3, 0]}),
+    softContact: ({world, few, one}) => world.addBody(few, one, {position: [0, 3, 0], softContact: true}),
+    addSphere: ({world}) => world.addSphere(0.2, {mass: 1, position: [0, 3, 0]}),
+    addSpring: ({world}) => world.addSpring(world.raycast([1, 9, 0], [1, -9, 0])),
+    save: ({world}) => world.save(),
+    nodes: ({body}) => body.nodes,
+    report: ({few}) => few.report,
+  };
+  const {grow} = WebAssembly.Memory.prototype, said = {};
+  const own = await load(), one = own.createMesh(shape.positions, shape.triangles);
+  const few = own.createCage(one, {targetTets: 60}), {core} = own.hidden.instance;
+  for (const [name, call] of Object.entries(calls)) {
+    for (let room = 64; room < 3e6 && said[name] !== "made"; room *= 3) {
+      const taken = [], [{world, body}, other] = [0, 1].map(() => {
+        const world = own.createWorld({deterministic: true});
+        world.addPlane();
+        return {world, body: world.addBody(few, one, {position: [0, 0.4, 0]})};
+      });
+      for (const one of [world, other.world]) steps(one, 4);
+      const hole = core._malloc(room);
+      WebAssembly.Memory.prototype.grow = () => { throw new RangeError("full"); };
+      try {
+        for (let size = 1 << 24; size >= 8; size >>= 1) for (let at; (at = core._malloc(size)) !== 0;) taken.push(at);
+        core._free(hole);
+        call({world, body, few, one});
+        said[name] = "made";
+      } catch (error) {
+        assert.ok(failure("OutOfMemory")(error), `${name}, ${room}: ${error}`);
+        said[name] ??= "refused";
+      } finally {
+        WebAssembly.Memory.prototype.grow = grow;
+      }
+      for (const at of taken) core._free(at);
+      if (said[name] === "made") continue;
+      assert.deepEqual([world.bodies.length, world.rigidBodies.length], [1, 1], `${name}, ${room}`);
+      for (const one of [world, other.world]) steps(one, 20);
+      assert.equal(world.hash, other.world.hash, `${name}, ${room}`);
+      for (const one of [world, other.world]) one.delete();
+    }
+    assert.ok(said[name], name);
+  }
+});
+
 test("worlds that come and go leave no memory behind", () => {
   const once = () => {
     const {world} = drop();
@@ -305,7 +442,8 @@ test("bad arguments are named, and the world stays as it was", () => {
   const other = drop();
   const hit = world.raycast([1, 5, 0], [1, -5, 0]), before = world.hash;
   const refused = [
-    [() => world.step(0), "InvalidArgument", /dt/],
+    [() => world.step(-1), "InvalidArgument", /dt/],
+    [() => world.step(1n), "InvalidArgument", /dt/],
     [() => world.step(NaN), "InvalidArgument", /dt/],
     [() => world.step(1 / 60, 0), "InvalidArgument", /substeps/],
     [() => world.step(1 / 60, 1.5), "InvalidArgument", /substeps/],
@@ -322,6 +460,16 @@ test("bad arguments are named, and the world stays as it was", () => {
     [() => world.addBody(cage), "InvalidArgument", /mesh/],
     [() => world.addBody(mesh, mesh), "InvalidArgument", /cage/],
     [() => world.addBody(cage, mesh, {poissonRatio: 0.7}), "InvalidOption", /./],
+    [() => world.addBody(cage, mesh, {friction: 2}), "InvalidOption", /^friction: .*0 to 1/],
+    [() => world.addBody(cage, mesh, {margin: -1}), "InvalidOption", /^margin/],
+    [() => world.addBody(cage, mesh, {solverTolerance: 1}), "InvalidOption", /tolerance/],
+    [() => world.addBody(cage, mesh, {maxIterations: 1.5}), "InvalidArgument", /maxIterations/],
+    [() => world.addBody(cage, mesh, {pinned: [1n]}), "InvalidArgument", /^pinned/],
+    [() => world.addSphere(1n), "InvalidArgument", /radius/],
+    [() => world.addSphere(1, {position: new BigInt64Array(3)}), "InvalidArgument", /position/],
+    [() => { body.visible = 1; }, "InvalidArgument", /^visible/],
+    [() => body.setPinned([true, false]), "InvalidArgument", /^nodes: .* 0 is a boolean/],
+    [() => body.setPinned([0], 1), "InvalidArgument", /^pinned/],
     [() => world.addBody(cage, mesh, {interpolation: 3}), "InvalidArgument", /interpolation/],
     [() => world.addBody(cage, mesh, {pinned: [-1]}), "IndexOutOfRange", /node -1/],
     [() => { body.velocities = [1, 2, 3]; }, "SizeMismatch", /velocities/],

@@ -74,6 +74,16 @@ class Dropped(WithBrowser):
                 self.assertEqual(live.page.faults, [])
         live.picture("damaged")
 
+    def test_a_refusal_goes_when_the_next_file_falls(self):
+        live = self.live()
+        self.drop(live, *meshes.damaged()[0])
+        self.assertTrue(live.call("notice"))
+        self.drop(live, *meshes.good()[0])
+        self.assertEqual((live.call("notice"), live.step(0)["bodies"]), ("", 2))
+        self.drop(live, *meshes.damaged()[0])
+        live.open("stack")
+        self.assertEqual(live.call("notice"), "", "and with its scene")
+
     def test_damaged_files_leave_no_memory_behind(self):
         live = self.live()
         for _ in range(2):

@@ -3,6 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """What a hand does on the live page: hold and drag by mouse and finger, push, throw, turn the view, and every control."""
 import math
+import re
 import unittest
 
 import chromium
@@ -303,6 +304,44 @@ class Controls(WithBrowser):
             self.assertIn(stage, figures)
         self.assertIn(state["hash"], self.one.text("#hash"))
         self.assertGreater(state["times"]["prediction"], 0)
+        self.assertAlmostEqual(sum(state["times"].values()), state["milliseconds"], delta=1e-6)
+        self.assertTrue(all(share >= 0 for share in state["times"].values()), state["times"])
+        self.assertEqual(self.one.step(0)["times"], state["times"], "what is seen again took no time")
+
+    def shown_times(self):
+        """The milliseconds of the table, of the stages and of all."""
+        *stages, whole = map(float, re.findall(r"(\d+\.\d\d) ms", self.one.text("#figures")))
+        return stages, whole
+
+    def test_milliseconds_add_up_and_begin_anew_with_each_scene(self):
+        self.one.open("serpent")
+        self.one.step(60)
+        stages, whole = self.shown_times()
+        self.assertAlmostEqual(sum(stages), whole, delta=0.005 * (len(stages) + 1))
+        self.one.open("twist")
+        self.assertEqual(self.shown_times(), ([0] * len(stages), 0))
+        self.one.step(1)
+        state = self.one.state()
+        self.assertAlmostEqual(self.shown_times()[1], state["milliseconds"], delta=0.006, msg="nothing of the serpent's")
+
+    def test_frames_per_second_are_told(self):
+        self.one.call("play", True)
+        self.one.page.until("/of 60<td>\\d/.test(document.getElementById('figures').innerHTML) || "
+                            "/of 60<\\/td><td>\\d/.test(document.getElementById('figures').innerHTML)", 30)
+        self.one.call("play", False)
+
+    def test_full_screen_and_back(self):
+        page = self.one.page
+        page.click_on("#full")
+        page.until("document.fullscreenElement !== null", 10)
+        page.key("f")
+        page.until("document.fullscreenElement === null", 10)
+
+    def test_every_control_has_a_word_about_it(self):
+        silent = self.one.page.evaluate("""[...document.querySelectorAll('button, input, select, #figures, #hash')]
+          .filter(one => !one.closest('[title]') && !one.closest('#scenes') && !one.closest('#work'))
+          .map(one => one.id || one.outerHTML)""")
+        self.assertEqual(silent, [])
 
     def test_the_panel_is_shown_and_hidden(self):
         hidden = "document.getElementById('panel').hidden"
@@ -327,6 +366,9 @@ class OnAPhone(WithBrowser):
                                 f"(document.querySelector('{selector}').getBoundingClientRect())")
             self.assertTrue(box[0] >= 0 and box[1] <= 390 and box[2] >= 0 and box[3] <= 844, (selector, box))
         live.picture("phone")
+        for selector in ("#about", "#hint"):
+            box = page.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().height")
+            self.assertLess(box, 30, f"{selector} is one line")
         page.click_on("#settings")
         page.frame()
         live.picture("phone_settings")

@@ -7,7 +7,7 @@ import json
 import re
 import unittest
 
-from live import DESKTOP, NATIVE, PAGE, Server, WithBrowser, colours
+from live import DESKTOP, NATIVE, PAGE, USUAL, Server, WithBrowser, colours
 from native import COMPARED, FRAMES, HASHES, native_hashes
 
 SCENES = ["serpent", "heap", "pit", "gripper", "stack", "twist"]
@@ -168,6 +168,40 @@ class OtherScenes(WithBrowser):
     def test_a_scene_is_opened_by_its_name_in_the_address(self):
         live = self.new_page(address=PAGE.as_uri() + "#twist")
         self.assertEqual(live.state()["scene"], "twist")
+        self.assertEqual(live.page.evaluate("live.settings.skin"), "quadratic", "a linear one is lumpy there")
+        live.open("stack")
+        self.assertEqual(live.page.evaluate("live.settings.skin"), "linear")
+
+    def test_the_address_keeps_scene_and_settings(self):
+        live = self.live(scene="stack", stiffness=120.04, tets=300, elements="quadratic")
+        words = "#stack&stiffness=120&tets=300&elements=quadratic&skin=linear"
+        live.page.until(f"location.hash === '{words}'", 10)
+        other = self.new_page(address=PAGE.as_uri() + words)
+        self.assertEqual(other.page.evaluate("live.description.settings"),
+                         {**USUAL, "stiffness": 120, "tets": 300, "elements": "quadratic"})
+        other.page.evaluate("location.hash = '#twist&gravity=1.6&stiffness=1e9&tets=7&skin=round&other', 0")
+        other.page.until("tetskinLive.state().scene === 'twist'", 60)
+        self.assertEqual(other.page.evaluate("live.description.settings"), {**USUAL, "gravity": 1.6},
+                         "what is no setting's value is left out")
+
+    def test_what_is_loading_is_seen_before_the_first_picture(self):
+        early = """addEventListener('DOMContentLoaded', () => requestAnimationFrame(() => {
+          const box = one => one.getBoundingClientRect(), work = document.getElementById('work');
+          window.first = {
+            work: work.textContent.trim(), shown: box(work).width > 50, about: document.getElementById('about').textContent,
+            canvas: getComputedStyle(document.getElementById('canvas')).visibility, drawn: Boolean(live.stage),
+            scenes: [...document.querySelectorAll('#scenes button')].filter(one => box(one).width > 50).length,
+            background: getComputedStyle(document.body).backgroundColor};
+        }))"""
+        live = self.new_page(address=PAGE.as_uri() + "#gripper", early=early)
+        first = live.page.evaluate("first")
+        self.assertRegex(first.pop("work"), "^Gripper: loading")
+        self.assertIn("tetskin", first.pop("about"))
+        self.assertEqual(first, {"shown": True, "canvas": "hidden", "drawn": False, "scenes": len(SCENES),
+                                 "background": "rgb(244, 242, 238)"})
+        live.page.frame()
+        self.assertTrue(live.page.evaluate("document.getElementById('work').hidden"))
+        self.assertEqual(live.page.evaluate("getComputedStyle(document.getElementById('canvas')).visibility"), "visible")
 
 
 class Memory(WithBrowser):

@@ -13,10 +13,30 @@ function wholeNumberOf(value, name) {
   return value;
 }
 
+function booleanOf(value, name) {
+  if (typeof value !== "boolean") throw invalid(`${name}: must be true or false`);
+  return value;
+}
+
+/** Refuses a view whose memory has gone: its length is 0, and it would be taken for an array of nothing. */
+function checkAttached(buffer, name) {
+  try {
+    new Uint8Array(buffer);
+  } catch {
+    throw invalid(`${name}: its memory has gone. Get a view anew after calls, which may have grown the module's memory; ` +
+      "a buffer that was transferred is the other thread's");
+  }
+}
+
 /** A list of numbers, whose length is a multiple of `columns`. */
 function numbersOf(value, name, columns = 1) {
-  if (value === null || typeof value !== "object" || !(value.length >= 0)) {
+  const isTyped = ArrayBuffer.isView(value);
+  if (value === null || typeof value !== "object" || !(value.length >= 0) || isTyped && typeof value[0] === "bigint") {
     throw invalid(`${name}: must be an array of numbers`);
+  }
+  if (isTyped && value.length === 0) checkAttached(value.buffer, name);
+  for (let i = 0; !isTyped && i < value.length; ++i) {
+    if (typeof value[i] !== "number") throw invalid(`${name}: must be numbers, but ${i} is a ${typeof value[i]}`);
   }
   if (value.length % columns !== 0) throw invalid(`${name}: ${value.length} numbers, no multiple of ${columns}`);
   return value;
@@ -29,9 +49,10 @@ function vectorOf(value, name, length = 3) {
 }
 
 function bytesOf(value, name) {
-  if (value instanceof ArrayBuffer) return new Uint8Array(value);
-  if (ArrayBuffer.isView(value)) return new Uint8Array(value.buffer, value.byteOffset, value.byteLength);
-  throw invalid(`${name}: must be a Uint8Array or an ArrayBuffer`);
+  const isView = ArrayBuffer.isView(value), buffer = isView ? value.buffer : value;
+  if (!isView && !(value instanceof ArrayBuffer)) throw invalid(`${name}: must be a Uint8Array or an ArrayBuffer`);
+  checkAttached(buffer, name);
+  return isView ? new Uint8Array(buffer, value.byteOffset, value.byteLength) : new Uint8Array(buffer);
 }
 
 /**
@@ -42,7 +63,9 @@ function optionsOf(given, known) {
   if (given === undefined) given = {};
   if (given === null || typeof given !== "object") throw invalid("options: must be an object");
   for (const name of Object.keys(given)) {
-    if (!(name in known)) throw invalid(`options: there is no ${name}; there are ${Object.keys(known).join(", ")}`);
+    if (!Object.hasOwn(known, name)) {
+      throw invalid(`options: there is no ${name}; there are ${Object.keys(known).join(", ")}`);
+    }
   }
   const options = {};
   for (const [name, fallback] of Object.entries(known)) {
@@ -53,8 +76,8 @@ function optionsOf(given, known) {
       options[name] = fallback.length > 0 ? vectorOf(value, name, fallback.length) : numbersOf(value, name);
     } else if (typeof fallback === "number") {
       options[name] = numberOf(value, name);
-    } else if (fallback !== undefined && typeof value !== typeof fallback) {
-      throw invalid(`${name}: must be a ${typeof fallback}`);
+    } else if (typeof value !== typeof (fallback ?? Function)) {
+      throw invalid(`${name}: must be a ${typeof (fallback ?? Function)}`);
     } else {
       options[name] = value;
     }

@@ -4,10 +4,28 @@
 // What all things of one instance share: its memory.
 
 const kNothing = {at: 0, count: 0};
+const kMostBytes = 0x7fffffff;  // of an address space of 32 bits, whose numbers would wrap
+
+const doubles = values => ({Type: Float64Array, values});
+const indices = values => ({Type: Int32Array, values: checkedIndices(values)});
+
+/** What C++ throws passes Guarded only where there is no memory for what goes in or comes out. */
+function withoutExceptions(call) {
+  return (...values) => {
+    try {
+      return call(...values);
+    } catch (error) {
+      throw error instanceof WebAssembly.Exception ? errorOf("OutOfMemory") : error;
+    }
+  };
+}
 
 class Instance {
   constructor(core) {
     this.core = core;
+    for (const [name, call] of Object.entries(core)) {
+      if (typeof call === "function" && /^[a-z]/.test(name)) core[name] = withoutExceptions(call);
+    }
     this.memoryVersion = 0;
     this.seen = this.buffer;
   }
@@ -23,23 +41,21 @@ class Instance {
     ++this.memoryVersion;
   }
 
-  /** Calls work with a function that copies typed arrays into memory, which is freed afterwards. */
-  withMemory(work) {
-    const taken = [];
-    const put = (Type, values) => {
+  /** Calls `work` with the places in memory of copies of some arrays, which are freed afterwards. */
+  withMemory(arrays, work) {
+    const taken = [], own = values => ArrayBuffer.isView(values) && values.buffer === this.buffer;
+    const put = ({Type, values}) => {
       if (values.length === 0) return kNothing;
-      const at = this.core._malloc(values.length * Type.BYTES_PER_ELEMENT);
+      const bytes = values.length * Type.BYTES_PER_ELEMENT, at = bytes > kMostBytes ? 0 : this.core._malloc(bytes);
       if (at === 0) throw errorOf("OutOfMemory");
       taken.push(at);
       new Type(this.buffer, at, values.length).set(values);
       return {at, count: values.length};
     };
     try {
-      return work({
-        doubles: values => put(Float64Array, values),
-        indices: values => put(Int32Array, checkedIndices(values)),
-        bytes: values => put(Uint8Array, values),
-      });
+      // Where memory grows for one array, views of it lose theirs: these are copied before.
+      const kept = arrays.map(({Type, values}) => ({Type, values: own(values) ? new Type(values) : values}));
+      return work(...kept.map(put));
     } finally {
       for (const at of taken) this.core._free(at);
     }
@@ -73,11 +89,11 @@ class Thing {
   delete() {
     const {handle} = this.hidden;
     if (handle === null) return;
-    this.hidden.handle = null;
     this.leave(handle);
+    this.hidden.handle = null;
     handle.delete();
   }
-  /** Before the handle goes. */
+  /** Before the handle goes; where this throws, nothing has gone. */
   leave() {}
 }
 Object.defineProperty(Thing.prototype, Symbol.dispose ?? Symbol.for("Symbol.dispose"), {

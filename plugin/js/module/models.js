@@ -85,9 +85,8 @@ class Palette extends Thing {
       const body = handleIn(this.hidden.instance, nodes, Body, "nodes");
       return this.view(Float32Array, this.core.updatePaletteByBody(own(this), body));
     }
-    numbersOf(nodes, "nodes", 3);
-    return this.withMemory(({doubles}) => {
-      return this.view(Float32Array, this.core.updatePaletteByNumbers(own(this), doubles(nodes)));
+    return this.withMemory([doubles(numbersOf(nodes, "nodes", 3))], at => {
+      return this.view(Float32Array, this.core.updatePaletteByNumbers(own(this), at));
     });
   }
 }
@@ -95,6 +94,7 @@ class Palette extends Thing {
 const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
 const kCageOptions = {targetTets: 3000, duplicateElements: true, fit: true, progress: undefined};
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
+const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false};
 const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
 
 /** What `load` returns. */
@@ -117,10 +117,8 @@ class Tetskin {
     if (!kFormats.includes(extension)) {
       throw new TetskinError("UnsupportedFormat", `format: ${format} is none of ${kFormats.join(", ")}`);
     }
-    return this.withMemory(memory => {
-      const {at, count} = memory.bytes(content);
-      return new Mesh(this.hidden.instance, this.core.readMesh(at, count, extension));
-    });
+    return this.withBytes(content, (at, count) => new Mesh(this.hidden.instance, this.core.readMesh(
+      at, count, extension)));
   }
   createMesh(positions, triangles, options) {
     const {normals, texcoords} = optionsOf(options, {normals: [], texcoords: []});
@@ -131,15 +129,12 @@ class Tetskin {
         throw new TetskinError("SizeMismatch", `${name}: ${array.length} numbers for ${positions.length / 3} vertices`);
       }
     }
-    return this.withMemory(({doubles, indices}) => new Mesh(this.hidden.instance, this.core.createMesh(
-      doubles(positions), indices(triangles), doubles(normals), doubles(texcoords))));
+    const arrays = [doubles(positions), indices(triangles), doubles(normals), doubles(texcoords)];
+    return this.withMemory(arrays, (...places) => new Mesh(this.hidden.instance, this.core.createMesh(...places)));
   }
   meshFromBytes(bytes) {
-    const content = bytesOf(bytes, "bytes");
-    return this.withMemory(memory => {
-      const {at, count} = memory.bytes(content);
-      return new Mesh(this.hidden.instance, this.core.meshFromBytes(at, count));
-    });
+    return this.withBytes(bytesOf(bytes, "bytes"), (at, count) =>
+      new Mesh(this.hidden.instance, this.core.meshFromBytes(at, count)));
   }
 
   createCage(mesh, options) {
@@ -160,15 +155,12 @@ class Tetskin {
   cageOfTets(nodes, tets) {
     numbersOf(nodes, "nodes", 3);
     numbersOf(tets, "tets", 4);
-    return this.withMemory(({doubles, indices}) => new Cage(this.hidden.instance, this.core.cageOfTets(
-      doubles(nodes), indices(tets))));
+    return this.withMemory([doubles(nodes), indices(tets)], (...places) =>
+      new Cage(this.hidden.instance, this.core.cageOfTets(...places)));
   }
   cageFromBytes(bytes) {
-    const content = bytesOf(bytes, "bytes");
-    return this.withMemory(memory => {
-      const {at, count} = memory.bytes(content);
-      return new Cage(this.hidden.instance, this.core.cageFromBytes(at, count));
-    });
+    return this.withBytes(bytesOf(bytes, "bytes"), (at, count) =>
+      new Cage(this.hidden.instance, this.core.cageFromBytes(at, count)));
   }
 
   createPalette(cage, mesh, options) {
@@ -179,8 +171,8 @@ class Tetskin {
       layout === "columns"));
   }
   createWorld(options) {
-    const {gravity, deterministic} = optionsOf(options, {gravity: [0, -9.81, 0], deterministic: false});
-    return new World(this.hidden.instance, this.core.createWorld(gravity, deterministic));
+    const {gravity, deterministic, recordForces} = optionsOf(options, kWorldOptions);
+    return new World(this.hidden.instance, this.core.createWorld(gravity, deterministic, recordForces));
   }
 
   handle(thing, Type, name) {
@@ -189,7 +181,6 @@ class Tetskin {
   /** What a progress function throws cancels, and is thrown then. */
   withProgress(progress, work) {
     if (progress === undefined) return work(false);
-    if (typeof progress !== "function") throw invalid("progress: must be a function");
     let thrown;
     const before = this.core.progress;
     this.core.progress = fraction => {
@@ -215,6 +206,9 @@ for (const Type of [Thing, Tetskin]) {
     core: {get() { return this.hidden.instance.core; }},
     view: {value(Numbers, place) { return this.hidden.instance.view(Numbers, place); }},
     copy: {value(Numbers, place) { return this.hidden.instance.copy(Numbers, place); }},
-    withMemory: {value(work) { return this.hidden.instance.withMemory(work); }},
+    withMemory: {value(arrays, work) { return this.hidden.instance.withMemory(arrays, work); }},
+    withBytes: {value(values, work) {
+      return this.withMemory([{Type: Uint8Array, values}], ({at, count}) => work(at, count));
+    }},
   });
 }

@@ -4,9 +4,10 @@
 const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
   angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
 const kBodyOptions = {position: [0, 0, 0], rotation: [0, 0, 0, 1], density: 100, mass: NaN, youngsModulus: NaN,
-  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, contactMargin: NaN,
-  sampleSpacing: NaN, interpolation: "linear", normals: "none", visible: true, surfaceContact: true, softContact: false,
-  selfContact: false, pinned: []};
+  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, margin: NaN, solverTolerance: 5e-3,
+  maxIterations: 100, contactMargin: NaN, sampleSpacing: NaN, interpolation: "linear", normals: "none", visible: true,
+  surfaceContact: true, softContact: false, selfContact: false, pinned: []};
+const kCauses = ["contact", "friction", "joints", "total"];
 const kStages = ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces", "total"];
 
 class World extends Thing {
@@ -27,9 +28,14 @@ class World extends Thing {
     this.core.setGravity(own(this), vectorOf(gravity, "gravity"));
   }
   step(dt = 1 / 60, substeps = 4) {
-    const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
-    this.hidden.time += dt;
-    return made;
+    try {
+      const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
+      this.hidden.time += dt;
+      return made;
+    } catch (error) {
+      if (error.code === "NonFinite") this.hidden.time += dt;  // the step was made
+      throw error;
+    }
   }
   get times() {
     const numbers = this.view(Float64Array, this.core.times(own(this)));
@@ -44,36 +50,35 @@ class World extends Thing {
     return this.keepRigid(this.core.addPlane(own(this), normal, offset, friction));
   }
   addBox(halfExtents, options) {
-    const sizes = vectorOf(halfExtents, "halfExtents");
-    return this.keepRigid(this.core.addBox(own(this), sizes, optionsOf(options, kRigidOptions)));
+    return this.addRigid("addBox", options, vectorOf(halfExtents, "halfExtents"));
   }
   addSphere(radius, options) {
-    return this.keepRigid(this.core.addSphere(own(this), numberOf(radius, "radius"),
-      optionsOf(options, kRigidOptions)));
+    return this.addRigid("addSphere", options, numberOf(radius, "radius"));
   }
   addCapsule(radius, height, options) {
-    return this.keepRigid(this.core.addCapsule(own(this), numberOf(radius, "radius"), numberOf(height, "height"),
-      optionsOf(options, kRigidOptions)));
+    return this.addRigid("addCapsule", options, numberOf(radius, "radius"), numberOf(height, "height"));
   }
   addCylinder(radius, height, options) {
-    return this.keepRigid(this.core.addCylinder(own(this), numberOf(radius, "radius"), numberOf(height, "height"),
-      optionsOf(options, kRigidOptions)));
+    return this.addRigid("addCylinder", options, numberOf(radius, "radius"), numberOf(height, "height"));
   }
   addConvexHull(points, options) {
-    numbersOf(points, "points", 3);
-    const rigid = optionsOf(options, kRigidOptions);
-    return this.withMemory(({doubles}) => this.keepRigid(this.core.addConvexHull(own(this), doubles(points), rigid)));
+    const arrays = [doubles(numbersOf(points, "points", 3))];
+    return this.withMemory(arrays, at => this.addRigid("addConvexHull", options, at));
   }
   addMesh(mesh, options) {
-    return this.keepRigid(this.core.addMesh(own(this), handleIn(this.hidden.instance, mesh, Mesh, "mesh"),
-      optionsOf(options, kRigidOptions)));
+    return this.addRigid("addMesh", options, handleIn(this.hidden.instance, mesh, Mesh, "mesh"));
+  }
+  addRigid(add, options, ...shape) {
+    const rigid = optionsOf(options, kRigidOptions);
+    return this.keepRigid(this.core[add](own(this), ...shape, rigid));
   }
   addBody(cage, mesh, options) {
     const {pinned, ...soft} = optionsOf(options, kBodyOptions);
+    wholeNumberOf(soft.maxIterations, "maxIterations");
     const cageHandle = handleIn(this.hidden.instance, cage, Cage, "cage");
     const meshHandle = mesh === null ? null : handleIn(this.hidden.instance, mesh, Mesh, "mesh");
-    return this.withMemory(({indices}) => {
-      const handle = this.core.addBody(own(this), cageHandle, meshHandle, soft, indices(pinned));
+    return this.withMemory([indices(pinned)], at => {
+      const handle = this.core.addBody(own(this), cageHandle, meshHandle, soft, at);
       return this.keep("bodies", new Body(this.hidden.instance, handle, this, {cage, mesh}));
     });
   }
@@ -102,6 +107,13 @@ class World extends Thing {
     this.core.applyImpulse(this.bodyOf(hit), hit.triangle, hit.weights, vectorOf(impulse, "impulse"));
   }
 
+  forcesOn(thing, other) {
+    const places = [...this.placesOf(thing, "thing"), ...this.placesOf(other ?? null, "other", true)];
+    const numbers = this.copy(Float64Array, this.core.forcesOn(own(this), ...places));
+    const at = i => numbers.slice(i, i + 3);
+    return Object.fromEntries(kCauses.map((cause, i) => [cause, {force: at(6 * i), torque: at(6 * i + 3)}]));
+  }
+
   get snapshotSize() {
     return this.core.snapshotSize(own(this));
   }
@@ -116,16 +128,20 @@ class World extends Thing {
     return memory.subarray(0, state.length);
   }
   restore(snapshot) {
-    const content = bytesOf(snapshot, "snapshot");
-    this.withMemory(memory => {
-      const {at, count} = memory.bytes(content);
-      this.core.restore(own(this), at, count);
-    });
+    this.withBytes(bytesOf(snapshot, "snapshot"), (at, count) => this.core.restore(own(this), at, count));
   }
   get hash() {
     return this.core.hash(own(this));
   }
 
+  /** The handle of a soft body, then that of a rigid one: the one that it is not is null. */
+  placesOf(thing, name, mayMiss = false) {
+    if (mayMiss && thing === null) return [null, null];
+    if (!(thing instanceof Body || thing instanceof RigidBody)) throw invalid(`${name}: must be a Body or a RigidBody`);
+    const handle = handleOf(thing, Member, name);
+    if (thing.hidden.world !== this) throw new TetskinError("NotInWorld", `${name}: is in another world`);
+    return thing instanceof Body ? [handle, null] : [null, handle];
+  }
   keep(list, thing) {
     this.hidden[list].push(thing);
     return thing;
@@ -159,8 +175,8 @@ class Member extends Thing {
 
 class Spring extends Member {
   leave(handle) {
-    this.forget("springs");
     this.core.releaseSpring(handle);
+    this.forget("springs");
   }
   get body() {
     return this.hidden.body;
@@ -187,8 +203,8 @@ class Spring extends Member {
 
 class RigidBody extends Member {
   leave(handle) {
-    this.forget("rigidBodies");
     this.core.removeRigidBody(handle);
+    this.forget("rigidBodies");
   }
   get position() {
     return Float64Array.from(this.core.rigidPosition(own(this)));
@@ -238,8 +254,8 @@ class Body extends Member {
     for (const spring of [...this.hidden.world.hidden.springs]) {
       if (spring.body === this) spring.delete();
     }
-    this.forget("bodies");
     this.core.removeBody(handle);
+    this.forget("bodies");
   }
   get cage() {
     return this.hidden.cage;
@@ -257,8 +273,8 @@ class Body extends Member {
     return this.view(Float32Array, this.core.bodyVelocities(own(this)));
   }
   set velocities(velocities) {
-    numbersOf(velocities, "velocities", 3);
-    this.withMemory(({doubles}) => this.core.setBodyVelocities(own(this), doubles(velocities)));
+    const arrays = [doubles(numbersOf(velocities, "velocities", 3))];
+    this.withMemory(arrays, at => this.core.setBodyVelocities(own(this), at));
   }
   get positions() {
     return this.view(Float32Array, this.core.bodyPositions(own(this)));
@@ -273,7 +289,7 @@ class Body extends Member {
     return this.core.visible(own(this));
   }
   set visible(visible) {
-    this.core.setVisible(own(this), visible === true);
+    this.core.setVisible(own(this), booleanOf(visible, "visible"));
   }
   get asleep() {
     return this.core.asleep(own(this));
@@ -316,8 +332,8 @@ class Body extends Member {
     }
   }
   setPinned(nodes, pinned = true) {
-    numbersOf(nodes, "nodes");
-    this.withMemory(({indices}) => this.core.setPinned(own(this), indices(nodes), pinned));
+    booleanOf(pinned, "pinned");
+    this.withMemory([indices(numbersOf(nodes, "nodes"))], at => this.core.setPinned(own(this), at, pinned));
   }
   get pinned() {
     return this.copy(Uint8Array, this.core.pinned(own(this)));
@@ -325,8 +341,8 @@ class Body extends Member {
   setPinnedPositions(nodes, positions) {
     numbersOf(nodes, "nodes");
     numbersOf(positions, "positions", 3);
-    this.withMemory(({doubles, indices}) => {
-      this.core.setPinnedPositions(own(this), indices(nodes), doubles(positions));
+    this.withMemory([indices(nodes), doubles(positions)], (...places) => {
+      this.core.setPinnedPositions(own(this), ...places);
     });
   }
   transform(position, rotation = [0, 0, 0, 1]) {

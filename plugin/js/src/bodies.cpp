@@ -10,7 +10,8 @@ struct SoftOptions {
   Vec3 position{};
   Quaternion rotation{0, 0, 0, 1};
   double density = 0, mass = 0, youngsModulus = 0, relativeStiffness = 0, poissonRatio = 0, stiffnessDamping = 0,
-         friction = 0, contactMargin = 0, sampleSpacing = 0;
+         friction = 0, margin = 0, solverTolerance = 0, contactMargin = 0, sampleSpacing = 0;
+  int maxIterations = 0;
   std::string interpolation, normals;
   bool visible = true, surfaceContact = true, softContact = false, selfContact = false;
 };
@@ -25,6 +26,9 @@ BodyOptions optionsOf(const SoftOptions& soft) {
   material.poissonRatio = soft.poissonRatio;
   material.stiffnessDamping = soft.stiffnessDamping;
   material.friction = soft.friction;
+  material.margin = given(soft.margin);
+  material.solverTolerance = soft.solverTolerance;
+  material.maxIterations = soft.maxIterations;
   material.faceTree = false;
   options.binding = bindingOptions(soft.interpolation, soft.normals, "nearest", {});
   options.surfaceContact = soft.surfaceContact;
@@ -52,11 +56,18 @@ BodyHandle* addBody(WorldHandle& handle, const CageModel& cage, const MeshModel*
   checkNodes(pinned, cage.cage->mesh.nodeCount());
   if (!mesh && (soft.softContact || soft.selfContact))
     fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
-  auto state =
+  auto body = std::make_unique<BodyHandle>(BodyHandle{handle.world, {}, {}, {}});
+  body->state =
       handle.world->addBody(cage, mesh ? *mesh : MeshModel(), placementOf(soft.position, soft.rotation), options);
-  for (const std::int32_t node : pinned) check(state->body->setPinned(node));
-  if (state->binding && !soft.visible) state->skin.setVisible(false);
-  return new BodyHandle{handle.world, std::move(state), {}, {}};
+  BodyState& state = *body->state;
+  try {
+    for (const std::int32_t node : pinned) check(state.body->setPinned(node));
+    if (state.binding && !soft.visible) state.skin.setVisible(false);
+  } catch (...) {  // as if nothing had been added
+    handle.world->remove(state);
+    throw;
+  }
+  return body.release();
 }
 void remove(BodyHandle& body) {
   body.world->remove(*body.state);
@@ -223,6 +234,9 @@ EMSCRIPTEN_BINDINGS(bodies) {
       .field("poissonRatio", &SoftOptions::poissonRatio)
       .field("stiffnessDamping", &SoftOptions::stiffnessDamping)
       .field("friction", &SoftOptions::friction)
+      .field("margin", &SoftOptions::margin)
+      .field("solverTolerance", &SoftOptions::solverTolerance)
+      .field("maxIterations", &SoftOptions::maxIterations)
       .field("contactMargin", &SoftOptions::contactMargin)
       .field("sampleSpacing", &SoftOptions::sampleSpacing)
       .field("interpolation", &SoftOptions::interpolation)

@@ -45,9 +45,10 @@ static_assert(sizeof(kCodes) / sizeof(kCodes[0]) == static_cast<std::size_t>(Sta
 EM_JS(void, throwInJavaScript, (const char* code, const char* message),
       { throw Module["makeError"](UTF8ToString(code), UTF8ToString(message)); });
 
-}  // namespace
+constexpr char kReport[] = ": this is a fault of tetskin's; please report it";
 
-Fault currentFault() {
+/// What the exception that is being handled says. Throws where there is no memory for its words.
+Fault wordedFault() {
   try {
     throw;
   } catch (const Failure& failure) {
@@ -59,7 +60,19 @@ Fault currentFault() {
   } catch (const std::invalid_argument& error) {
     return {"InvalidArgument", error.what()};
   } catch (const std::exception& error) {
-    return {"Malformed", error.what()};
+    return {"Internal", std::string(error.what()) + kReport};
+  } catch (...) {
+    return {"Internal", std::string("an exception of a kind that nothing here throws") + kReport};
+  }
+}
+
+}  // namespace
+
+Fault currentFault() {
+  try {
+    return wordedFault();
+  } catch (...) {
+    return {"OutOfMemory", {}};
   }
 }
 

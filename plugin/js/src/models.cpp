@@ -113,7 +113,8 @@ CageModel modelOf(Cage&& cage, std::string report = {}) {
   return {std::make_shared<const Cage>(std::move(cage)), std::move(report)};
 }
 
-CageModel createCageOf(const MeshModel& mesh, double targetTets, bool duplicateElements, bool fit, bool tells) {
+/// By value, as calibrateCage: what tells the progress may delete the mesh that is being used.
+CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, bool tells) {
   if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
     fail(StatusCode::InvalidOption, "targetTets: must be from 1 to " + std::to_string(Limits::kMaxTargetTets));
   CageOptions options;
@@ -126,7 +127,7 @@ CageModel createCageOf(const MeshModel& mesh, double targetTets, bool duplicateE
   return modelOf(std::move(cage), report.describe());
 }
 
-CageModel calibrateCage(const CageModel& model, double poissonRatio, int modeCount, bool tells) {
+CageModel calibrateCage(CageModel model, double poissonRatio, int modeCount, bool tells) {
   CalibrationOptions options;
   options.poissonRatio = poissonRatio;
   options.modeCount = modeCount;

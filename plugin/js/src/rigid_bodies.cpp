@@ -17,13 +17,14 @@ struct RigidOptions {
 RigidHandle* add(WorldHandle& handle, const ShapeModel& shape, const RigidOptions& options) {
   const btVector3 velocity = toBullet(options.velocity, "velocity");
   const btVector3 angularVelocity = toBullet(options.angularVelocity, "angularVelocity");
-  const auto state = handle.world->addRigid(shape, options.mass, toBullet(options.position, options.rotation),
-                                            options.friction, options.kinematic);
+  auto rigid = std::make_unique<RigidHandle>(RigidHandle{handle.world, {}});
+  rigid->state = handle.world->addRigid(shape, options.mass, toBullet(options.position, options.rotation),
+                                        options.friction, options.kinematic);
   if (options.mass > 0) {
-    state->body->setLinearVelocity(velocity);
-    state->body->setAngularVelocity(angularVelocity);
+    rigid->state->body->setLinearVelocity(velocity);
+    rigid->state->body->setAngularVelocity(angularVelocity);
   }
-  return new RigidHandle{handle.world, state};
+  return rigid.release();
 }
 
 RigidHandle* addPlane(WorldHandle& handle, Vec3 normal, double offset, double friction) {

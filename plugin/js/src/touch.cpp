@@ -49,8 +49,10 @@ SpringHandle* addSpring(BodyHandle& body, int triangle, Vec3 weights, double sti
   const SurfacePoint point = pointAt(body, triangle, weights);
   TouchState touch;
   touch.body = body.state;
+  auto spring = std::make_unique<SpringHandle>(SpringHandle{body.world, {}, point});
   touch.spring = take(SurfaceSpring::add(body.world->bullet(), point, options));
-  return new SpringHandle{body.world, body.world->addTouch(std::move(touch)), point};
+  spring->state = body.world->addTouch(std::move(touch));
+  return spring.release();
 }
 void applyImpulse(BodyHandle& body, int triangle, Vec3 weights, Vec3 impulse) {
   SurfacePoint point = pointAt(body, triangle, weights);

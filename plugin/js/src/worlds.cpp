@@ -6,12 +6,39 @@
 #include <tetskin/bullet/src/exported/state_hash.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <new>
 
 namespace tetskin::js {
 namespace {
 
-WorldHandle* createWorld(Vec3 gravity, bool deterministic) {
-  return new WorldHandle{std::make_shared<World>(gravity, nullptr, deterministic, false), {}, {}};
+/// Bullet writes to what it asked for, whether it got it or not.
+void* allocated(std::size_t bytes) {
+  void* const memory = std::malloc(bytes);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces) {
+  return new WorldHandle{std::make_shared<World>(gravity, nullptr, deterministic, recordForces), {}, {}};
+}
+
+/// Of a soft body or a rigid one, the other being null; null: neither.
+const btCollisionObject* objectOf(const BodyHandle* soft, const RigidHandle* rigid) {
+  if (soft) return &alive(*soft->state).body();
+  return rigid ? &alive(*rigid->state) : nullptr;
+}
+/// Forces, each with its torque, in the order of AppliedForces in tetskin.d.ts.
+View forcesOn(WorldHandle& handle, const BodyHandle* soft, const RigidHandle* rigid, const BodyHandle* otherSoft,
+              const RigidHandle* otherRigid) {
+  const btCollisionObject& object = *objectOf(soft, rigid);
+  const btCollisionObject* other = objectOf(otherSoft, otherRigid);
+  const ForceRecord& record = handle.world->forces();
+  const AppliedForces forces = other ? record.forcesBetween(object, *other) : record.forcesOn(object);
+  std::vector<double> numbers;
+  for (const Wrench& wrench : {forces.contact, forces.friction, forces.joints, forces.total()})
+    for (const btVector3& v : {wrench.force, wrench.torque}) numbers.insert(numbers.end(), {v.x(), v.y(), v.z()});
+  return lent(std::move(numbers));
 }
 
 int step(WorldHandle& handle, double dt, int substeps) {
@@ -76,6 +103,7 @@ std::string hashOfState(WorldHandle& handle) {
 }  // namespace
 
 EMSCRIPTEN_BINDINGS(worlds) {
+  btAlignedAllocSetCustom(allocated, std::free);
   emscripten::value_array<Vec3>("Vec3")
       .element(emscripten::index<0>())
       .element(emscripten::index<1>())
@@ -87,6 +115,7 @@ EMSCRIPTEN_BINDINGS(worlds) {
       .element(emscripten::index<3>());
   emscripten::class_<WorldHandle>("World");
   expose<&createWorld>("createWorld");
+  expose<&forcesOn>("forcesOn");
   expose<&step>("step");
   expose<&times>("times");
   expose<&gravity>("gravity");
