@@ -8,7 +8,6 @@
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/build_stream.h>
-#include <tetskin/bullet/src/base/node_loads.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/build/rigid_objects.h>
 #include <tetskin/bullet/src/build/soft_bodies.h>
@@ -168,7 +167,7 @@ struct DeformableBody::Impl final : BodyOwner {
   btDeformableBodySolver* solver;
   bool hasOwnSolver;  ///< it is a DeformableSolver, of which it is known whether it still exists
   ForceList* list;
-  ObjectFilters filters;  ///< of the body, when it was taken out
+  ObjectFilters filters;  ///< of the body, when it comes into a world
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
   ElasticMaterial material;
@@ -206,7 +205,7 @@ struct DeformableBody::Impl final : BodyOwner {
     if (status.ok()) apply(now);
     return status;
   }
-  void enter(const ObjectFilters& filters = {});
+  void enter();
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void visitState(WorldStream& stream) override;
   void describe(BuildStream& stream) override;
@@ -282,7 +281,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
 
 /// Adds the body, unless it is there, and its forces to the world. What may run out of memory comes first: from then on,
 /// nothing throws.
-void DeformableBody::Impl::enter(const ObjectFilters& filters) {
+void DeformableBody::Impl::enter() {
   assert(elasticity);
   btDispatcher& dispatcher = *world->getDispatcher();
   if (forceModel == ForceModel::Corotated && !isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
@@ -371,7 +370,8 @@ std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& strea
   impl->weightPressure = parts.weightPressure;
   std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
   made->impl_->makeElasticity(options, rest.value(), std::move(parts.quadratic));
-  made->impl_->enter(parts.filters);
+  made->impl_->filters = parts.filters;
+  made->impl_->enter();
   return made;
 }
 
@@ -441,7 +441,7 @@ Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
   if (Status status = checkSolver(solverOf(world), options); !status.ok()) return status;
   if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
   impl_->moveTo(world);
-  impl_->enter(impl_->filters);
+  impl_->enter();
   body().activate();
   return {};
 }

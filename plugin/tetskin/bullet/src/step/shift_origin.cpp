@@ -11,7 +11,6 @@
 #include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/bullet/src/base/node_loads.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/step/step.h>

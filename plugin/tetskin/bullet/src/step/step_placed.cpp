@@ -3,7 +3,7 @@
 //
 // What is remembered of a body that the application puts elsewhere, or back to its start, between two steps.
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/bullet/src/base/node_loads.h>
+#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/step/step.h>
 
