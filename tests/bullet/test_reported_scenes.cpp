@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Scenes that users of other engines report as faults, each with the number that is right.
-#include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 #include <tetskin/elastic/elastic_body.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "deformable_test.h"
 #include "recorded_forces.h"
+#include "rigid_bodies.h"
 #include "support/bars.h"
 
 namespace tetskin::test {
@@ -34,23 +34,6 @@ std::unique_ptr<DeformableBody> bodyIn(EmptyWorld& world, const TetMesh& cage, c
   return std::move(body).value();
 }
 
-/// A rigid body, as long as it is in a world.
-struct Rigid {
-  Rigid(EmptyWorld& of, btCollisionShape& shape, double mass, const btVector3& at) : world(of) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape.calculateLocalInertia(static_cast<btScalar>(mass), inertia);
-    body = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, &shape, inertia);
-    const btTransform place(btQuaternion::getIdentity(), at);
-    body->setWorldTransform(place);
-    body->setInterpolationWorldTransform(place);
-    body->setActivationState(DISABLE_DEACTIVATION);
-    world.deformable().addRigidBody(body.get());
-  }
-  ~Rigid() { world.deformable().removeRigidBody(body.get()); }
-  EmptyWorld& world;
-  std::unique_ptr<btRigidBody> body;
-};
-
 /// E A times the strain; A is 2.1e-3 m^2.
 TEST(ReportedScenes, AStripBetweenBoxesThatMoveApartPullsByItsStrain) {
   Weightless world;
@@ -61,9 +44,12 @@ TEST(ReportedScenes, AStripBetweenBoxesThatMoveApartPullsByItsStrain) {
   options.density = 1000;
   const auto strip = bodyIn(world, raised(makeBox({20, 2, 1}, {1.4, 0.07, 0.03}), 5), options);
   btSoftBody& soft = strip->body();
-  btBoxShape shape(btVector3(btScalar(0.05), btScalar(0.05), btScalar(0.05)));
-  Rigid left(world, shape, 0, btVector3(btScalar(-0.05), btScalar(5.035), btScalar(0.015)));
-  Rigid right(world, shape, 0, btVector3(btScalar(1.45), btScalar(5.035), btScalar(0.015)));
+  const auto box = [] {
+    return std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(0.05), btScalar(0.05)));
+  };
+  Rigid left(world, box(), 0, btVector3(btScalar(-0.05), btScalar(5.035), btScalar(0.015)));
+  Rigid right(world, box(), 0, btVector3(btScalar(1.45), btScalar(5.035), btScalar(0.015)));
+  right.body->setActivationState(DISABLE_DEACTIVATION);
   right.body->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
   std::vector<std::pair<int, btVector3>> held;
   for (int n = 0; n < soft.m_nodes.size(); ++n) {
@@ -86,7 +72,7 @@ TEST(ReportedScenes, AStripBetweenBoxesThatMoveApartPullsByItsStrain) {
     }
     step(world, 60);
   };
-  const auto on = [&](const Rigid& box) { return static_cast<double>(forces->forcesOn(*box.body).total().force.x()); };
+  const auto on = [&](const Rigid& of) { return static_cast<double>(forces->forcesOn(*of.body).total().force.x()); };
   moveBy(0.14, 60);
   EXPECT_NEAR(on(left), 210, 2.1);
   EXPECT_NEAR(on(right), -on(left), 0.5);
@@ -96,7 +82,7 @@ TEST(ReportedScenes, AStripBetweenBoxesThatMoveApartPullsByItsStrain) {
 
 /// The tip of a clamped beam that swings under its weight, each 0.1 s, in steps that are switched each time.
 /// lengths  of the frames
-std::vector<double> swing(const std::vector<double>& lengths, std::vector<double>* energies) {
+std::vector<double> swingIn(const std::vector<double>& lengths, std::vector<double>* energies) {
   TetskinWorld world;
   SoftBodyOptions options;
   options.youngsModulus = 5e5;
@@ -128,8 +114,8 @@ std::vector<double> swing(const std::vector<double>& lengths, std::vector<double
 /// Of the swing of 4 m.
 TEST(ReportedScenes, ABeamSwingsTheSameWhileItsTimeStepIsSwitched) {
   std::vector<double> energies;
-  const std::vector<double> fine = swing({1.0 / 600}, nullptr), coarse = swing({1.0 / 60}, nullptr),
-                            mixed = swing({1.0 / 60, 1.0 / 600}, &energies);
+  const std::vector<double> fine = swingIn({1.0 / 600}, nullptr), coarse = swingIn({1.0 / 60}, nullptr),
+                            mixed = swingIn({1.0 / 60, 1.0 / 600}, &energies);
   const double size = -*std::min_element(fine.begin(), fine.end());
   ASSERT_GT(size, 1);
   double ofCoarse = 0, ofMixed = 0;
@@ -154,6 +140,7 @@ struct Wheel {
     options.density = 1000;
     options.stiffnessDamping = 0.002;
     tyre = bodyIn(world, cage, options);
+    hub.body->setActivationState(DISABLE_DEACTIVATION);
     btSoftBody& soft = tyre->body();
     for (int n = 0; n < soft.m_nodes.size(); ++n) {
       radii.push_back((cage.nodes[static_cast<std::size_t>(n)] - Vector3(0, 5, 0)).head<2>().norm());
@@ -216,8 +203,8 @@ struct Wheel {
   }
 
   Weightless world;
-  btCylinderShapeZ shape{btVector3(btScalar(0.19), btScalar(0.19), btScalar(0.05))};
-  Rigid hub{world, shape, 10, btVector3(0, 5, 0)};
+  Rigid hub{world, std::make_unique<btCylinderShapeZ>(btVector3(btScalar(0.19), btScalar(0.19), btScalar(0.05))), 10,
+            btVector3(0, 5, 0)};
   std::unique_ptr<DeformableBody> tyre;
   std::vector<double> radii;
 };
@@ -252,6 +239,112 @@ TEST(ReportedScenes, AWheelKeepsItsSpin) {
     EXPECT_NEAR(wheel.rate(), of.rate, 0.05 * of.rate) << of.modulus << " Pa, " << of.rate;
     EXPECT_LT(std::abs(wheel.growth()), 1e-3);
   }
+}
+
+/// A ball of flesh on a core that is led: 0.2 m of 5 kPa, damped by 0.01 s.
+struct Flesh {
+  static constexpr double kSize = 0.2;
+
+  Flesh() {
+    cage = makeBox({6, 6, 6}, {2, 2, 2});
+    for (Vector3& p : cage.nodes) {
+      p -= Vector3(1, 1, 1);
+      if (p.norm() > 0) p *= 0.5 * kSize * p.cwiseAbs().maxCoeff() / p.norm();
+      p.y() += 5;
+    }
+    SoftBodyOptions options;
+    options.youngsModulus = 5e3;
+    options.density = 1000;
+    options.stiffnessDamping = 0.01;
+    options.pinned = [](const Vector3& rest) { return (rest - Vector3(0, 5, 0)).norm() < 0.04; };
+    body = bodyIn(world, cage, options);
+  }
+  btSoftBody& soft() { return body->body(); }
+  void lead(double way) {
+    for (int n = 0; n < soft().m_nodes.size(); ++n) {
+      if (!body->isPinned(n)) continue;
+      const btVector3 place = soft().m_nodes[n].m_x + btVector3(static_cast<btScalar>(way), 0, 0);
+      EXPECT_TRUE(body->setPinnedPosition(n, place).ok());
+    }
+  }
+  Vector3 core() {
+    for (int n = 0;; ++n) {
+      if (body->isPinned(n)) return toEigen(soft().m_nodes[n].m_x) - cage.nodes[static_cast<std::size_t>(n)];
+    }
+  }
+  /// Of the flesh from the core, along x; and the farthest of any node.
+  double offset(double* farthest = nullptr) {
+    const Vector3 at = core();
+    double sum = 0, mass = 0;
+    for (int n = 0; n < soft().m_nodes.size(); ++n) {
+      const Vector3 away = toEigen(soft().m_nodes[n].m_x) - at - cage.nodes[static_cast<std::size_t>(n)];
+      if (farthest) *farthest = std::max(*farthest, away.norm());
+      if (soft().m_nodes[n].m_im == 0) continue;
+      sum += away.x() / static_cast<double>(soft().m_nodes[n].m_im);
+      mass += 1 / static_cast<double>(soft().m_nodes[n].m_im);
+    }
+    return sum / mass;
+  }
+  double deformation() {
+    double farthest = 0;
+    offset(&farthest);
+    return farthest / kSize;
+  }
+  bool rests(int frames) {
+    for (int f = 0; f < frames && soft().isActive(); ++f) step(world, 1);
+    return !soft().isActive();
+  }
+
+  Weightless world;
+  TetMesh cage;
+  std::unique_ptr<DeformableBody> body;
+};
+
+TEST(ReportedScenes, FleshOnALedCoreSwingsOutAsItsDampingSays) {
+  Flesh flesh;
+  for (int f = 0; f < 30; ++f) {
+    flesh.lead(2.0 / 60);
+    step(flesh.world, 1);
+  }
+  std::vector<std::pair<double, double>> peaks;  // seconds, and size
+  double before = 0, last = 0;
+  for (int k = 0; k < 360; ++k) {
+    flesh.world.deformable().stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
+    const double now = flesh.offset();
+    if (k > 1 && (last - before) * (now - last) <= 0) peaks.emplace_back(k / 240.0, std::abs(last));
+    before = last;
+    last = now;
+  }
+  ASSERT_GT(peaks.size(), 6u);
+  const double seconds = peaks[6].first - peaks[1].first, frequency = 5 * SIMD_PI / seconds;
+  const double decay = std::log(peaks[1].second / peaks[6].second) / seconds;
+  EXPECT_NEAR(decay, 0.5 * frequency * frequency * 0.01, 0.1 * decay);
+  EXPECT_TRUE(flesh.rests(900));
+  EXPECT_LT(flesh.deformation(), 1e-3);
+}
+
+TEST(ReportedScenes, FleshRecoversFromAHitchAndIsTeleportedWithItsCore) {
+  Flesh flesh, beside;
+  for (Flesh* of : {&flesh, &beside}) {
+    const auto walk = [&] {
+      for (int f = 0; f < 10; ++f) {
+        of->lead(2.0 / 60);
+        step(of->world, 1);
+      }
+    };
+    walk();
+    of->lead(0.4);
+    of->world.deformable().stepSimulation(btScalar(0.2), 4, btScalar(0.05));
+    EXPECT_TRUE(of->rests(1200));
+    EXPECT_LT(of->deformation(), 1e-3);
+    walk();
+    if (of == &flesh) {
+      ASSERT_TRUE(of->body->teleport(btTransform(btQuaternion::getIdentity(), btVector3(10, 0, 0))).ok());
+    }
+    walk();
+  }
+  EXPECT_NEAR(flesh.core().x(), beside.core().x() + 10, 1e-5);
+  EXPECT_NEAR(flesh.deformation(), beside.deformation(), 1e-4);
 }
 
 /// By similarity, only density x gravity x size over stiffness matters.
