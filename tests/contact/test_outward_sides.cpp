@@ -259,7 +259,7 @@ TEST(OutwardSides, OfMirroredBodiesAreMetAsTheOriginalsOrRefused) {
     EXPECT_NEAR(mirroredLow, low, 1e-4);
     EXPECT_NEAR(mirroredHigh, high, 1e-4);
   }
-  EXPECT_TRUE(ContactShape::create(cage, turned).ok());
+  EXPECT_TRUE(ContactShape::create(cage, turned, {500, 24}).ok());
   const Status inwards = ContactShape::create(cage, egg).status();
   EXPECT_EQ(inwards.code, StatusCode::Degenerate);
   EXPECT_NE(inwards.message.find("face inwards"), std::string::npos) << inwards.message;
