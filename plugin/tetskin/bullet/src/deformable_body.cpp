@@ -10,6 +10,7 @@
 #include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/node_loads.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/build/rigid_objects.h>
 #include <tetskin/bullet/src/build/soft_bodies.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
@@ -84,6 +85,13 @@ void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
   force.setDamping(0, damping);
 }
 
+void setWorld(ElasticForce& force, btDeformableMultiBodyDynamicsWorld& world) {
+  force.setWorld(world);
+}
+/// Bullet's forces know no world.
+template <class Force>
+void setWorld(Force&, btDeformableMultiBodyDynamicsWorld&) {}
+
 void setMaterial(ElasticForce& force, const ElasticMaterial& material) {
   force.setMaterial(material);
 }
@@ -148,17 +156,19 @@ std::vector<Eigen::Vector3d> roundedNodes(std::vector<Eigen::Vector3d> nodes) {
 /// The members of a DeformableBody, in such an order that forces are destroyed before the body on which they act.
 struct DeformableBody::Impl final : BodyOwner {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
-      : world(ofWorld),
-        solver(ofSolver),
+      : world(&ofWorld),
+        solver(&ofSolver),
         hasOwnSolver(deformableSolver(&ofSolver)),
-        list(*ofSolver.getLagrangianForceArray()),
+        list(ofSolver.getLagrangianForceArray()),
         body(std::move(made)),
-        gravity(ofWorld, list, !hasOwnSolver, *this) {}
+        gravity(ofWorld, *list, !hasOwnSolver, *this) {}
 
-  btDeformableMultiBodyDynamicsWorld& world;
-  btDeformableBodySolver& solver;
+  // The world that the body is in, or was in last.
+  btDeformableMultiBodyDynamicsWorld* world;
+  btDeformableBodySolver* solver;
   bool hasOwnSolver;  ///< it is a DeformableSolver, of which it is known whether it still exists
-  ForceList& list;
+  ForceList* list;
+  ObjectFilters filters;  ///< of the body, when it was taken out
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
   ElasticMaterial material;
@@ -168,11 +178,16 @@ struct DeformableBody::Impl final : BodyOwner {
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
   std::function<void(const ElasticMaterial&)> applyMaterial;  ///< sets the material of `elasticity`
+  std::function<void()> moveElasticity;                       ///< tells `elasticity` that the world is another one
 
   template <class Force, class... Arguments>
   void makeElasticity(Arguments&&... arguments) {
-    auto force = std::make_unique<OwnForce<Force>>(list, std::forward<Arguments>(arguments)...);
+    auto force = std::make_unique<OwnForce<Force>>(*list, std::forward<Arguments>(arguments)...);
     applyMaterial = [to = static_cast<Force*>(force.get())](const ElasticMaterial& now) { setMaterial(*to, now); };
+    moveElasticity = [this, to = force.get()] {
+      to->setList(*list);
+      setWorld(static_cast<Force&>(*to), *world);
+    };
     elasticity = std::move(force);
   }
   /// Creates the force of the body's material.
@@ -193,13 +208,15 @@ struct DeformableBody::Impl final : BodyOwner {
   }
   void enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
              std::vector<QuadraticShape> quadratic);
+  void addForces();
+  void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void visitState(WorldStream& stream) override;
   void describe(BuildStream& stream) override;
   btSoftBody& ownedBody() override { return *body; }
   btDeformableLagrangianForce& elasticForce() override { return *elasticity; }
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
-  bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
+  bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == solver; }
   /// True if the forces are still in the world: whoever removes the body from the world removes it from its forces, and
   /// elasticity drops a body with tets that it cannot simulate.
   bool isActedOn() const {
@@ -213,7 +230,7 @@ struct DeformableBody::Impl final : BodyOwner {
   Status checkIsPlaced(const std::string& call) const;
   /// What lies on the body, or beside it, is to find out that it has gone.
   void wakeNeighbours();
-  bool solverLives() const { return !hasOwnSolver || deformableSolver(&solver); }
+  bool solverLives() const { return !hasOwnSolver || deformableSolver(solver); }
   Status checkNode(int node) const {
     if (node >= 0 && node < static_cast<int>(masses.size())) return {};
     return {StatusCode::IndexOutOfRange, "node " + std::to_string(node) + " does not exist in a cage of " +
@@ -269,19 +286,23 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   return std::unique_ptr<DeformableBody>(new DeformableBody(std::move(impl)));
 }
 
-/// The body is in the world: adds its forces.
 void DeformableBody::Impl::enter(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
                                  std::vector<QuadraticShape> quadratic) {
   forceModel = options.forceModel;
   restMeasure = restMeasureOf(*body);
   makeElasticity(options, linear, std::move(quadratic));
+  addForces();
+}
+
+/// The body is in the world.
+void DeformableBody::Impl::addForces() {
   for (btDeformableLagrangianForce* force : {static_cast<btDeformableLagrangianForce*>(&gravity), elasticity.get()}) {
-    force->setIndices(solver.getIndices());
+    force->setIndices(solver->getIndices());
   }
-  addToList(list, gravity, *elasticity, *body);
+  addToList(*list, gravity, *elasticity, *body);
   if (forceModel != ForceModel::Corotated) return;
-  static_cast<DeformableSolver&>(solver).requireOwnSolve();
-  btDispatcher& dispatcher = *world.getDispatcher();
+  static_cast<DeformableSolver*>(solver)->requireOwnSolve();
+  btDispatcher& dispatcher = *world->getDispatcher();
   if (!isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
     registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
   }
@@ -299,7 +320,7 @@ void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const 
       applyMaterial(material);
       return;
     default:
-      makeElasticity<ElasticForce>(world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
+      makeElasticity<ElasticForce>(*world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
                                    SolverSettings{options.solverTolerance, options.maxIterations});
   }
 }
@@ -374,8 +395,8 @@ SolverPath DeformableBody::solverPath() const {
 /// As the world would remove it, without telling the solver, which has been destroyed before the world.
 void DeformableBody::Impl::leaveWithoutSolver() {
   assert(isInItsWorld());
-  world.getSoftBodyArray().remove(body.get());
-  world.btCollisionWorld::removeCollisionObject(body.get());
+  world->getSoftBodyArray().remove(body.get());
+  world->btCollisionWorld::removeCollisionObject(body.get());
 }
 
 DeformableBody::~DeformableBody() {
@@ -390,9 +411,48 @@ DeformableBody::~DeformableBody() {
     impl_->leaveWithoutSolver();
     return;
   }
-  removeFromList(impl_->list, &impl_->gravity);
-  removeFromList(impl_->list, impl_->elasticity.get());
-  impl_->world.removeSoftBody(impl_->body.get());
+  removeFromList(*impl_->list, &impl_->gravity);
+  removeFromList(*impl_->list, impl_->elasticity.get());
+  impl_->world->removeSoftBody(impl_->body.get());
+}
+
+/// The body is in no world, or in this one without its forces.
+void DeformableBody::Impl::moveTo(btDeformableMultiBodyDynamicsWorld& to) {
+  assert(!isActedOn());
+  if (&to == world && &solverOf(to) == solver) return;
+  world = &to;
+  solver = &solverOf(to);
+  hasOwnSolver = deformableSolver(solver);
+  list = solver->getLagrangianForceArray();
+  body->m_worldInfo = &to.getWorldInfo();
+  gravity.setWorld(to, *list, !hasOwnSolver);
+  moveElasticity();
+  BodyWithTrees& own = *bodyWithTrees(*body);
+  own.setMovesCountedBy(nullptr);
+  if (const auto contacts = own.surfaceContacts().lock()) contacts->setDispatcher(to.getDispatcher());
+}
+
+void DeformableBody::removeFromWorld() {
+  if (!impl_->isInItsWorld()) return;
+  assert(impl_->solverLives());
+  impl_->filters.readFrom(body());
+  impl_->world->removeSoftBody(impl_->body.get());
+}
+
+Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
+  if (impl_->isActedOn()) return invalid("the body is in a world already: call removeFromWorld first");
+  const auto& inWorld = world.getSoftBodyArray();
+  const bool isThere = inWorld.findLinearSearch(impl_->body.get()) < inWorld.size();
+  if (impl_->isInAWorld() && !isThere) return invalid("the body is in another world: remove it there first");
+  SoftBodyOptions options;
+  options.forceModel = impl_->forceModel;
+  if (Status status = checkSolver(solverOf(world), options); !status.ok()) return status;
+  if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
+  impl_->moveTo(world);
+  if (!isThere) world.addSoftBody(impl_->body.get(), impl_->filters.group, impl_->filters.mask);
+  impl_->addForces();
+  body().activate();
+  return {};
 }
 
 btSoftBody& DeformableBody::body() {
@@ -474,7 +534,7 @@ Status DeformableBody::setPinnedPosition(int node, const btVector3& position) {
 
 Status DeformableBody::Impl::checkIsPlaced(const std::string& call) const {
   if (!isInItsWorld()) return invalid(call + ": the body is not in its world");
-  if (!hasOwnSolver || !isWithinStep(static_cast<const DeformableSolver&>(solver))) return {};
+  if (!hasOwnSolver || !isWithinStep(static_cast<const DeformableSolver&>(*solver))) return {};
   return invalid(call + ": within a step; call it between two steps");
 }
 
@@ -486,7 +546,7 @@ void DeformableBody::Impl::wakeNeighbours() {
     }
   } waker;
   const btBroadphaseProxy& own = *body->getBroadphaseHandle();
-  world.getBroadphase()->aabbTest(own.m_aabbMin, own.m_aabbMax, waker);
+  world->getBroadphase()->aabbTest(own.m_aabbMin, own.m_aabbMax, waker);
 }
 
 Status DeformableBody::teleport(const btTransform& motion) {
@@ -500,7 +560,7 @@ Status DeformableBody::teleport(const btTransform& motion) {
   const auto moveNodes = [&] { carryNodes(soft, elastic ? elastic->body().dynamics.get() : nullptr, placement); };
   impl_->wakeNeighbours();
   if (impl_->hasOwnSolver) {
-    Access<DeformableSolver>::teleport(static_cast<DeformableSolver&>(impl_->solver), soft, placement, moveNodes);
+    Access<DeformableSolver>::teleport(static_cast<DeformableSolver&>(*impl_->solver), soft, placement, moveNodes);
   } else {
     moveNodes();
   }
@@ -518,7 +578,7 @@ Status DeformableBody::reset() {
   if (!same)
     return invalid("reset: the body was scaled, or its nodes or tets changed, since it was added; add it anew");
   impl_->wakeNeighbours();
-  if (impl_->hasOwnSolver) Access<DeformableSolver>::reset(static_cast<DeformableSolver&>(impl_->solver), own);
+  if (impl_->hasOwnSolver) Access<DeformableSolver>::reset(static_cast<DeformableSolver&>(*impl_->solver), own);
   own.returnToStart();
   if (elastic) elastic->reset();
   own.activate();

@@ -28,6 +28,8 @@ class ElasticForce : public InactiveForce {
   void setMaterial(const ElasticMaterial& material);
   /// Forgets all steps. The body must have the tets and rest shapes with which it was created.
   void reset();
+  /// The world that its body is about to enter.
+  void setWorld(btDeformableMultiBodyDynamicsWorld& world);
   const SolverSettings& settings() const { return settings_; }
   ForcedBody& body() { return body_; }
 
