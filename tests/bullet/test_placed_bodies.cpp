@@ -12,7 +12,7 @@
 namespace tetskin::test {
 namespace {
 
-constexpr btScalar kFrame = btScalar(1) / 60, kHigh = 30;
+constexpr btScalar kPlacedFrame = btScalar(1) / 60, kHigh = 30;
 
 std::vector<btScalar> stateOf(const btSoftBody& body) {
   std::vector<btScalar> numbers;
@@ -32,8 +32,8 @@ double farthest(const btSoftBody& a, const btSoftBody& b, const btTransform& mot
   return maximum;
 }
 
-struct World : TetskinWorld {
-  explicit World(const btVector3& gravityOfAll = btVector3(0, 0, 0)) { deformable().setGravity(gravityOfAll); }
+struct PlacedWorld : TetskinWorld {
+  explicit PlacedWorld(const btVector3& gravityOfAll = btVector3(0, 0, 0)) { deformable().setGravity(gravityOfAll); }
 };
 
 /// A bar that is thrown, spins, and swings.
@@ -56,7 +56,7 @@ std::unique_ptr<DeformableBody> thrownBar(EmptyWorld& world, SoftBodyOptions opt
 TEST(Teleports, GoOnWithTheMotionThere) {
   const btTransform motion(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(1.5)), btVector3(5, -3, 2));
   for (const double damping : {0.0, 0.02}) {
-    World world;
+    PlacedWorld world;
     SoftBodyOptions options;
     options.stiffnessDamping = damping;
     const auto here = thrownBar(world, options), there = thrownBar(world, options);
@@ -71,7 +71,7 @@ TEST(Teleports, GoOnWithTheMotionThere) {
 }
 
 TEST(Teleports, ChangeNothingBesideThePlaceWhereNothingIsRounded) {
-  World world;
+  PlacedWorld world;
   const auto here = thrownBar(world), there = thrownBar(world);
   step(world, 30);
   ASSERT_TRUE(there->teleport(btTransform::getIdentity()).ok());
@@ -80,7 +80,7 @@ TEST(Teleports, ChangeNothingBesideThePlaceWhereNothingIsRounded) {
 }
 
 TEST(Teleports, TakeLedPinsAlong) {
-  World world;
+  PlacedWorld world;
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& rest) { return rest.x() < 0.01; };
   const auto here = thrownBar(world, options), there = thrownBar(world, options);
@@ -105,7 +105,7 @@ TEST(Teleports, TakeLedPinsAlong) {
 }
 
 TEST(Teleports, RefuseWhatIsNoRigidMotion) {
-  World world;
+  PlacedWorld world;
   const auto body = thrownBar(world);
   const std::vector<btScalar> before = stateOf(body->body());
   btTransform motion = btTransform::getIdentity();
@@ -143,11 +143,11 @@ void expectRepeats(const Create& create) {
   std::vector<std::vector<btScalar>> first;
   std::vector<btScalar> others[2];
   for (const bool resets : {false, true}) {
-    World world(btVector3(0, -10, 0));
+    PlacedWorld world(btVector3(0, -10, 0));
     std::vector<std::unique_ptr<DeformableBody>> bodies;
     for (int k = 0; k < 4; ++k) bodies.push_back(create(world, k));
     const auto frame = [&] {
-      world.deformable().stepSimulation(kFrame, 4, kFrame / 4);
+      world.deformable().stepSimulation(kPlacedFrame, 4, kPlacedFrame / 4);
       return stateOf(bodies[1]->body());
     };
     for (int f = 0; f < 60; ++f) {
@@ -199,7 +199,7 @@ TEST(Resets, OfWhatHasLandedRepeatTheFall) {
 }
 
 TEST(Resets, OfASleeperWakesIt) {
-  World world(btVector3(0, -10, 0));
+  PlacedWorld world(btVector3(0, -10, 0));
   const auto body = bodyAt(world, smallCageAbove(0.02), 0, {});
   for (int f = 0; f < 600 && body->body().isActive(); ++f) step(world, 1);
   ASSERT_FALSE(body->body().isActive());
@@ -211,7 +211,7 @@ TEST(Resets, OfASleeperWakesIt) {
 }
 
 TEST(Resets, BringLedPinsBack) {
-  World world(btVector3(0, -10, 0));
+  PlacedWorld world(btVector3(0, -10, 0));
   TetMesh bar = makeBox({6, 2, 2}, {1.2, 0.4, 0.4});
   const auto body = bodyAt(world, bar, 0, {});
   ASSERT_TRUE(body->setPinned(0).ok());
@@ -227,7 +227,7 @@ TEST(Resets, BringLedPinsBack) {
 }
 
 TEST(Resets, WakeWhatLiesOnTheBody) {
-  World world(btVector3(0, -10, 0));
+  PlacedWorld world(btVector3(0, -10, 0));
   const auto block = bodyAt(world, smallCageAbove(0.0), 0, {});
   btBoxShape shape(btVector3(btScalar(0.2), btScalar(0.1), btScalar(0.2)));
   btRigidBody box(btScalar(0.3), nullptr, &shape, btVector3(btScalar(0.001), btScalar(0.001), btScalar(0.001)));
@@ -244,7 +244,7 @@ TEST(Resets, WakeWhatLiesOnTheBody) {
 }
 
 TEST(Resets, RefuseABodyThatWasScaled) {
-  World world(btVector3(0, -10, 0));
+  PlacedWorld world(btVector3(0, -10, 0));
   const auto body = bodyAt(world, smallCageAbove(1), 0, {});
   step(world, 3);
   body->body().scale(btVector3(2, 2, 2));
@@ -255,7 +255,7 @@ TEST(Resets, RefuseABodyThatWasScaled) {
 }
 
 TEST(Resets, AreRefusedWithoutAWorldAndWithinAStep) {
-  World world(btVector3(0, -10, 0));
+  PlacedWorld world(btVector3(0, -10, 0));
   const auto body = bodyAt(world, smallCageAbove(1), 0, {});
   static StatusCode within[2];
   static DeformableBody* of = nullptr;

@@ -9,8 +9,11 @@
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <tetskin/bullet/src/search/mesh_probe.h>
+#include <tetskin/contact/soft_contacts.h>
 
 #include <functional>
+#include <string>
+#include <utility>
 
 namespace tetskin::test {
 
@@ -223,6 +226,43 @@ TEST(OutwardSides, MirroredMeshesHoldWhatFallsOnThem) {
       return shape;
     }});
   }
+}
+
+/// The heights of the lowest and the highest point of an egg that has landed on the floor.
+std::pair<double, double> restOf(const TriangleMesh& mesh, TetMesh cage) {
+  TetskinWorld world;
+  const auto binding = SoftBodyBinding::create(cage, mesh).value();
+  for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.4;
+  const auto body = added(world, cage);
+  const auto contact = SurfaceContact::add(world.deformable(), body->body(), *binding, mesh).value();
+  SoftBodySkin skin;
+  EXPECT_TRUE(skin.bind(body->body(), binding).ok());
+  step(world, 90);
+  EXPECT_EQ(skin.update(), StatusCode::Ok);
+  return {static_cast<double>(skin.bounds().min().y()), static_cast<double>(skin.bounds().max().y())};
+}
+
+/// A negative scale mirrors points, and leaves the winding of triangles as it is.
+TEST(OutwardSides, OfMirroredBodiesAreMetAsTheOriginalsOrRefused) {
+  TriangleMesh egg = ballMesh(12, 0.35);
+  for (Eigen::Vector3d& p : egg.positions) p = Eigen::Vector3d(p.x() > 0 ? 1.2 * p.x() : p.x(), 0.8 * p.y(), p.z());
+  TetMesh cage = looseCage();
+  const auto [low, high] = restOf(egg, cage);
+  for (auto* points : {&egg.positions, &cage.nodes}) {
+    for (Eigen::Vector3d& p : *points) p.x() = -p.x();
+  }
+  (void)repairTetMesh(cage);
+  TriangleMesh turned = egg;
+  for (auto& t : turned.triangles) std::swap(t[1], t[2]);
+  for (const TriangleMesh* mesh : {&turned, &egg}) {
+    const auto [mirroredLow, mirroredHigh] = restOf(*mesh, cage);
+    EXPECT_NEAR(mirroredLow, low, 1e-4);
+    EXPECT_NEAR(mirroredHigh, high, 1e-4);
+  }
+  EXPECT_TRUE(ContactShape::create(cage, turned, {500, 24}).ok());
+  const Status inwards = ContactShape::create(cage, egg).status();
+  EXPECT_EQ(inwards.code, StatusCode::Degenerate);
+  EXPECT_NE(inwards.message.find("face inwards"), std::string::npos) << inwards.message;
 }
 
 }  // namespace

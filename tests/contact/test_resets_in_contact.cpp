@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr btScalar kStepOfResets = btScalar(1) / 60;
 
 /// Balls that fall onto a pinned plate, and one beside, onto the floor: by their surfaces.
-struct Landing {
+struct LandingBalls {
   tetskin::DeformableWorld world;
   btStaticPlaneShape plane{btVector3(0, 1, 0), 0};
   btRigidBody floor{0, nullptr, &plane};
@@ -27,7 +27,7 @@ struct Landing {
   std::vector<std::unique_ptr<DeformableBody>> bodies;
   std::vector<std::unique_ptr<SurfaceContact>> surfaces;
 
-  Landing() {
+  LandingBalls() {
     world.addRigidBody(&floor);
     static const std::shared_ptr<const ContactShape> coarse = ball().makeShape({600, 24});
     add(plate().cage, plate().mesh, Vector3d(0, 0.5, 0), plate().shape, true);
@@ -35,7 +35,7 @@ struct Landing {
     add(ball().cage, ball().mesh, Vector3d(0.2, 1.7, 0.1), coarse, false);
     add(ball().cage, ball().mesh, Vector3d(3, 0.2, 0), coarse, false);
   }
-  ~Landing() {
+  ~LandingBalls() {
     surfaces.clear();
     contacts.reset();
     bodies.clear();
@@ -66,7 +66,7 @@ struct Landing {
 };
 
 TEST(ResetsInContact, OfAllBodiesRepeatTheRun) {
-  Landing scene;
+  LandingBalls scene;
   std::vector<std::vector<btScalar>> first;
   std::size_t touches = 0;
   for (int frame = 0; frame < 60; ++frame) {
@@ -87,7 +87,7 @@ TEST(ResetsInContact, AreRecordedAndPlayed) {
   const std::string path = testing::TempDir() + "resets_in_contact.replay";
   std::vector<std::vector<btScalar>> motions;
   {
-    Landing scene;
+    LandingBalls scene;
     const auto recorder = Recorder::start(scene.world, path).value();
     for (int frame = 0; frame < 50; ++frame) {
       if (frame == 30) {
@@ -106,7 +106,7 @@ TEST(ResetsInContact, AreRecordedAndPlayed) {
     ASSERT_TRUE(recorder->status().ok()) << recorder->status().message;
   }
   {
-    Landing scene;
+    LandingBalls scene;
     const auto replay = Replay::open(scene.world, path).value();
     for (const auto& motion : motions) {
       ASSERT_TRUE(replay->step()) << replay->status().message;
@@ -118,14 +118,14 @@ TEST(ResetsInContact, AreRecordedAndPlayed) {
 
 /// Friction would otherwise pull what lies on the floor back to where it stuck.
 TEST(TeleportsInContact, LeaveNoPullBehind) {
-  Landing scene, beside;
+  LandingBalls scene, beside;
   const auto frames = [&](int count) {
     for (int frame = 0; frame < count; ++frame) {
       scene.frame();
       beside.frame();
     }
   };
-  const auto meanX = [](const Landing& of) {
+  const auto meanX = [](const LandingBalls& of) {
     const btSoftBody& soft = of.bodies[3]->body();
     double sum = 0;
     for (int n = 0; n < soft.m_nodes.size(); ++n) sum += static_cast<double>(soft.m_nodes[n].m_x.x());

@@ -235,9 +235,9 @@ TETSKIN_BULLET_API Status restoreSnapshot(btDeformableMultiBodyDynamicsWorld& wo
 /// joints to points in space, targets of springs, motion states, and all that is remembered of positions, so that the
 /// world goes on as before. For worlds that are large beside the digits of a float.
 ///
-/// Not moved is what the world does not have: positions in the application, in its own motion states that compute them,
-/// in its forces and actions; shapes that reach far; pivots in space of multibodies' joints. Of broadphases, those
-/// other than btDbvtBroadphase may find pairs anew. Skins that interpolate: `SoftBodySkin::markTeleported`.
+/// Not moved is what the world does not have: bodies that are out of it; positions in the application, in its own
+/// motion states that compute them, in its forces and actions; pivots in space of multibodies' joints. Of broadphases,
+/// those other than btDbvtBroadphase may find pairs anew. Skins that interpolate: `SoftBodySkin::markTeleported`.
 ///
 /// world   created with a `DeformableSolver`
 /// origin  world space; best a whole number that a float represents, such as a multiple of 1,024

@@ -219,6 +219,10 @@ struct DeformableBody::Impl final : BodyOwner {
   bool isActedOn() const {
     return isInItsWorld() && gravity.m_softBodies.size() > 0 && elasticity->m_softBodies.size() > 0;
   }
+  /// Null with one of Bullet's forces.
+  ElasticForce* corotated() {
+    return forceModel == ForceModel::Corotated ? static_cast<ElasticForce*>(elasticity.get()) : nullptr;
+  }
   /// Ok if the body may be put elsewhere now.
   Status checkIsPlaced(const std::string& call) const;
   /// What lies on the body, or beside it, is to find out that it has gone.
@@ -546,7 +550,7 @@ Status DeformableBody::teleport(const btTransform& motion) {
     return invalid("teleport: the transform is not a rigid motion: it is not finite, or scales, shears or mirrors");
   }
   btSoftBody& soft = body();
-  auto* elastic = dynamic_cast<ElasticForce*>(impl_->elasticity.get());
+  ElasticForce* elastic = impl_->corotated();
   const Placement placement(motion);
   const auto moveNodes = [&] { carryNodes(soft, elastic ? elastic->body().dynamics.get() : nullptr, placement); };
   impl_->wakeNeighbours();
@@ -563,7 +567,7 @@ Status DeformableBody::teleport(const btTransform& motion) {
 Status DeformableBody::reset() {
   if (Status status = impl_->checkIsPlaced("reset"); !status.ok()) return status;
   BodyWithTrees& own = *bodyWithTrees(body());
-  auto* elastic = dynamic_cast<ElasticForce*>(impl_->elasticity.get());
+  ElasticForce* elastic = impl_->corotated();
   const bool same = own.createdAt().size() == static_cast<std::size_t>(own.m_nodes.size()) &&
                     restMeasureOf(own) == impl_->restMeasure && (!elastic || elastic->body().hasItsRestShapes());
   if (!same)

@@ -29,13 +29,13 @@ void ElasticForce::setMaterial(const ElasticMaterial& material) {
   body_.setMaterial(material);
 }
 
+void ElasticForce::reset() {
+  body_.reset(material_);
+}
+
 void ElasticForce::setWorld(btDeformableMultiBodyDynamicsWorld& world) {
   body_.world = &world;
   body_.worldInfo = &world.getWorldInfo();
-}
-
-void ElasticForce::reset() {
-  body_.reset(material_);
 }
 
 void ElasticForce::reinitialize(bool) {

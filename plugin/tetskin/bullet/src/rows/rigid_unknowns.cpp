@@ -63,6 +63,17 @@ const btMultiBodyLinkCollider* linkOf(const btCollisionObject& object) {
   return btMultiBodyLinkCollider::upcast(&object);
 }
 
+/// The angular velocity of a link, world space.
+btVector3 turningOf(const btMultiBodyLinkCollider& link) {
+  const btMultiBody& body = *link.m_multiBody;
+  if (link.m_link < 0) return body.getBaseOmega();
+  btAlignedObjectArray<btVector3> turning, moving;  // in the links' own frames; the base is the first
+  turning.resize(body.getNumLinks() + 1);
+  moving.resize(body.getNumLinks() + 1);
+  body.compTreeLinkVelocities(&turning[0], &moving[0]);
+  return body.localDirToWorld(link.m_link, turning[link.m_link + 1]);
+}
+
 /// True if nothing that the object meets changes its motion.
 bool movesFreely(const btCollisionObject& object) {
   if (const btMultiBodyLinkCollider* link = linkOf(object)) return link->m_multiBody != nullptr;
@@ -158,7 +169,7 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
     for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
       sum += jacobian.col(k) * static_cast<double>(body.getVelocityVector()[k]);
     }
-    return toBullet(sum);
+    return toBullet(sum) + (seconds > 0 ? bend(turningOf(*linkOf(object)), at.arm, seconds) : btVector3(0, 0, 0));
   }
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (!rigid) return {0, 0, 0};

@@ -121,16 +121,6 @@ std::unique_ptr<ContactBody> SoftContactRows::take(const btSoftBody& body) {
   return taken;
 }
 
-/// Bodies that were taken out of the world, and are in it again.
-void SoftContactRows::includeReturned() {
-  for (std::size_t k = away_.size(); k-- > 0;) {
-    if (away_[k]->lives() && !away_[k]->isInWorld()) continue;
-    const std::unique_ptr<ContactBody> back = std::move(away_[k]);
-    away_.erase(away_.begin() + static_cast<std::ptrdiff_t>(k));
-    if (back->lives()) include(*back->body, back->shape, back->self);
-  }
-}
-
 /// Afterwards nothing stored in the step before refers to the body.
 void SoftContactRows::forgetPairs(const ContactBody& body) {
   for (auto* contacts : {&contacts_, &sleeping_}) {
@@ -140,6 +130,16 @@ void SoftContactRows::forgetPairs(const ContactBody& body) {
   for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
     const auto [first, second] = kept->first;
     kept = first == body.id || second == body.id ? pairStates_.erase(kept) : std::next(kept);
+  }
+}
+
+/// Bodies that were taken out of the world, and are in it again.
+void SoftContactRows::includeReturned() {
+  for (std::size_t k = away_.size(); k-- > 0;) {
+    if (away_[k]->lives() && !away_[k]->isInWorld()) continue;
+    const std::unique_ptr<ContactBody> back = std::move(away_[k]);
+    away_.erase(away_.begin() + static_cast<std::ptrdiff_t>(k));
+    if (back->lives()) include(*back->body, back->shape, back->self);
   }
 }
 

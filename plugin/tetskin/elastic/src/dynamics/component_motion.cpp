@@ -241,9 +241,11 @@ RigidVelocity ComponentMotion::excess(const ComponentMomentum& now, const Vector
 }
 
 void ComponentMotion::addResistance(const Vector3d& point, const Matrix3d& stiffness, Resistance& to) const {
-  Eigen::Matrix<double, 3, 6> motion;
-  motion << Matrix3d::Identity(), -crossMatrix(turn_ * (point - about_));
-  to += motion.transpose() * stiffness * motion;
+  const Vector3d arm = point - about_;
+  Eigen::Matrix<double, 3, 6> motion, moment;
+  motion << Matrix3d::Identity(), -crossMatrix(turn_ * arm);
+  moment << Matrix3d::Identity(), -crossMatrix(arm);
+  to += moment.transpose() * stiffness * motion;
 }
 
 RigidVelocity ComponentMotion::withMomentum(const ComponentMomentum& own) const {
