@@ -35,7 +35,8 @@ struct RecorderOptions {
 /// Writes a run to a file: before each step what has changed since the last one, whoever has changed it (pins and
 /// targets that were moved, velocities, forces, gravity, materials, kinematic bodies), and after it a hash of each
 /// object's motion. What has changed is seen by comparing snapshots, see `saveSnapshot`; so nothing has to be told, and
-/// what no snapshot holds is not recorded: shapes, callbacks within a step, and settings of Bullet's solver.
+/// what no snapshot holds is not recorded: callbacks within a step. Other shapes, rest shapes, objects and joints make
+/// another world, see `Replay::onChange`; so does `setDeterministic`.
 ///
 ///     auto recorder = tetskin::Recorder::start(world, "run.replay").value();
 ///     ...
@@ -60,7 +61,8 @@ class TETSKIN_BULLET_API Recorder {
   /// Steps the world by its `stepSimulation`, and records it. Returns the number of Bullet's steps.
   int step(btScalar seconds, int maxSubSteps = 1, btScalar fixedTimeStep = btScalar(1) / 60);
 
-  /// Ok, or why nothing is recorded any more: the disk is full, or the world has something now that cannot be saved.
+  /// Ok, or why nothing is recorded any more: the disk is full, or the world has something now that cannot be saved,
+  /// such as a compound whose children came or went since the last step.
   /// Steps are made all the same.
   const Status& status() const;
   /// Number of steps recorded.
@@ -81,7 +83,8 @@ struct ReplayReport {
   bool cutShort = false;        ///< the file ends within a step, as that of a program that was killed
 };
 
-/// Plays a run from a file, one step after the other.
+/// Plays a run from a file, one step after the other. Kinematic bodies go where they went: the application's motion
+/// states are neither asked nor told, but for a btDefaultMotionState, which gets the new place.
 ///
 ///     build(world);   // the same bodies, in the same order
 ///     auto replay = tetskin::Replay::open(world, "run.replay").value();

@@ -19,7 +19,7 @@ struct SavedNode {
 };
 using SavedTree = std::vector<SavedNode>;
 
-/// itemOf(leaf)  a number of 0 or more
+/// Appends a node and what is below it. `itemOf` gives a leaf a number of 0 or more.
 template <class ItemOf>
 void readTree(const btDbvtNode* node, const ItemOf& itemOf, SavedTree& to) {
   if (!node) return;
