@@ -6,6 +6,8 @@
 
 /** To the camera of the first view where the room is narrow: what is long is seen more from its end, and larger. */
 const NARROW_DIRECTION = [0.75, 0.7, 1.0];
+/** Of forces: the length of one that is a body's weight, in radii of the scene, and the longest. */
+const WEIGHT_LENGTH = 0.25, LONGEST_ARROW = 1.0, ARROW_COLOUR = 0xf26522;
 const CAGE_COLOUR = 0xe0661a, TETS_COLOUR = 0xf0b487;
 
 /** Has a material leave out what is on one side of a plane in rest space. cut: uniforms {axis, at} */
@@ -246,6 +248,7 @@ class LiveStage extends Stage {
     for (const body of scene.bodies) this.addBody(body);
     this.ballRadius = 0.06 * this.radius;
     this.marker = this.makeMarker();
+    this.arrows = [];
     this.show(scene.state);
   }
 
@@ -293,8 +296,29 @@ class LiveStage extends Stage {
       actor.mesh.visible = k < this.rigidCount + state.balls;
       if (actor.mesh.visible) actor.show(state.poses, k);
     });
+    this.showForces(state.forces);
     this.marker.visible = Boolean(state.held);
     if (state.held) this.marker.position.fromArray(state.held);
+  }
+
+  /** forces: six numbers each, a point and a vector, whose arrow ends at the point; drawn over everything */
+  showForces(forces) {
+    while (6 * this.arrows.length < forces.length) {
+      const arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 1, 0), new THREE.Vector3(), 1, ARROW_COLOUR);
+      for (const {material} of [arrow.line, arrow.cone]) Object.assign(material, {depthTest: false, transparent: true});
+      arrow.line.renderOrder = arrow.cone.renderOrder = 9;
+      this.arrows.push(arrow);
+      this.scene.add(arrow);
+    }
+    this.arrows.forEach((arrow, k) => {
+      arrow.visible = 6 * k < forces.length;
+      if (!arrow.visible) return;
+      const along = new THREE.Vector3().fromArray(forces, 6 * k + 3), weights = along.length();
+      const length = this.radius * Math.min(LONGEST_ARROW, WEIGHT_LENGTH * weights);
+      arrow.setDirection(along.normalize());
+      arrow.setLength(length, Math.min(0.5 * length, 0.08 * this.radius), 0.05 * this.radius);
+      arrow.position.fromArray(forces, 6 * k).addScaledVector(along, -length);
+    });
   }
 
   removeBody(actor) {

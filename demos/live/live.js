@@ -29,6 +29,7 @@ const oneOf = (...values) => text => values.find(value => String(value) === text
 const ADDRESSED = {
   stiffness: numberFrom(10, 1000), damping: numberFrom(0.001, 0.2), gravity: numberFrom(0, 20),
   tets: oneOf(0, ...TETS), elements: oneOf('linear', 'quadratic'), skin: oneOf('linear', 'quadratic'),
+  forces: oneOf(false, true),
 };
 const PAUSE_OF_ADDRESS = 400;  // milliseconds after the last change: browsers refuse to be told often
 
@@ -299,7 +300,7 @@ class Live {
   }
 
   showSettings() {
-    const {stiffness, damping, gravity, tets, elements, skin} = this.settings, texts = {
+    const {stiffness, damping, gravity, tets, elements, skin, forces} = this.settings, texts = {
       stiffness: [Math.log10(stiffness), stiffness.toFixed(0)], damping: [Math.log10(damping), damping.toPrecision(1)],
       gravity: [gravity, gravity.toFixed(1)],
     };
@@ -308,6 +309,7 @@ class Live {
       element(id).nextElementSibling.textContent = text;
     }
     Object.entries({tets, elements, skin}).forEach(([id, value]) => element(id).value = value);
+    element('forces').checked = forces;
     element('play').classList.toggle('playing', this.playing);
     for (const button of element('tools').children) {
       button.setAttribute('aria-checked', button.dataset.tool === this.tool);
@@ -330,6 +332,7 @@ class Live {
     element('damping').oninput = () => this.set({damping: tenTo('damping')});
     element('gravity').oninput = () => this.set({gravity: Number(element('gravity').value)});
     element('skin').onchange = () => this.set({skin: element('skin').value});
+    element('forces').onchange = () => this.set({forces: element('forces').checked});
     for (const id of ['tets', 'elements']) {
       element(id).onchange = () => {
         this.settings.tets = Number(element('tets').value);
@@ -440,7 +443,8 @@ class Live {
       ' ': () => this.play(!this.playing),
       ArrowRight: () => this.step(), ArrowLeft: () => this.rewind(event.shiftKey ? 60 : 10),
       Backspace: () => this.rewind(REWOUND), Home: () => this.reset(), v: () => this.resetView(),
-      s: () => element('surface').click(), c: () => next(element('cage')), q: () => next(element('skin')),
+      s: () => element('surface').click(), a: () => element('forces').click(),
+      c: () => next(element('cage')), q: () => next(element('skin')),
       h: () => this.choose('hold'), p: () => this.hands.act('push'), b: () => this.hands.act('ball'),
       m: () => this.showPanel(element('panel').hidden), f: () => this.toggleFullScreen(),
     };

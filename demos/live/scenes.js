@@ -6,7 +6,8 @@
 
 const FRAME = 1 / 60;
 /** What the sliders say where nothing else is asked for. tets: 0, the scene's own number. */
-const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, tets: 0, elements: 'linear', skin: 'linear'};
+const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, tets: 0, elements: 'linear', skin: 'linear',
+  forces: false};
 /** Frames between two states that native_hashes.json has. */
 const COMPARED_EVERY = 30;
 

@@ -11,8 +11,13 @@ const KEEP_EVERY = 10, KEPT_FRAMES = 600, KEPT_BYTES = 64e6;
 const MOST_THROWN = 12, THROWN_MASS = 0.5;
 /** Longest side of a body that is dropped on the page. */
 const DROPPED_SIZE = 1.0;
+/** Forces are shown from here on, in a body's weights. */
+const LEAST_FORCE = 0.03;
 /** Up to so many triangles, it touches other soft bodies: to prepare 20,000 takes a second, while time stands. */
 const MOST_SOFT_TRIANGLES = 40000;
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
 /** What is drawn of a mesh in its cage, and its palettes. Shared by the bodies that have both. */
 class Model {
@@ -169,7 +174,7 @@ class Simulation {
   /** name: of SCENES; settings: {tets, stiffness, damping, gravity, skin, elements} */
   constructor(module, shelf, name, settings) {
     Object.assign(this, {module, shelf, name, settings: {...settings}});
-    this.world = module.createWorld({gravity: [0, -settings.gravity, 0], deterministic: true});
+    this.world = module.createWorld({gravity: [0, -settings.gravity, 0], deterministic: true, recordForces: true});
     this.parts = [];    // soft bodies
     this.rigids = [];   // descriptions of the scene's, in the world's order
     this.thrown = [];   // balls, after those
@@ -289,9 +294,9 @@ class Simulation {
     this.applySettings();
   }
 
-  /** But for the skin, which changes nothing that is simulated. */
+  /** But for what changes nothing that is simulated. */
   isUsual() {
-    return Object.keys(USUAL).every(name => name === 'skin' || this.settings[name] === USUAL[name]);
+    return Object.keys(USUAL).every(name => ['skin', 'forces'].includes(name) || this.settings[name] === USUAL[name]);
   }
 
   applySettings() {
@@ -397,11 +402,29 @@ class Simulation {
     const bones = performance.now() - began;
     const state = {
       frame: this.frame, first: this.kept[0].frame, hash: this.world.hash, compared: this.compared, skin, bodies,
-      poses: this.world.poses().slice(),
+      poses: this.world.poses().slice(), forces: this.settings.forces ? this.forces() : [],
       balls: this.thrown.length, held: this.held && [...this.held.spring.position], timed: this.spent !== null,
     };
     if (this.spent) this.tellTimes(this.spent, bones, performance.now() - began);
     return {...state, times: this.times, milliseconds: this.milliseconds};
+  }
+
+  /** Of each thing that a soft body touches, where its force on that body passes by the body's middle, and the force
+      in the body's weights: six numbers each. */
+  forces() {
+    const arrows = [];
+    for (const {body} of this.parts) {
+      const {nodes, nodeCount} = body, middle = [0, 0, 0], weight = 9.81 * body.mass;
+      nodes.forEach((x, i) => middle[i % 3] += x / nodeCount);
+      for (const other of [...this.world.rigidBodies, ...this.world.bodies]) {
+        if (other === body) continue;
+        const {force, torque} = this.world.forcesOn(body, other).total, square = dot(force, force);
+        if (square < (LEAST_FORCE * weight) ** 2) continue;
+        const arm = cross(force, torque);
+        arrows.push(...middle.map((x, k) => x + arm[k] / square), ...force.map(x => x / weight));
+      }
+    }
+    return Float32Array.from(arrows);
   }
 
   /** Of each of the frames that were made, by stage; what is left of a frame is scripts, snapshots and hashes. */

@@ -324,6 +324,18 @@ class Controls(WithBrowser):
         state = self.one.state()
         self.assertAlmostEqual(self.shown_times()[1], state["milliseconds"], delta=0.006, msg="nothing of the serpent's")
 
+    def test_arrows_show_forces_and_change_none(self):
+        hashes = [self.one.open("stack", forces=forces) and self.one.step(240)["hash"] for forces in (False, True)]
+        self.assertEqual(hashes[0], hashes[1])
+        arrows = self.one.page.evaluate("[...live.state.forces]")
+        top = [arrows[k + 3:k + 6] for k in range(0, len(arrows), 6) if arrows[k + 1] > 1.6]
+        self.assertEqual(len(top), 1, "one thing carries the highest cushion")
+        self.assertLess(distance(top[0], [0, 1, 0]), 0.03, "by its weight")
+        shown = "live.stage.arrows.filter(arrow => arrow.visible).length"
+        self.assertEqual(self.one.page.evaluate(shown), len(arrows) / 6)
+        self.one.page.key("a")
+        self.one.page.until(f"tetskinLive.step(0).then(() => {shown} === 0)", 10)
+
     def test_frames_per_second_are_told(self):
         self.one.call("play", True)
         self.one.page.until("/of 60<td>\\d/.test(document.getElementById('figures').innerHTML) || "
