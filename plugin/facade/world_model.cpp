@@ -23,6 +23,13 @@ btHingeConstraint* hingeOf(const JointState& state) {
   return static_cast<btHingeConstraint*>(state.joint.get());
 }
 
+/// The next step says if it is not finite.
+void showTeleported(BodyState& body) {
+  if (!body.binding) return;
+  body.skin.markTeleported();
+  (void)body.skin.update();
+}
+
 /// Also of a body without a surface to be seen, which no skin looks at. One that is asleep has been looked at.
 bool isFinite(const BodyState& body) {
   const btSoftBody& soft = body.body->body();
@@ -299,6 +306,21 @@ void World::remove(BodyState& body) {
   // The body itself is kept as long as a view of its nodes may be.
   world_->removeSoftBody(&body.body->body());
   forget(bodies_, body);
+}
+
+void World::teleport(BodyState& body, const btTransform& motion) {
+  check(alive(body).teleport(motion));
+  showTeleported(body);
+}
+
+void World::reset(BodyState& body) {
+  check(alive(body).reset());
+  showTeleported(body);
+}
+
+void World::shiftOrigin(const btVector3& origin) {
+  check(tetskin::shiftOrigin(*world_, origin));
+  for (const auto& body : bodies_) showTeleported(*body);
 }
 
 std::shared_ptr<TouchState> World::addTouch(TouchState&& touch) {

@@ -129,6 +129,11 @@ class World : public std::enable_shared_from_this<World> {
   std::shared_ptr<BodyState> addBody(const CageModel& cage, const MeshModel& mesh, const Eigen::Affine3d& placement,
                                      const BodyOptions& options);
   void remove(BodyState& body);
+  /// Puts a body elsewhere in its motion, or into the state in which it was added, with its surface.
+  void teleport(BodyState& body, const btTransform& motion);
+  void reset(BodyState& body);
+  /// What was at this point is at the world's origin then, and all else as far from it as it was.
+  void shiftOrigin(const btVector3& origin);
   std::shared_ptr<TouchState> addTouch(TouchState&& touch);
   void remove(TouchState& touch);
 

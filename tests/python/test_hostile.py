@@ -81,6 +81,8 @@ CALLS = {
     "a triangle of another vertex": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 4]]), error("INDEX_OUT_OF_RANGE")),
     "a tet of another node": (lambda t: ts.Cage(CORNERS, [[0, 1, 2, -1]]), error("INDEX_OUT_OF_RANGE")),
     "an index beyond 32 bits": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2**40]]), error("INDEX_OUT_OF_RANGE")),
+    "an index beyond 64 bits": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2**70]]), TypeError),
+    "a number of tets beyond 64 bits": (lambda t: ts.create_cage(t.m, target_tets=2**70), TypeError),
     "a node that does not exist": (lambda t: t.b.set_pinned([10**6]), IndexError),
     "a vertex that does not exist": (lambda t: t.w.point_at_vertex(t.b, 10**6), error("INDEX_OUT_OF_RANGE")),
     # meshes and files

@@ -192,6 +192,19 @@ def test_threads_take_turns(dropped):
     assert not failures and np.isfinite(body.positions).all()
 
 
+def test_what_long_work_reads_may_be_let_go_of_meanwhile(mesh):
+    expected = ts.calibrate(ts.create_cage(mesh, target_tets=50)).stiffness_factor
+    held = [ts.TriangleMesh(mesh.positions, mesh.triangles)]
+
+    def let_go(fraction):
+        held.clear()
+        gc.collect()
+        ts.TriangleMesh(mesh.positions + 1, mesh.triangles)  # takes memory that may have been freed
+
+    held[:] = [ts.create_cage(held[0], target_tets=50, progress=let_go)]
+    assert np.array_equal(ts.calibrate(held[0], progress=let_go).stiffness_factor, expected)
+
+
 def test_others_run_during_long_work(mesh):
     ticks, done = [], threading.Event()
 

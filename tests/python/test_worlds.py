@@ -551,3 +551,80 @@ def test_what_things_are_is_said(mesh, cage, tmp_path):
     for thing, said in {recorder: "closed", body: "removed", box: "removed", hinge: "removed", weld: "released"}.items():
         assert repr(thing).endswith(f": {said}>")
     assert repr(point) == "<tetskin.SurfacePoint: of a body that has been removed>"
+
+
+def four(mesh, cage):
+    world = ts.World()
+    world.add_plane()
+    places = [(4 * k, 0.8 + 0.1 * k, 0) for k in range(4)]
+    return world, [world.add_body(cage, mesh, position=place, youngs_modulus=3e4) for place in places]
+
+
+def test_one_body_of_several_goes_back_to_its_start(mesh, cage):
+    """As an environment does that ends, beside others that go on."""
+    world, bodies = four(mesh, cage)
+    plain, others = four(mesh, cage)
+    fall = []
+    for _ in range(60):
+        world.step()
+        fall.append(bodies[2].nodes.copy())
+    bodies[2].reset()
+    assert np.abs(bodies[2].nodes - cage.nodes - [8, 1, 0]).max() < 1e-6 and not bodies[2].velocities.any()
+    assert np.abs(bodies[2].positions - mesh.positions - [8, 1, 0]).max() < 1e-5 and not bodies[2].asleep
+    for before in fall:
+        world.step()
+        assert np.abs(bodies[2].nodes - before).max() < 1e-6
+    settle(plain, 120)
+    for k in (0, 1, 3):
+        assert np.array_equal(bodies[k].nodes, others[k].nodes) and np.array_equal(
+            bodies[k].positions, others[k].positions
+        )
+    bodies[2].remove()
+    with pytest.raises(ts.Error) as error:
+        bodies[2].reset()
+    assert error.value.code == ts.StatusCode.BODY_DELETED
+
+
+def test_a_reset_body_keeps_what_was_set(mesh, cage):
+    world = ts.World()
+    body = world.add_body(cage, mesh)
+    body.set_pinned([0, 1])
+    body.youngs_modulus, body.friction = 1234.0, 0.25
+    settle(world, 10)
+    body.reset()
+    assert body.pinned.sum() == 2 and body.youngs_modulus == 1234 and body.friction == 0.25
+    settle(world, 10)
+    assert np.abs(body.nodes[:2] - cage.nodes[:2]).max() < 1e-6
+
+
+def test_a_body_is_placed_in_its_motion(mesh, cage):
+    """Velocities turn along, and nothing shakes."""
+    ends = []
+    quarter = (0, np.sqrt(0.5), 0, np.sqrt(0.5))
+    for placed in (False, True):
+        world = ts.World(gravity=(0, 0, 0))
+        body = world.add_body(cage, mesh)
+        body.velocities = cage.nodes[:, [1, 0, 2]] * [1, -1, 0] + [0, 0, 1.0]
+        settle(world, 20)
+        if placed:
+            body.transform((5, 0, 0), quarter)
+        settle(world, 20)
+        ends.append(body.nodes.copy())
+    x, y, z = ends[0].T
+    assert np.abs(ends[1] - np.stack([z + 5, y, -x], -1)).max() < 1e-4
+
+
+def test_a_worlds_origin_is_shifted(mesh, cage):
+    ends = []
+    for shifted in (False, True):
+        world, body, box = scene(mesh, cage)
+        spring = world.add_spring(world.point_at_vertex(body, 0), stiffness=20)
+        settle(world, 20)
+        if shifted:
+            world.shift_origin((1024, 0, -1024))
+            assert np.abs(body.positions[:, 0].mean() + 1024) < 2
+        settle(world, 20)
+        ends.append([body.nodes - np.float32([-1024, 0, 1024]) * shifted, box.position, spring.stretch])
+    assert np.abs(ends[1][0] - ends[0][0]).max() < 2e-3
+    assert ends[1][1] - ends[0][1] == pytest.approx([-1024, 0, 1024], abs=2e-3)
+    assert ends[1][2] == pytest.approx(ends[0][2], abs=2e-3)

@@ -84,10 +84,7 @@ Column<bool> pinnedOf(const BodyHandle& body) {
 void transform(BodyHandle& body, const Vec3& position, const Quaternion& rotation) {
   const btTransform motion = toBullet(position, rotation);
   const Locked lock(*body.world);
-  alive(body).body().transform(motion);
-  if (!body.state->binding) return;
-  body.state->skin.markTeleported();
-  (void)body.state->skin.update();
+  body.world->teleport(*body.state, motion);
 }
 
 ImpulseResult radialImpulse(BodyHandle& body, const Vec3& centre, double radius, double strength) {
@@ -263,8 +260,16 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "Moves pinned nodes, a mask or indices, to positions (n, 3), world space, in the following steps: call it "
            "once per frame. On an Error nothing is moved.")
       .def("transform", transform, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
-           "Moves the whole body from where it is, at once: rotated about the world's origin (x, y, z, w), then by "
-           "position.")
+           "Moves the whole body from where it is, at once, in its motion: rotated about the world's origin (x, y, z, "
+           "w), then by position. Velocities and pinned nodes go along; what it has touched is forgotten.")
+      .def(
+          "reset",
+          [](BodyHandle& b) {
+            const Locked lock(*b.world);
+            b.world->reset(*b.state);
+          },
+          "Puts it back into the state in which it was added: where it was, at rest, with nothing remembered, so that "
+          "its steps are those of a new body. What has been set stays: pinned nodes, material, gravity, springs.")
       .def("apply_radial_impulse", radialImpulse, "centre"_a, "radius"_a, "strength"_a,
            "Pushes all of the surface in a ball away from its centre: an explosion. strength: sum of the magnitudes at "
            "all vertices.")

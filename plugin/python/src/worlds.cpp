@@ -94,6 +94,15 @@ Class<World> bindWorlds(nb::module_& module) {
            "Restores a state in place. The world has the same bodies and joints as when it was saved, made in the same "
            "order. On an Error nothing is changed.")
       .def(
+          "shift_origin",
+          [](const std::shared_ptr<World>& w, const Vec3& origin) {
+            const Locked lock(*w);
+            w->shiftOrigin(toBullet(origin, "origin"));
+          },
+          "origin"_a,
+          "Makes a point the origin: it is subtracted from all positions in the world, which goes on as before. For "
+          "worlds that are large beside the digits of a float; best by multiples of 1,024.")
+      .def(
           "__reduce__",
           [](const std::shared_ptr<World>&) -> nb::tuple {
             throw nb::type_error(

@@ -12,8 +12,8 @@
 namespace tetskin {
 
 /// A fixed number of threads: for applications that have no scheduler of their own. They sleep until there is work;
-/// after a `run` they look for the next one for some microseconds, in which a step of a body makes it. In a process that
-/// was forked while no `run` was in progress, a pool has the calling thread alone, for the same results.
+/// after a `run` they look for the next one for some microseconds, in which a step of a body makes it. In a process
+/// that was forked while no `run` was in progress, a pool has the calling thread alone, for the same results.
 ///
 ///     ThreadPool pool;                 // as many threads as the machine has
 ///     options.threads = &pool;         // of a skin; the pool outlives it

@@ -7,6 +7,7 @@
 namespace tetskin {
 namespace {
 
+/// Often enough for whoever waits.
 constexpr std::chrono::milliseconds kAskedEach{200};
 /// Reading the clock takes as long as so many calls.
 constexpr unsigned kCallsPerClock = 32;
