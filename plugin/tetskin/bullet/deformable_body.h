@@ -51,9 +51,9 @@ class TETSKIN_BULLET_API DeformableBody {
   DeformableBody& operator=(const DeformableBody&) = delete;
 
   /// Takes the body out of its world, in which it costs nothing any more, until `addToWorld`. Its nodes, velocities,
-  /// material, gravity and pins stay, and so do skins, its SurfaceContact, its place in SoftContacts, springs and welds,
-  /// whose status is NotInWorld meanwhile. Pushes of several steps are dropped. Nothing happens to a body that is not in
-  /// its world. A snapshot of the world with the body is refused as long as it is out.
+  /// material, gravity and pins stay, and so do skins, its SurfaceContact, its place in SoftContacts, springs and
+  /// welds, whose status is NotInWorld meanwhile. Pushes of several steps are dropped. Nothing happens to a body that
+  /// is not in its world. A snapshot of the world with the body is refused as long as it is out.
   void removeFromWorld();
   /// Puts it back, into the world that it was in or another one, where it continues; it wakes. What SoftContacts,
   /// springs and welds have of it acts in the world in which they were created, once the body is there again. Also for

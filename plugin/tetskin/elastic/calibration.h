@@ -65,8 +65,8 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
 ///
 /// All tets get one factor, unless factors by region, made for the one kind of loads, predict the other kind clearly
 /// better; then each tet has its own, which varies slowly over the body. Cages may have quadratic tets among linear
-/// ones: those that are full keep the factor 1, and the eight tets of any other have the same factor. Errors from regions that are fused in the cage appear
-/// in no refinement, and no factor corrects them.
+/// ones: those that are full keep the factor 1, and the eight tets of any other have the same factor. Errors from
+/// regions that are fused in the cage appear in no refinement, and no factor corrects them.
 ///
 /// cage     valid (see `validate`), without flat tets; rest space, any unit and size; its stiffness factors are
 ///          replaced

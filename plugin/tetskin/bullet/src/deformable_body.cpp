@@ -283,8 +283,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   return made;
 }
 
-/// Adds the body, unless it is there, and its forces to the world. What may run out of memory comes first: from then on,
-/// nothing throws.
+/// Adds the body, unless it is there, and its forces to the world. What may run out of memory comes first: from then
+/// on, nothing throws.
 void DeformableBody::Impl::enter() {
   assert(elasticity);
   btDispatcher& dispatcher = *world->getDispatcher();

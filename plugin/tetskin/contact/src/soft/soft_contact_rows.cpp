@@ -85,8 +85,7 @@ ContactBody* SoftContactRows::find(const btSoftBody& body) const {
 
 bool SoftContactRows::isGone(const btSoftBody& body) const {
   const auto isIt = [&](const auto& gone) { return gone->body == &body; };
-  return std::find(gone_.begin(), gone_.end(), &body) != gone_.end() ||
-         std::any_of(away_.begin(), away_.end(), isIt);
+  return std::find(gone_.begin(), gone_.end(), &body) != gone_.end() || std::any_of(away_.begin(), away_.end(), isIt);
 }
 
 bool SoftContactRows::isWithin(const ContactBody& body) const {

@@ -93,7 +93,8 @@ void SurfaceJointRows::visitState(WorldStream& stream) {
 }
 
 void SurfaceJointRows::checkState(WorldStream& stream) {
-  const auto count = std::count_if(active_.begin(), active_.end(), [](const auto& joint) { return joint->isInWorld(); });
+  const auto count =
+      std::count_if(active_.begin(), active_.end(), [](const auto& joint) { return joint->isInWorld(); });
   stream.same(count, "other springs or welds");
   for (const auto& joint : active_) {
     if (joint->isInWorld() && !stream.failed()) joint->checkState(stream);
