@@ -194,6 +194,7 @@ void DeformableSolver::applyTransforms(btScalar dt) {
 void DeformableSolver::Impl::endStep(const btAlignedObjectArray<btSoftBody*>& world) {
   hidden.show(world);
   rigids.paths().endStep();
+  if (rigidForces) rigidForces->end();
   inStep = false;
 }
 
