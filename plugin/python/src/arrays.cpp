@@ -78,8 +78,17 @@ Numbers<Number>::Numbers(const ArrayLike& array, const char* name, int columns) 
   }
   rows_ = static_cast<std::size_t>(buffer_.shape[0]);
   if (!areThese<Number>(buffer_)) {
+    // Kept, as looking them up would take longer than what they do. Looking may let go of the GIL, and so of the lock
+    // of a constant, for which others would wait with the GIL.
+    static PyObject *convert = nullptr, *type = nullptr;
+    if (!type) convert = numpy("ascontiguousarray").release().ptr();
+    if (!type) type = numpy(kReal ? "float64" : "int64").release().ptr();
     PyBuffer_Release(&buffer_);
-    getBuffer(numpy("array")(given, kReal ? "float64" : "int64", "order"_a = "C"), buffer_, name);
+    getBuffer(nb::handle(convert)(given, nb::handle(type)), buffer_, name);
+  }
+  if (!areThese<Number>(buffer_)) {  // not aligned
+    PyBuffer_Release(&buffer_);
+    getBuffer(numpy("array")(given), buffer_, name);
   }
   data_ = static_cast<const Number*>(buffer_.buf);
 }
