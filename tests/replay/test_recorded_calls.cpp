@@ -70,6 +70,11 @@ TEST(RecordedCalls, OfBulletsSoftBody) {
           {"setMass 0", [](CallScene& s, int k) { s.softBall().setMass(6, btScalar(k == 0 ? 0 : 9)); }},
           {"setTotalMass", [](CallScene& s, int) { s.softBall().setTotalMass(500); }},
           {"setTotalDensity", [](CallScene& s, int) { s.softBall().setTotalDensity(700); }},
+          {"setSelfCollision", [](CallScene& s, int) { s.softBall().setSelfCollision(true); }, Kind::Unseen},
+          {"setWindVelocity", [](CallScene& s, int) { s.softBall().setWindVelocity(kAside); }, Kind::Unseen},
+          {"collisions", [](CallScene& s, int) { s.softBall().m_cfg.collisions |= btSoftBody::fCollision::SDF_RDF; },
+           Kind::Unseen},
+          {"generateClusters", [](CallScene& s, int) { s.softBall().generateClusters(2); }, Kind::Refused},
           {"kDF", [](CallScene& s, int) { s.softBall().m_cfg.kDF = btScalar(0.1); }},
           {"drag", [](CallScene& s, int) { s.softBall().m_cfg.drag = btScalar(0.05); }},
           {"setGravityFactor", [](CallScene& s, int) { s.softBall().setGravityFactor(btScalar(0.5)); }},
@@ -405,6 +410,15 @@ TEST(RecordedCalls, OfTheWorld) {
           {"applyGravity", [=](CallScene& s, int) { s.world.applyGravity(), s.box->activate(), push(s); }},
           {"setDeterministic", [=](CallScene& s, int) { s.world.deformableSolver().setDeterministic(true), push(s); },
            Kind::Structure},
+          {"ForceRecord, added and destroyed",
+           [=](CallScene& s, int k) {
+             k == 0 ? void(s.record = ForceRecord::add(s.world).value()) : s.record.reset();
+             push(s);
+           }},
+          {"setSynchronizeAllMotionStates",
+           [=](CallScene& s, int) { s.world.setSynchronizeAllMotionStates(true), push(s); }},
+          {"m_deformable_erp",
+           [=](CallScene& s, int) { s.world.getSolverInfo().m_deformable_erp = btScalar(0.5), push(s); }},
           {"setNodeNormals", [=](CallScene& s, int) { s.world.deformableSolver().setNodeNormals(false), push(s); }},
           {"setRandSeed",
            [=](CallScene& s, int) {
@@ -467,6 +481,12 @@ TEST(RecordedCalls, OfMultibodiesAndAnchors) {
            [](CallScene& s, int k) {
              s.arm->wakeUp();
              if (k == 0) s.world.removeMultiBodyConstraint(s.motor);
+           },
+           Kind::Structure},
+          {"anchor, added",
+           [](CallScene& s, int k) {
+             s.second->body().activate();
+             if (k == 0) s.second->body().appendDeformableAnchor(5, s.spare);
            },
            Kind::Structure},
           {"anchor's object, moved",

@@ -23,6 +23,9 @@ class WorldStream : public StateStream {
       : StateStream(arguments...), world_(world) {}
 
   btDeformableMultiBodyDynamicsWorld& world() const { return world_; }
+  /// Whether force records are written, which tell of steps, and change none.
+  bool withRecords() const { return withRecords_; }
+  void leaveOutRecords() { withRecords_ = false; }
 
   using StateStream::operator();
   /// The first three numbers: the fourth is not always set.
@@ -126,6 +129,7 @@ class WorldStream : public StateStream {
   }
 
   btDeformableMultiBodyDynamicsWorld& world_;
+  bool withRecords_ = true;
   std::string refusal_;
   int last_ = 0;  ///< index found last
 };

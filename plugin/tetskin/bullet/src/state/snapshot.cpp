@@ -97,10 +97,7 @@ Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) 
   return {};
 }
 
-}  // namespace
-
-Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t size) {
-  auto& saved = const_cast<World&>(world);  // NOLINT: Bullet has no const accessors
+Result<std::size_t> save(World& saved, void* buffer, std::size_t size, bool withRecords) {
   DeformableSolver* solver = deformableSolverOf(saved);
   if (!solver) return refusal("a snapshot", {kUseDeformableSolver});
   if (Status status = checkIsSaved(saved, *solver); !status.ok()) return status;
@@ -108,6 +105,7 @@ Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t s
   auto* bytes = static_cast<unsigned char*>(buffer);
   const std::size_t room = size > begin ? size - begin : 0;
   WorldStream stream = bytes ? WorldStream(saved, bytes + (room > 0 ? begin : 0), room) : WorldStream(saved);
+  if (!withRecords) stream.leaveOutRecords();
   Header header;
   WorldDirectory(saved).visit(stream);
   checkForces(stream, *solver);
@@ -129,6 +127,12 @@ Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t s
   header.hash = snapshotHash(bytes + kHashedFrom, needed - kHashedFrom);
   std::memcpy(bytes + kHashAt, &header.hash, sizeof header.hash);
   return needed;
+}
+
+}  // namespace
+
+Result<std::size_t> saveSnapshot(const World& world, void* buffer, std::size_t size) {
+  return save(const_cast<World&>(world), buffer, size, true);  // NOLINT: Bullet has no const accessors
 }
 
 Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
@@ -171,13 +175,13 @@ Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
 namespace bullet_detail {
 
 Status saveInto(World& world, std::vector<unsigned char>& snapshot) {
-  Result<std::size_t> size = saveSnapshot(world, snapshot.data(), snapshot.size());
+  Result<std::size_t> size = save(world, snapshot.data(), snapshot.size(), false);
   if (!size.ok() && size.status().code != StatusCode::SizeMismatch) return size.status();
   if (size.ok() && snapshot.size() == size.value()) return {};
-  size = saveSnapshot(world, nullptr, 0);
+  size = save(world, nullptr, 0, false);
   if (!size.ok()) return size.status();
   snapshot.resize(size.value());
-  return saveSnapshot(world, snapshot.data(), snapshot.size()).status();
+  return save(world, snapshot.data(), snapshot.size(), false).status();
 }
 
 bool areOfOneWorld(const std::vector<unsigned char>& a, const std::vector<unsigned char>& b) {

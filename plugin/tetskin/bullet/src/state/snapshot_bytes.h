@@ -11,7 +11,8 @@
 
 namespace tetskin::bullet_detail {
 
-/// Saves a snapshot, and keeps the vector's memory. Errors: those of `saveSnapshot`.
+/// Saves a snapshot, without force records, which may be there or not where a run is played; keeps the vector's memory.
+/// Errors: those of `saveSnapshot`.
 Status saveInto(btDeformableMultiBodyDynamicsWorld& world, std::vector<unsigned char>& snapshot);
 
 /// True if both snapshots are of the same bodies, objects and joints: one may be restored where the other was saved.

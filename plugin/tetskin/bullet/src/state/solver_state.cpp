@@ -109,7 +109,7 @@ void visitForces(WorldStream& stream, DeformableSolver& solver) {
 /// A record that is there now but was not there then begins anew; one that was there then is left out.
 void visitRecord(WorldStream& stream, const std::weak_ptr<RecordedForces>& inSolver) {
   const std::shared_ptr<RecordedForces> recorded = inSolver.lock();
-  bool wasThere = recorded != nullptr;
+  bool wasThere = recorded != nullptr && stream.withRecords();
   stream(wasThere);
   if (wasThere) {
     RecordedForces unused(stream.world());
