@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Scenes that users of other engines report as faults, each with the number that is right.
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/elastic/elastic_body.h>
 
 #include <algorithm>
@@ -133,18 +135,22 @@ TEST(ReportedScenes, ABeamSwingsTheSameWhileItsTimeStepIsSwitched) {
 struct Wheel {
   static constexpr double kInner = 0.2, kOuter = 0.3;
 
-  explicit Wheel(double modulus = 5e6) {
+  /// anchored  or held by its contact with a hub that is too large for it
+  explicit Wheel(double modulus = 5e6, bool anchored = true) {
     const TetMesh cage = ring();
     SoftBodyOptions options;
     options.youngsModulus = modulus;
     options.density = 1000;
     options.stiffnessDamping = 0.002;
+    options.margin = 0.014;  // of contact, 4 mm beyond the hub's own radius
+    options.friction = 1;
     tyre = bodyIn(world, cage, options);
     hub.body->setActivationState(DISABLE_DEACTIVATION);
+    hub.body->setFriction(1);
     btSoftBody& soft = tyre->body();
     for (int n = 0; n < soft.m_nodes.size(); ++n) {
       radii.push_back((cage.nodes[static_cast<std::size_t>(n)] - Vector3(0, 5, 0)).head<2>().norm());
-      if (radii.back() < kInner + 1e-6) soft.appendDeformableAnchor(n, hub.body.get());
+      if (anchored && radii.back() < kInner + 1e-6) soft.appendDeformableAnchor(n, hub.body.get());
     }
   }
   static TetMesh ring() {
@@ -239,6 +245,65 @@ TEST(ReportedScenes, AWheelKeepsItsSpin) {
     EXPECT_NEAR(wheel.rate(), of.rate, 0.05 * of.rate) << of.modulus << " Pa, " << of.rate;
     EXPECT_LT(std::abs(wheel.growth()), 1e-3);
   }
+}
+
+/// The hub is a multibody's link, the points of which move on arcs as well.
+TEST(ReportedScenes, AWheelAroundALinkOfAMultibodyDoesNotSwell) {
+  Weightless world;
+  btCylinderShapeZ shape(btVector3(btScalar(0.19), btScalar(0.19), btScalar(0.05)));
+  btVector3 inertia;
+  shape.calculateLocalInertia(10, inertia);
+  btMultiBody axle(1, 0, btVector3(0, 0, 0), true, false);
+  axle.setBasePos(btVector3(0, 5, 0));
+  axle.setupRevolute(0, 10, inertia, -1, btQuaternion::getIdentity(), btVector3(0, 0, 1), btVector3(0, 0, 0),
+                     btVector3(0, 0, 0), true);
+  axle.setLinearDamping(0);
+  axle.setAngularDamping(0);
+  axle.finalizeMultiDof();
+  axle.setJointVel(0, 60);
+  btMultiBodyLinkCollider hub(&axle, 0);
+  hub.setCollisionShape(&shape);
+  hub.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 5, 0)));
+  axle.getLink(0).m_collider = &hub;
+  world.deformable().addMultiBody(&axle);
+  world.deformable().addCollisionObject(&hub);
+  SoftBodyOptions options;
+  options.youngsModulus = 5e6;
+  options.density = 1000;
+  options.stiffnessDamping = 0.002;
+  const TetMesh cage = Wheel::ring();
+  const auto tyre = bodyIn(world, cage, options);
+  btSoftBody& soft = tyre->body();
+  const btVector3 centre(0, 5, 0);
+  for (int n = 0; n < soft.m_nodes.size(); ++n) {
+    btSoftBody::Node& node = soft.m_nodes[n];
+    node.m_v = node.m_vn = btVector3(0, 0, 60).cross(node.m_x - centre);
+    if ((cage.nodes[static_cast<std::size_t>(n)] - toEigen(centre)).head<2>().norm() < Wheel::kInner + 1e-6) {
+      soft.appendDeformableAnchor(n, &hub);
+    }
+  }
+  step(world, 30);
+  double grown = 0;
+  for (int n = 0; n < soft.m_nodes.size(); ++n) {
+    const double before = (cage.nodes[static_cast<std::size_t>(n)] - toEigen(centre)).head<2>().norm();
+    grown = std::max(grown, (toEigen(soft.m_nodes[n].m_x - centre)).head<2>().norm() - before);
+  }
+  EXPECT_GT(grown, 0.66e-3);
+  EXPECT_LT(grown, 0.95e-3);
+  EXPECT_NEAR(axle.getJointVel(0), 60, 1);
+  world.deformable().removeCollisionObject(&hub);
+  world.deformable().removeMultiBody(&axle);
+}
+
+/// A ring that is stretched around a hub, and held by friction alone.
+TEST(ReportedScenes, ARingSqueezedOnAHubKeepsTheSpinOfBoth) {
+  Wheel ring(5e6, false);
+  ring.frames(60, 4);
+  ring.spin(30);
+  const double before = ring.momentum();
+  ring.frames(30, 4);
+  EXPECT_NEAR(ring.momentum(), before, 1e-4 * before);
+  EXPECT_NEAR(ring.rate(), 30, 1.5);
 }
 
 /// A ball of flesh on a core that is led: 0.2 m of 5 kPa, damped by 0.01 s.
