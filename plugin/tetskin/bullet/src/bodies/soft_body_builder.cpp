@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <numeric>
@@ -111,13 +112,15 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   }
 }
 
-/// Rejects a cage so far from the origin that its tets have another shape in the precision of positions.
-Status checkPlace(const TetMesh& cage, const std::vector<btVector3>& nodes) {
-  constexpr double kLeft = 0.5;  // of a volume
+/// Rejects a cage so far from the origin that in the precision of positions its tets have no volume, or, where Bullet's
+/// forces read their shapes there, another one.
+Status checkPlace(const TetMesh& cage, const std::vector<btVector3>& nodes, ForceModel model) {
+  const double left = model == ForceModel::Corotated ? 0.0 : 0.5;  // of a volume
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
     TetCorners rounded;
     for (std::size_t k = 0; k < 4; ++k) rounded[k] = toEigen(nodes[static_cast<std::size_t>(cage.tets[t][k])]);
-    if (signedVolume(rounded) > kLeft * signedVolume(cornersOf(cage, cage.tets[t]))) continue;
+    const double volume = signedVolume(cornersOf(cage, cage.tets[t])), found = signedVolume(rounded);
+    if ((model == ForceModel::Corotated ? std::abs(found) : found) > left * volume) continue;
     char text[200];
     std::snprintf(text, sizeof text,
                   "tet %zu is flat or inside out when positions %.3g from the origin are rounded to Bullet's numbers: "
@@ -230,8 +233,8 @@ Result<BuiltBody> bullet_detail::buildBody(const Cage& cage, btSoftBodyWorldInfo
   std::vector<btVector3> nodes(positive.nodeCount());
   std::transform(positive.nodes.begin(), positive.nodes.end(), nodes.begin(), toBullet);
   std::vector<double> masses = massesOf(positive, options);
-  for (const Status& status :
-       {checkPlace(positive, nodes), checkMass(std::accumulate(masses.begin(), masses.end(), 0.0))}) {
+  for (const Status& status : {checkPlace(positive, nodes, options.forceModel),
+                               checkMass(std::accumulate(masses.begin(), masses.end(), 0.0))}) {
     if (!status.ok()) return status;
   }
   auto body = std::make_unique<BodyWithTrees>(worldInfo, nodes);
