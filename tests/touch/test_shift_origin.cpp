@@ -206,6 +206,20 @@ TEST(ShiftOrigin, LeavesSleepersAsleep) {
   }
 }
 
+TEST(ShiftOrigin, IsUndoneByASnapshot) {
+  Crowd crowd(8);
+  for (int frame = 0; frame < 10; ++frame) crowd.frame();
+  std::vector<unsigned char> saved(saveSnapshot(crowd.world.deformable(), nullptr, 0).value());
+  ASSERT_TRUE(saveSnapshot(crowd.world.deformable(), saved.data(), saved.size()).ok());
+  for (int frame = 0; frame < 10; ++frame) crowd.frame();
+  const std::vector<Vector3> expected = crowd.positions(0);
+  ASSERT_TRUE(shiftOrigin(crowd.world.deformable(), btVector3(1, -2, 512)).ok());
+  for (int frame = 0; frame < 10; ++frame) crowd.frame();
+  ASSERT_TRUE(restoreSnapshot(crowd.world.deformable(), saved.data(), saved.size()).ok());
+  for (int frame = 0; frame < 10; ++frame) crowd.frame();
+  EXPECT_EQ(farthest(crowd.positions(0), expected), 0);
+}
+
 TEST(ShiftOrigin, RefusesWhatIsNotFinite) {
   Crowd crowd(0);
   const std::vector<Vector3> before = crowd.positions(0);
