@@ -115,6 +115,42 @@ TEST(TouchLifetime, BodiesMayGoBeforeTheirSpringsAndWelds) {
   for (int s = 0; s < 3; ++s) substep(*world);
 }
 
+TEST(TouchLifetime, ARigidBodyAtTheAddressOfOneThatWasWeldedIsFree) {
+  auto world = deformableWorld(10);
+  TouchedBody body(*world);
+  const SurfacePoint point = body.vertex(body.furthest(-Vector3d::UnitY()));
+  btSphereShape shape(btScalar(0.1));
+  alignas(btRigidBody) unsigned char memory[sizeof(btRigidBody)];
+  const auto place = [&](const btVector3& at) {
+    btVector3 inertia;
+    shape.calculateLocalInertia(btScalar(0.5), inertia);
+    auto* sphere = new (memory) btRigidBody(btScalar(0.5), nullptr, &shape, inertia);
+    sphere->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+    world->deformable().addRigidBody(sphere);
+    return sphere;
+  };
+  const auto remove = [&](btRigidBody* sphere) {
+    world->deformable().removeRigidBody(sphere);
+    sphere->~btRigidBody();
+  };
+  btRigidBody* sphere = place(*point.position() - btVector3(0, btScalar(0.1), 0));
+  auto weld = SurfaceWeld::add(world->deformable(), point, *sphere).value();
+  for (int s = 0; s < 20; ++s) substep(*world);
+  std::vector<unsigned char> snapshot(saveSnapshot(world->deformable(), nullptr, 0).value());
+  ASSERT_TRUE(saveSnapshot(world->deformable(), snapshot.data(), snapshot.size()).ok());
+  weld.reset();
+  remove(sphere);
+  sphere = place(btVector3(9, 6, 0));
+  const Status refused = restoreSnapshot(world->deformable(), snapshot.data(), snapshot.size());
+  EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
+  constexpr int kSteps = 60;
+  for (int s = 0; s < kSteps; ++s) substep(*world);
+  const btScalar fall = btScalar(10) / (240 * 240) * kSteps * (kSteps + 1) / 2;
+  EXPECT_LT((sphere->getWorldTransform().getOrigin() - btVector3(9, 6 - fall, 0)).length(), btScalar(1e-4));
+  EXPECT_TRUE(isFinite(body.body()));
+  remove(sphere);
+}
+
 TEST(TouchLifetime, WorldsMayGoWithForcesPending) {
   auto world = deformableWorld(10);
   auto body = std::make_unique<TouchedBody>(*world);
