@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
+#include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/recorder.h>
 
 #include <btBulletDynamicsCommon.h>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <random>
 
+#include "replay/replay_models.h"
 #include "replay/replay_scenes.h"
 
 namespace tetskin::test {
@@ -114,6 +116,47 @@ TEST(Replay, NamesTheFirstStepThatDiffersAndTheObject) {
   EXPECT_EQ(replay->report().steps, 18u);
   const std::string name = "object " + std::to_string(push.body->getWorldArrayIndex()) + " of the world, a rigid body";
   EXPECT_EQ(replay->report().object, name);
+}
+
+/// A bar that is led at one end, by a millimetre in each frame from the tenth on.
+struct LedBar {
+  LedBar() {
+    SoftBodyOptions options;
+    options.youngsModulus = 1e6;
+    options.pinned = [](const Eigen::Vector3d& p) { return p.x() < -0.7; };
+    bar = DeformableBody::add(world, barModel(6, 1, 0.25).cage, options).value();
+  }
+  void act(int frame) {
+    for (int n = 0; n < bar->body().m_nodes.size() && frame >= 10; ++n) {
+      if (!bar->isPinned(n)) continue;
+      // Bullet's velocity of the node is 0 from here on, which the bodies' dynamics did not find out in a snapshot.
+      if (frame % 7 == 0) (void)bar->setPinned(n);
+      const btVector3 up(0, btScalar(0.001), 0);
+      EXPECT_TRUE(bar->setPinnedPosition(n, bar->body().m_nodes[n].m_x + up).ok());
+    }
+  }
+  DeformableWorld world;
+  std::unique_ptr<DeformableBody> bar;
+};
+
+TEST(Replay, OfNodesThatAreLedAndPinnedAgainIsTheSameToTheLastBit) {
+  const TemporaryFile file("led");
+  std::vector<std::uint64_t> hashes;
+  {
+    LedBar scene;
+    const auto recorder = Recorder::start(scene.world, file.path).value();
+    for (int frame = 0; frame < 40; ++frame) {
+      scene.act(frame);
+      recorder->step(kFrame, 4, kFrame / 4);
+      hashes.push_back(stateHash(scene.world));
+    }
+  }
+  LedBar scene;
+  const auto replay = Replay::open(scene.world, file.path).value();
+  for (const std::uint64_t hash : hashes) {
+    ASSERT_TRUE(replay->step()) << replay->status().message << replay->report().object;
+    ASSERT_EQ(stateHash(scene.world), hash) << replay->report().steps;
+  }
 }
 
 /// A motion state of the application, which moves when it is asked, and may not be told.

@@ -205,11 +205,17 @@ void ForcedBody::visitState(WorldStream& stream) {
       continues &= !(node.m_im > 0) || dynamics->continues(at, node.m_x, node.m_vn);
     }
   }
-  dynamics->visitState(stream, outdated, continues);
-  if (!stream.restoring() || !dynamics->remembers()) return;
+  if (!dynamics->visitState(stream, outdated, continues)) return;
   for (int n = 0; n < body->m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body->m_nodes[n];
-    dynamics->arrive(static_cast<std::size_t>(n), node.m_vn);
+    const auto at = static_cast<std::size_t>(n);
+    btVector3 reached = node.m_vn;
+    if (node.m_im == 0) {
+      // The application may have stopped it since, or led it on.
+      if (stream.saving()) dynamics->reached(at, reached.m_floats);
+      stream(reached);
+    }
+    if (stream.restoring()) dynamics->arrive(at, reached);
   }
 }
 

@@ -180,12 +180,12 @@ void BodyDynamics<S>::beginForces(double seconds) {
 
 template <class S>
 bool BodyDynamics<S>::continues(std::size_t node, const S* point, const S* velocity) const {
-  const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
+  S last[3];
+  reached(node, last);
   for (std::size_t k = 0; k < 3; ++k) {
-    const S reached = velocities_[4 * slot + k] + matrix_.solution()[wide + k * kGroup];
-    if (!(std::abs(length_ * (velocity[k] - reached)) <= near_)) return false;
+    if (!(std::abs(length_ * (velocity[k] - last[k])) <= near_)) return false;
   }
-  return places_.isAt(slot, point, near_);
+  return places_.isAt(matrix_.slotOf(node), point, near_);
 }
 
 /// A deviation from rigid motion does not last for a step of a stiff body, so that there is nothing to remember.
@@ -716,7 +716,7 @@ void BodyDynamics<S>::carry(bool turns, const std::array<double, 9>& turn, const
 
 /// Of the steps before, only what the next one would not forget.
 template <class S>
-void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues) {
+bool BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues) {
   bool deterministic = deterministic_;
   stream(deterministic);
   setDeterministic(deterministic);  // a step that found it changed would make the matrix anew
@@ -746,10 +746,19 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
     remembered_ = known;
     history_.forget();
   }
-  if (!known) return;
+  if (!known) return false;
   stream(length_);
   stream(near_);
   history_.visitState(stream, matrix_);
+  return true;
+}
+
+template <class S>
+void BodyDynamics<S>::reached(std::size_t node, S* velocity) const {
+  const std::size_t slot = matrix_.slotOf(node), wide = matrix_.wideOfSlot(slot);
+  for (std::size_t k = 0; k < 3; ++k) {
+    velocity[k] = velocities_[4 * slot + k] + matrix_.solution()[wide + k * kGroup];
+  }
 }
 
 template <class S>

@@ -210,8 +210,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// snapshot when it is read. The matrix is assembled only if it is not the same.
   /// outdated   while saving: the masses of the nodes are no longer those of the matrix
   /// continues  while saving: true for all nodes, see `continues`
-  void visitState(StateStream& stream, bool outdated, bool continues);
-  /// Call it for each node after reading: the last step has brought it to this velocity.
+  /// Returns    true if the last step is remembered
+  bool visitState(StateStream& stream, bool outdated, bool continues);
+  /// The velocity to which the last step has brought a node; call the second function for each node after reading.
+  void reached(std::size_t node, S* velocity) const;
   void arrive(std::size_t node, const S* velocity);
 
  private:
