@@ -377,6 +377,8 @@ export interface World extends Thing {
   save(into?: Uint8Array): Uint8Array;
   /** Takes a state back. The world has the bodies and springs that it had then, made in the same order. */
   restore(snapshot: Uint8Array): void;
+  /** Makes a point the origin: the world goes on as before, nearer to where floats have more digits. */
+  shiftOrigin(origin: Vector): void;
   /** 16 hexadecimal digits of the positions and velocities of all nodes and rigid bodies, to the last bit. */
   readonly hash: string;
 }
@@ -476,8 +478,13 @@ export interface Body extends Thing {
   readonly pinned: Uint8Array;
   /** Moves pinned nodes to n x 3 positions, world space, in the next step: once per frame. */
   setPinnedPositions(nodes: Numbers, positions: Numbers): void;
-  /** Moves the whole body at once: rotated about the world's origin, then by position. */
+  /**
+   * Puts the body elsewhere in its motion: rotated about the world's origin, then by position. Velocities, pins and
+   * vibrations go along, and nothing on the way is met.
+   */
   transform(position: Vector, rotation?: Quaternion): void;
+  /** Puts the body back to where it was added, at rest; what has been set stays. Its steps are then those of a new body. */
+  reset(): void;
   /**
    * Pushes the surface in a ball away from its centre.
    * @param strength  sum of the magnitudes at all vertices: mass times velocity

@@ -168,6 +168,25 @@ test("impulses push", () => {
   assert.ok(body.bounds[1] > 10);
 });
 
+test("a body goes back to its start, elsewhere in its motion, and along with its world", () => {
+  const {world, body} = drop(), start = body.nodes.slice();
+  const afterSteps = () => (steps(world, 20), body.nodes.slice());
+  const first = afterSteps();
+  body.reset();
+  assert.deepEqual(body.nodes, start);
+  assert.deepEqual(afterSteps(), first);
+  world.gravity = [0, 0, 0];
+  body.velocities = new Float32Array(3 * body.nodeCount).map((_, k) => (k % 3 === 0 ? 2 : 0));
+  body.transform([0, 50, 0], [0, 0, Math.SQRT1_2, Math.SQRT1_2]);
+  for (let n = 0; n < body.nodeCount; ++n) {
+    assert.ok(Math.abs(body.velocities[3 * n + 1] - 2) < 1e-4, "velocities turn along");
+  }
+  const before = body.nodes.slice();
+  world.shiftOrigin([4, 2, -8]);
+  before.forEach((x, k) => assert.ok(Math.abs(body.nodes[k] + [4, 2, -8][k % 3] - x) < 1e-5));
+  assert.throws(() => world.shiftOrigin([1, 2]), {code: "InvalidArgument"});
+});
+
 test("forces on bodies and on what they touch are told by cause", () => {
   const world = tetskin.createWorld({recordForces: true}), ground = world.addBox([5, 0.5, 5], {position: [0, -0.5, 0]});
   const body = world.addBody(cage, mesh, {position: [0, 0.35, 0]}), ball = world.addSphere(0.1, {position: [0, 9, 0]});

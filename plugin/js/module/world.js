@@ -130,6 +130,9 @@ class World extends Thing {
   restore(snapshot) {
     this.withBytes(bytesOf(snapshot, "snapshot"), (at, count) => this.core.restore(own(this), at, count));
   }
+  shiftOrigin(origin) {
+    this.core.shiftOrigin(own(this), vectorOf(origin, "origin"));
+  }
   get hash() {
     return this.core.hash(own(this));
   }
@@ -347,6 +350,9 @@ class Body extends Member {
   }
   transform(position, rotation = [0, 0, 0, 1]) {
     this.core.transform(own(this), vectorOf(position, "position"), vectorOf(rotation, "rotation", 4));
+  }
+  reset() {
+    this.core.resetBody(own(this));
   }
   applyRadialImpulse(centre, radius, strength) {
     return this.core.applyRadialImpulse(own(this), vectorOf(centre, "centre"), numberOf(radius, "radius"),

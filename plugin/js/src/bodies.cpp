@@ -208,11 +208,10 @@ void followWorldGravity(BodyHandle& body) {
   alive(*body.state).followWorldGravity();
 }
 void transform(BodyHandle& body, Vec3 position, Quaternion rotation) {
-  const btTransform motion = toBullet(position, rotation);
-  alive(*body.state).body().transform(motion);
-  if (!body.state->binding) return;
-  body.state->skin.markTeleported();
-  (void)body.state->skin.update();
+  body.world->teleport(*body.state, toBullet(position, rotation));
+}
+void reset(BodyHandle& body) {
+  body.world->reset(*body.state);
 }
 double applyRadialImpulse(BodyHandle& body, Vec3 centre, double radius, double strength) {
   finite({radius, strength, 0}, "radius, strength");
@@ -272,6 +271,7 @@ EMSCRIPTEN_BINDINGS(bodies) {
   expose<&setFriction>("setBodyFriction");
   expose<&setGravity>("setBodyGravity");
   expose<&followWorldGravity>("followWorldGravity");
+  expose<&reset>("resetBody");
   expose<&transform>("transform");
   expose<&applyRadialImpulse>("applyRadialImpulse");
 }

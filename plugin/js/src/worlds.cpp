@@ -93,6 +93,9 @@ View save(WorldHandle& handle) {
 void restore(WorldHandle& handle, std::uintptr_t bytes, std::size_t count) {
   handle.world->restore(reinterpret_cast<const void*>(bytes), count);
 }
+void shiftOrigin(WorldHandle& handle, Vec3 origin) {
+  handle.world->shiftOrigin(toBullet(origin, "origin"));
+}
 std::string hashOfState(WorldHandle& handle) {
   char text[20];
   std::snprintf(text, sizeof text, "%016llx",
@@ -124,6 +127,7 @@ EMSCRIPTEN_BINDINGS(worlds) {
   expose<&snapshotSize>("snapshotSize");
   expose<&save>("save");
   expose<&restore>("restore");
+  expose<&shiftOrigin>("shiftOrigin");
   expose<&hashOfState>("hash");
 }
 
