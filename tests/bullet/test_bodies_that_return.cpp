@@ -148,6 +148,23 @@ TEST(BodiesThatReturn, AlsoIfTheApplicationHasMovedThemByBulletsCalls) {
   EXPECT_NEAR(lowest(body->body()), 3 - 0.05 * 1, 0.01);
 }
 
+TEST(BodiesThatReturn, WakeWhatLayOnThem) {
+  TetskinWorld world;
+  const auto body = added(world, smallCageAbove(0.05));
+  btBoxShape shape(btVector3(1, 1, 1) * btScalar(0.1));
+  btRigidBody box(btScalar(0.2), nullptr, &shape, btVector3(1, 1, 1) * btScalar(0.001));
+  const btVector3 above(btScalar(0.3), btScalar(0.8), btScalar(0.45));
+  box.setWorldTransform(btTransform(btQuaternion::getIdentity(), above));
+  world.deformable().addRigidBody(&box);
+  step(world, 400);
+  ASSERT_FALSE(box.isActive());
+  const btScalar before = box.getWorldTransform().getOrigin().y();
+  body->removeFromWorld();
+  step(world, 30);
+  EXPECT_LT(box.getWorldTransform().getOrigin().y(), before - btScalar(0.3));
+  world.deformable().removeRigidBody(&box);
+}
+
 TEST(BodiesThatReturn, KeepTheirFilters) {
   TetskinWorld world;
   const auto body = added(world, smallCageAbove(3));
@@ -187,8 +204,10 @@ TEST(BodiesThatReturn, AndTheirWorldsMayGoInAnyOrder) {
   first.reset();
   out.reset();
   ASSERT_TRUE(moved->addToWorld(second.deformable()).ok());
-  step(second, 2);
+  const double before = lowest(moved->body());
+  step(second, 15);
   EXPECT_EQ(moved->solverPath(), SolverPath::Solver);
+  EXPECT_NEAR(lowest(moved->body()) - before, -10 * (0.25 / 30 + 0.25 * 0.25 / 2), 0.02) << "gravity acts once";
   moved.reset();
   EXPECT_EQ(second.deformable().getSoftBodyArray().size(), 0);
 }

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "deformable_test.h"
@@ -536,6 +537,20 @@ TEST(RigidBodies, PressOnASoftBodyByTheForceThatPushesThem) {
   const auto record = ForceRecord::add(world).value();
   scene.run(240, [&] { plate.applyCentralForce(along(1, -2)); });
   EXPECT_NEAR(record->forcesOn(plate).contact.force.y(), 2 + 9.81, 0.05);
+}
+
+/// Gravity, which a step adds to the forces, has left them again.
+TEST(RigidBodies, KeepTheirForcesIfAnExceptionEndsAStep) {
+  tetskin::DeformableWorld world;
+  PlainScene scene(world, 1);
+  const btRigidBody& body = scene.box(1, cube(0));
+  world.setInternalTickCallback([](btDynamicsWorld*, btScalar) { throw std::runtime_error("within a step"); });
+  EXPECT_THROW(scene.run(1), std::runtime_error);
+  world.setInternalTickCallback(nullptr);
+  EXPECT_NEAR(body.getTotalForce().length(), 0, 1e-5);
+  const btScalar before = body.getLinearVelocity().y();
+  scene.run(1);
+  EXPECT_NEAR(body.getLinearVelocity().y() - before, -9.81 / 60, 1e-5);
 }
 
 struct Visitor {

@@ -3,6 +3,7 @@
 //
 // Bodies that are put back to their start, or elsewhere, while they touch others.
 #include <tetskin/bullet/recorder.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/contact/surface_contact.h>
 
 #include <cstdio>
@@ -64,6 +65,18 @@ struct LandingBalls {
     return all;
   }
 };
+
+/// By which the box in the broadphase covers where the surface will be: otherwise what is fast passes through thin
+/// things.
+TEST(ResetsInContact, KeepTheReachOfASurface) {
+  LandingBalls scene;
+  const auto reachOf = [](DeformableBody& body) { return bullet_detail::bodyWithTrees(body.body())->reach(); };
+  const btScalar reach = reachOf(*scene.bodies[1]);
+  ASSERT_GT(reach, 0);
+  scene.frame();
+  ASSERT_TRUE(scene.bodies[1]->reset().ok());
+  EXPECT_EQ(reachOf(*scene.bodies[1]), reach);
+}
 
 TEST(ResetsInContact, OfAllBodiesRepeatTheRun) {
   LandingBalls scene;

@@ -231,6 +231,13 @@ TEST(SoftContacts, ABodyThatReturnsMeetsTheOthersAgain) {
   step(*world, 30);
   EXPECT_TRUE(contacts->contacts().empty());
   ASSERT_TRUE(falls->addToWorld(world->deformable()).ok());
+  EXPECT_EQ(contacts->status(falls->body()), StatusCode::Ok);
+  EXPECT_EQ(contactsIn(*world)->add(falls->body(), ball().shape).code, StatusCode::InvalidOption) << "in others";
+  std::vector<unsigned char> snapshot(saveSnapshot(world->deformable(), nullptr, 0).value());
+  ASSERT_TRUE(saveSnapshot(world->deformable(), snapshot.data(), snapshot.size()).ok());
+  step(*world, 1);
+  const Status restored = restoreSnapshot(world->deformable(), snapshot.data(), snapshot.size());
+  EXPECT_TRUE(restored.ok()) << restored.message;
   bool hasTouched = false;
   for (int frame = 0; frame < 30; ++frame) {
     step(*world, 1);

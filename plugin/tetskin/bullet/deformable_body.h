@@ -51,13 +51,15 @@ class TETSKIN_BULLET_API DeformableBody {
   DeformableBody& operator=(const DeformableBody&) = delete;
 
   /// Takes the body out of its world, in which it costs nothing any more, until `addToWorld`. Its nodes, velocities,
-  /// material, gravity and pins stay, and so do skins, its SurfaceContact, its place in SoftContacts, springs and
-  /// welds, whose status is NotInWorld meanwhile. Pushes of several steps are dropped. Nothing happens to a body that
-  /// is not in its world. A snapshot of the world with the body is refused as long as it is out.
+  /// material, gravity, pins and collision filters stay. So do skins, its SurfaceContact, its place in SoftContacts,
+  /// and its springs and welds, whose status is NotInWorld meanwhile. Forces of `SurfacePoint::applyForce` end. What
+  /// lies beside the body wakes. While it is out, a snapshot that was saved with it is refused: SnapshotMismatch.
+  /// Nothing happens to a body that is not in its world. May be called where bodies may be removed.
   void removeFromWorld();
-  /// Puts it back, into the world that it was in or another one, where it continues; it wakes. What SoftContacts,
-  /// springs and welds have of it acts in the world in which they were created, once the body is there again. Also for
-  /// a body that the application has taken out by Bullet's own call, and may have added again.
+  /// Puts it back, into the world that it was in or another one, where it continues; it wakes. Its skins and its
+  /// SurfaceContact go along into another world; SoftContacts, springs and welds stay with the world in which they were
+  /// created, and act again when the body is back there. Also for a body that the application has taken out by Bullet's
+  /// own call, which keeps no filters, and may have added again.
   /// world   created with a solver as for `add`. The body follows its gravity, unless it has one of its own
   /// Errors  InvalidOption: the body is in a world; the world has another solver, or a gravity too large for the body.
   ///         On an error nothing is changed
@@ -110,6 +112,7 @@ class TETSKIN_BULLET_API DeformableBody {
   /// step is the one that it would have made, and nothing on the way is met. What it has touched is forgotten; it, and
   /// what lies beside it, wakes. Springs, welds and anchors stay attached to what they hold. (Bullet's `translate`,
   /// `rotate` and `transform` leave velocities as they are.) Skins that interpolate: `SoftBodySkin::markTeleported`.
+  /// Move the rigid bodies to which it is attached by the same motion, between the same two steps: they would pull it.
   /// motion  world space, from where the body is: x becomes motion * x
   /// Cost    O(nodes + faces)
   /// Errors  InvalidOption: not a rigid motion, the body is not in its world, or within a step; nothing is changed then

@@ -214,10 +214,10 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
 /// buffer   size bytes, not aligned; null: only the size is computed
 /// Returns  the number of bytes of the snapshot
 /// Cost     O(nodes + tets + objects + contacts), some 50 microseconds for 3,000 tets; allocates little
-/// Errors   NotSaved: the world has something that cannot be saved, which the message names. Bullet's classes are known
-///          by their tables and type information: where several modules of a program have a Bullet of their own, with
-///          MSVC or without type information, those of another module are not; SizeMismatch: the buffer is too small,
-///          and holds no snapshot
+/// Errors   SizeMismatch: the buffer is too small, and holds no snapshot; NotSaved: the world has something that cannot
+///          be saved, which the message names. Bullet's classes are known by their tables and type information: where
+///          several modules of a program have a Bullet of their own, with MSVC or without type information, those of
+///          another module are not
 TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
                                                     std::size_t size);
 

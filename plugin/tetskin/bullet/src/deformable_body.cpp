@@ -412,10 +412,16 @@ DeformableBody::~DeformableBody() {
   impl_->world->removeSoftBody(impl_->body.get());
 }
 
-/// The body is in no world, or in this one without its forces.
+/// The body is in no world, or in this one without its forces. The world before may have been destroyed, and another
+/// one be at its address.
 void DeformableBody::Impl::moveTo(btDeformableMultiBodyDynamicsWorld& to) {
   assert(!isActedOn());
-  if (&to == world && &solverOf(to) == solver) return;
+  if (isInItsWorld()) {
+    removeFromList(*list, &gravity);
+    removeFromList(*list, elasticity.get());
+  }
+  gravity.m_softBodies.clear();
+  elasticity->m_softBodies.clear();
   world = &to;
   solver = &solverOf(to);
   hasOwnSolver = deformableSolver(solver);
@@ -431,6 +437,7 @@ void DeformableBody::Impl::moveTo(btDeformableMultiBodyDynamicsWorld& to) {
 void DeformableBody::removeFromWorld() {
   if (!impl_->isInItsWorld()) return;
   assert(impl_->solverLives());
+  impl_->wakeNeighbours();
   impl_->filters.readFrom(body());
   impl_->world->removeSoftBody(impl_->body.get());
 }
@@ -446,6 +453,7 @@ Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
   if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
   impl_->moveTo(world);
   impl_->enter();
+  impl_->filters = {};
   body().activate();
   return {};
 }

@@ -33,8 +33,10 @@ Status checkSoftOptions(const SoftContactOptions& options) {
 bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const SoftContactRows& own,
                 const btSoftBody& body) {
   for (int i = 0; i < list.size(); ++i) {
-    const auto* contacts = dynamic_cast<const SoftContactRows*>(inactiveForce(list[i]));
-    if (contacts && contacts != &own && contacts->find(body)) return true;
+    auto* contacts = dynamic_cast<SoftContactRows*>(inactiveForce(list[i]));
+    if (!contacts || contacts == &own) continue;
+    contacts->updateBodies();
+    if (contacts->find(body)) return true;
   }
   return false;
 }
@@ -100,7 +102,7 @@ void SoftContacts::remove(const btSoftBody& body) {
 }
 
 StatusCode SoftContacts::status(const btSoftBody& body) const {
-  impl_->force.excludeDeleted();
+  impl_->force.updateBodies();
   if (const contact_detail::ContactBody* solved = impl_->force.find(body)) {
     if (!solved->fits()) return StatusCode::TopologyChanged;
     return impl_->force.isWithin(*solved) ? StatusCode::Enclosed : StatusCode::Ok;
@@ -111,7 +113,7 @@ StatusCode SoftContacts::status(const btSoftBody& body) const {
 const std::vector<SoftContact>& SoftContacts::contacts() const {
   std::vector<SoftContact>& contacts = impl_->contacts;
   contacts.clear();
-  impl_->force.excludeDeleted();
+  impl_->force.updateBodies();
   for (const auto* list : {&impl_->force.lastContacts(), &impl_->force.sleepingContacts()}) {
     for (const PointContact& from : *list) {
       assert(from.body && btSoftBody::upcast(from.object));

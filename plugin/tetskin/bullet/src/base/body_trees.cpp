@@ -234,7 +234,7 @@ void BodyWithTrees::returnToStart() {
     for (btVector3* rate : {&node.m_v, &node.m_vn, &node.m_splitv, &node.m_f}) rate->setZero();
   }
   m_maxSpeedSquared = 0;
-  setReach(-1);
+  if (surfaceContacts_.expired()) setReach(-1);
   setSpeculation(0);
   pointContacts_.clear();
   countMove();

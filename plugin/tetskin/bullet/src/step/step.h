@@ -71,12 +71,14 @@ struct DeformableSolver::Impl {
   /// Writes or reads the settings by which Bullet's world had the last step solved.
   void visitFlags(WorldStream& stream);
 
-  // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  // What the application moves between steps.
   /// Forgets what the body has touched, and how it has slept; implemented in step_placed.cpp.
   void forgetTouches(btSoftBody& body);
   /// Moves everything in a world of this solver; implemented in shift_origin.cpp.
   void shift(btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
 
+  // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  /// This is the world whose objects can be told from then on.
   void know(btDeformableMultiBodyDynamicsWorld& world);
   /// The world of these bodies, null if it is not known. A solver may outlive its world, and be used by another one.
   btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;

@@ -158,7 +158,8 @@ void SoftContactRows::shift(const btVector3& by) {
   }
 }
 
-void SoftContactRows::excludeDeleted() {
+void SoftContactRows::updateBodies() {
+  includeReturned();
   for (std::size_t k = bodies_.size(); k-- > 0;) {
     if (!bodies_[k]->lives()) (void)take(*bodies_[k]->body);
   }

@@ -22,8 +22,9 @@ class SoftContactRows : public RowSource {
 
   void include(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self);
   void exclude(const btSoftBody& body);
-  /// Excludes bodies that were deleted after their world, which cannot tell any more that they go.
-  void excludeDeleted();
+  /// Excludes bodies that were deleted, which after their world cannot tell any more that they go; and includes those
+  /// again that were taken out of the world, and are in it again.
+  void updateBodies();
   ContactBody* find(const btSoftBody& body) const;
   /// True of a body that was added, and is not in the world.
   bool isGone(const btSoftBody& body) const;
@@ -49,7 +50,6 @@ class SoftContactRows : public RowSource {
   static constexpr const char* kBuilderName = "soft contacts";
 
  private:
-  void forgetPairs(const ContactBody& body);
   /// What two bodies, or one body with itself, store from step to step.
   struct PairState {
     std::vector<Touch> touches[2];  ///< of the first body in the second, and of the second in the first
@@ -64,6 +64,9 @@ class SoftContactRows : public RowSource {
     PairState* state;
   };
   using BodyPairs = std::vector<std::pair<ContactBody*, ContactBody*>>;
+  std::unique_ptr<ContactBody> take(const btSoftBody& body);
+  void includeReturned();
+  void forgetPairs(const ContactBody& body);
   void visitBodies(WorldStream& stream);
   void visitPairs(WorldStream& stream);
   void visitPair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
@@ -79,9 +82,6 @@ class SoftContactRows : public RowSource {
   void addContact(const ContactBody& first, const ContactBody& second, const Touch& touch, btScalar seconds);
 
   SoftContactOptions options_;
-  std::unique_ptr<ContactBody> take(const btSoftBody& body);
-  void includeReturned();
-
   std::vector<std::unique_ptr<ContactBody>> bodies_;
   std::vector<std::unique_ptr<ContactBody>> away_;  ///< out of the world; they may come back
   std::vector<const btSoftBody*> gone_;             ///< the same of bodies of which it is not known whether they live

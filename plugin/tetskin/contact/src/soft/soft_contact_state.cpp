@@ -46,7 +46,7 @@ constexpr const char* kOtherBodies = "contacts among other soft bodies were ther
 }  // namespace
 
 void SoftContactRows::describe(BuildStream& stream) {
-  excludeDeleted();
+  updateBodies();
   double friction = options_.friction.value_or(-1.0);
   stream(friction);
   (void)stream.length(bodies_.size());
@@ -59,7 +59,7 @@ void SoftContactRows::describe(BuildStream& stream) {
 
 /// In the order of the world's objects: they may have been added in another one.
 void SoftContactRows::checkState(WorldStream& stream) {
-  excludeDeleted();
+  updateBodies();
   stream.same(bodies_.size(), kOtherBodies);
   std::vector<const ContactBody*> sorted;
   for (const auto& body : bodies_) sorted.push_back(body.get());
@@ -83,7 +83,7 @@ void SoftContactRows::visitState(WorldStream& stream) {
 
 /// The bodies get the order and the ids that they had: pairs are searched in this order, and ids tell directions.
 void SoftContactRows::visitBodies(WorldStream& stream) {
-  excludeDeleted();
+  updateBodies();
   stream.same(bodies_.size(), kOtherBodies);
   stream(nextId_);
   for (std::size_t k = 0; k < bodies_.size() && !stream.failed(); ++k) {
