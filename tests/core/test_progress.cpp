@@ -14,8 +14,9 @@ using Clock = std::chrono::steady_clock;
 /// Goes on until the application is asked, for some seconds at most.
 void goOnUntilAsked(const std::vector<double>& told) {
   const std::size_t before = told.size();
-  for (const auto start = Clock::now(); told.size() == before && Clock::now() - start < std::chrono::seconds(5);) {
-    Progress::goOn();
+  const auto start = Clock::now();
+  for (std::size_t k = 0; told.size() == before && Clock::now() - start < std::chrono::seconds(5); ++k) {
+    Progress::goOn(k);
   }
   EXPECT_EQ(told.size(), before + 1);
 }
@@ -29,7 +30,7 @@ TEST(Progress, AsksInTheMiddleOfALoopWithTheFractionThatWasTold) {
   Progress progress(tell);
   EXPECT_TRUE(progress.reach(0.0));
   EXPECT_TRUE(progress.reach(0.5));
-  for (int k = 0; k < 1000; ++k) Progress::goOn();  // sooner than anybody is asked again
+  for (std::size_t k = 0; k < 1000; ++k) Progress::goOn(k);  // sooner than anybody is asked again
   EXPECT_EQ(told.size(), 2u);
   goOnUntilAsked(told);
   EXPECT_FALSE(progress.cancelled());
@@ -48,7 +49,7 @@ TEST(Progress, WithinAnotherOneIsAskedInItsPlace) {
     Progress other(tellInner);
     goOnUntilAsked(inner);
     Progress silent(nobody);
-    for (const auto start = Clock::now(); Clock::now() - start < std::chrono::milliseconds(250);) Progress::goOn();
+    for (const auto start = Clock::now(); Clock::now() - start < std::chrono::milliseconds(250);) Progress::goOn(0);
   }
   EXPECT_EQ(inner.size(), 1u);
   EXPECT_TRUE(outer.empty());

@@ -171,7 +171,7 @@ void bindCages(nb::module_& module) {
       "copy of the tet. fit: move boundary nodes towards the surface. progress: called with the fraction done, "
       "from 0 to "
       "1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised. True: prints a "
-      "bar; Ctrl-C, or a notebook's interrupt button, then cancels.");
+      "bar. Ctrl-C, or a notebook's interrupt button, cancels with any.");
   module.def(
       "calibrate", calibrated, "cage"_a, nb::kw_only(), "poisson_ratio"_a = 0.3, "mode_count"_a = 6,
       "progress"_a.none() = nb::none(),

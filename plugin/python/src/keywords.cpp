@@ -6,7 +6,9 @@
 // says which. A call that is right pays for one jump.
 #include "models.h"
 
+#include <nb_internals.h>
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace tetskin::python {
@@ -27,7 +29,7 @@ void explain(nb::handle function, std::size_t positional, nb::handle names) {
             .attr("fault")(function.attr("__qualname__"), function.attr("__nb_signature__"), positional,
                            names.is_valid() ? nb::borrow<nb::tuple>(names) : nb::tuple());
     if (!fault.is_none()) return PyErr_SetObject(PyExc_TypeError, fault.ptr());
-  } catch (const nb::python_error&) {
+  } catch (const std::exception&) {
     // The package is not complete: the module has been imported by itself.
   }
   raised.restore();
@@ -44,15 +46,12 @@ PyObject* explained(PyObject* function, PyObject* const* arguments, std::size_t 
 template <std::size_t... K>
 void putInFront(PyObject* function, std::index_sequence<K...>) {
   static constexpr Call kExplained[] = {explained<K>...};
-  const auto now = reinterpret_cast<Call>(PyVectorcall_Function(function));
-  // Where nanobind has it today. In another layout, its own answers remain.
-  auto* slot = reinterpret_cast<Call*>(reinterpret_cast<char*>(function) + sizeof(PyVarObject));
-  if (!now || *slot != now) return;
+  Call& now = reinterpret_cast<nb::detail::nb_func*>(function)->vectorcall;
   Call* const end = callsOfNanobind + kMostCalls;
   Call* const found = std::find_if(callsOfNanobind, end, [&](Call call) { return !call || call == now; });
-  if (found == end) return;
+  if (found == end) return;  // its own answers remain
   *found = now;
-  *slot = kExplained[found - callsOfNanobind];
+  now = kExplained[found - callsOfNanobind];
 }
 
 void nameFaultsIn(nb::handle scope) {

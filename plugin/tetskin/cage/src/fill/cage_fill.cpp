@@ -154,7 +154,7 @@ CageFill fillOf(const CageTets& cage, const LatticeFrame& frame, const LatticeSe
   if (kEighths * cage.mesh.tetCount() <= Limits::kMaxRefinedTets)
     result.fine.assign(kFineTets * cage.mesh.tetCount(), kFull);
   for (std::size_t t = 0; t < result.fill.size(); ++t) {
-    Progress::goOn();
+    Progress::goOn(t);
     if (deep[t]) continue;
     const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[t]);
     if (result.fine.empty()) {
@@ -171,7 +171,7 @@ std::vector<double> nodeMasses(const TetMesh& mesh, const std::vector<double>& f
   std::vector<double> masses(mesh.nodeCount(), 0.0);
   double sum = 0.0;
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
-    Progress::goOn();
+    Progress::goOn(t);
     const double filled = (fill.empty() ? 1.0 : fill[t]) * std::abs(signedVolume(cornersOf(mesh, mesh.tets[t])));
     for (const int n : mesh.tets[t]) masses[n] += 0.25 * filled;
     sum += filled;

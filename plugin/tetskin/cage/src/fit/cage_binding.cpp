@@ -21,7 +21,7 @@ std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const La
   const auto indexOf = [&](const LatticeTet& tet) { return lattice.indexOf(set, tet); };
   std::vector<int> result(points.size(), -1);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    Progress::goOn();
+    Progress::goOn(p);
     const LatticeTet home = locate(frame.toLattice(points[p]));
     const int tet = indexOf(home);
     if (tet >= 0 && holds(lattice.mesh, tet, points[p])) {

@@ -114,11 +114,11 @@ class CageFit {
     for (int sweep = 0; sweep < kSweeps && moved; ++sweep) {
       moved = false;
       for (std::size_t n = 0; n < mesh_.nodeCount(); ++n) {
-        Progress::goOn();
+        Progress::goOn(n);
         if (boundary_[n] && pull(static_cast<int>(n))) moved = true;
       }
       for (std::size_t n = 0; n < mesh_.nodeCount(); ++n) {
-        Progress::goOn();
+        Progress::goOn(n);
         if (!boundary_[n] && smooth(static_cast<int>(n))) moved = true;
       }
     }

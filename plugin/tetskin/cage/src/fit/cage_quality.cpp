@@ -22,9 +22,9 @@ std::array<double, 6> dihedralCosines(const TetCorners& p) {
 }
 
 std::vector<int> componentNumbers(const TetMesh& mesh) {
+  Progress::goOnWithRound();
   DisjointSets sets(mesh.nodeCount());
   for (const Tet& tet : mesh.tets) {
-    Progress::goOn();
     for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
   std::vector<int> number(mesh.nodeCount(), -1), components;
@@ -40,11 +40,11 @@ std::vector<int> componentNumbers(const TetMesh& mesh) {
 }  // namespace cage_detail
 
 DihedralRange dihedralRange(const TetMesh& mesh) {
+  Progress::goOnWithRound();
   // A radian.
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   double smallest = 1.0, largest = -1.0;  // cosines of the angles
   for (const Tet& tet : mesh.tets) {
-    Progress::goOn();
     for (const double c : cage_detail::dihedralCosines(cornersOf(mesh, tet))) {
       smallest = std::min(smallest, c);
       largest = std::max(largest, c);

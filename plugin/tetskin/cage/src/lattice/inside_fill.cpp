@@ -149,7 +149,7 @@ class InsideFill {
   template <class F>
   void forUntouched(F f) const {
     for (std::size_t i = 0; i < touchedMask_.size(); ++i) {
-      Progress::goOn();
+      Progress::goOn(i);
       const int count = wasTouched_[i] ? kTetsPerCube : 1;
       for (int local = 0; local < count; ++local) {
         if (untouched(i, local)) f(i, local);

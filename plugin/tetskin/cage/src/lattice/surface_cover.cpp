@@ -184,7 +184,7 @@ bool coverAll(const Surface& surface, const LatticeFrame& frame, Cover& cover) {
     points[p].deep = isDeep(points[p].position);
   }
   for (std::uint32_t k = 0; k < surface.triangles.size(); ++k) {
-    Progress::goOn();
+    Progress::goOn(k);
     const auto& t = surface.triangles[k];
     cover.setTriangle(k);
     const Located &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];

@@ -74,7 +74,7 @@ TetMaterial findMaterial(const Surface& surface, const WindingTree& winding, con
   MaterialFinder finder(surface, winding, frame);
   const std::uint32_t* values = material.triangles.values.data();
   for (std::size_t cube = 0; cube < set.cubeCount(); ++cube) {
-    Progress::goOn();
+    Progress::goOn(cube);
     for (int local = 0; local < kTetsPerCube; ++local) {
       const int t = lattice.tetOf[kTetsPerCube * cube + static_cast<std::size_t>(local)];
       if (t < 0) continue;

@@ -142,7 +142,7 @@ class Splitter {
     std::vector<int> nodeOf(4 * kept_.size(), -1), tetOf(kept_.size(), -1);
     std::map<Tet, int> made;  // duplicates with the same nodes are one tet
     for (std::size_t k = 0; k < kept_.size(); ++k) {
-      Progress::goOn();
+      Progress::goOn(k);
       if (!kept_[k]) continue;
       const int copy = static_cast<int>(k);
       Tet nodes{};
@@ -200,7 +200,7 @@ std::vector<std::uint8_t> openFacesOf(const CageTets& cage) {
   const Lists<> beyond = faceNeighbours(cage.mesh);
   std::vector<std::uint8_t> open(cage.mesh.tetCount(), 0);
   for (std::size_t t = 0; t < open.size(); ++t) {
-    Progress::goOn();
+    Progress::goOn(t);
     for (std::size_t corner = 0; corner < 4; ++corner) {
       bool closed = false;
       for (std::uint32_t k = beyond.starts[4 * t + corner]; k < beyond.starts[4 * t + corner + 1]; ++k) {

@@ -54,7 +54,7 @@ class CopyLinks {
     });
     const auto tetOf = [&](std::uint32_t e) { return piece(pieces_.pieceOf[e]).tet; };
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-      Progress::goOn();
+      Progress::goOn(t);
       const auto first = elements.values.begin() + elements.starts[t];
       const auto last = elements.values.begin() + elements.starts[t + 1];
       for (auto e = first; e != last; ++e) {
@@ -71,7 +71,7 @@ class CopyLinks {
 
   void linkMaterial() {
     for (int k = 0; k < static_cast<int>(pieces_.pieces.size()); ++k) {
-      Progress::goOn();
+      Progress::goOn(static_cast<std::size_t>(k));
       for (int corner = 0; corner < 4 && piece(k).cells != 0; ++corner) {
         const int beyond = links_.beyond[piece(k).tet][corner];
         if (beyond <= piece(k).tet) continue;

@@ -48,7 +48,7 @@ class PieceFinder {
     joinSurface();
     findMaterial();
     for (std::size_t t = 0; t < tetCount(); ++t) {
-      Progress::goOn();
+      Progress::goOn(t);
       joinWithin(static_cast<int>(t));
     }
     return numbered();
@@ -80,7 +80,7 @@ class PieceFinder {
 
   void joinSurface() {
     for (std::size_t t = 0; t < tetCount(); ++t) {
-      Progress::goOn();
+      Progress::goOn(t);
       if (first(t) == last(t)) continue;
       joinTriangles(static_cast<int>(t), mapOf(t));
       for (std::size_t e = first(t); e < last(t); ++e) layered_[t] |= united(first(t), e) ? 0 : 1;

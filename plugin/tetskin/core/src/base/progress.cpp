@@ -9,8 +9,6 @@ namespace {
 
 /// Often enough for whoever waits.
 constexpr std::chrono::milliseconds kAskedEach{200};
-/// Reading the clock takes as long as so many calls.
-constexpr unsigned kCallsPerClock = 32;
 
 /// That of this thread; null: none.
 Progress*& current() {
@@ -34,11 +32,6 @@ bool Progress::reach(double fraction) {
   fraction_ = fraction;
   told_ = Clock::now();
   return !cancelled_;
-}
-
-void Progress::goOn() {
-  thread_local unsigned calls = 0;
-  if (++calls % kCallsPerClock == 0) goOnWithRound();
 }
 
 void Progress::goOnWithRound() {

@@ -5,6 +5,7 @@
 #include <tetskin/core/types.h>
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 
 namespace tetskin {
@@ -26,13 +27,18 @@ class TETSKIN_CORE_API Progress {
   bool reach(double fraction);
   bool cancelled() const { return cancelled_; }
 
-  /// For whatever takes part in the computation of this thread, in loops: asks the application, some times in a second.
-  /// Throws Cancellation if it cancels. Costs a nanosecond or two. Where no computation has begun, nothing happens.
-  static void goOn();
+  /// For whatever takes part in the computation of this thread, in round k of a loop: asks the application, some times
+  /// in a second. Throws Cancellation if it cancels. Where no computation has begun, nothing happens.
+  static void goOn(std::size_t k) {
+    if (k % kRoundsPerClock == 0) goOnWithRound();
+  }
   /// The same for rounds of milliseconds, of which each looks at the clock.
   static void goOnWithRound();
 
  private:
+  /// Reading the clock takes some tens of nanoseconds.
+  static constexpr std::size_t kRoundsPerClock = 64;
+
   using Clock = std::chrono::steady_clock;
 
   const std::function<bool(double)>& tell_;
