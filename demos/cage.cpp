@@ -104,7 +104,7 @@ int runFilled(const CageCommand& command) {
   std::size_t count = quadraticTetsOf(cage);
   if (count == 0) count = findQuadraticTets(cage);
   if (count == 0 && command.quadratic) {
-    Result<Cage> refined = refineQuadratic(cage.mesh);
+    Result<Cage> refined = refineQuadratic(cage);
     if (!refined.ok()) throw InputError(command.filled + ": " + refined.status().message);
     cage = std::move(refined).value();
     count = quadraticTetsOf(cage);

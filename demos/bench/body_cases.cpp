@@ -87,7 +87,7 @@ void step(State& state, int bodies, bool faceTree) {
 void stepOfBeam(State& state, int across, bool quadratic) {
   constexpr double kSeconds = 1.0 / 240.0;
   Cage cage = measure::makeLattice({4 * across, across, across}, 1.0 / across)->cage;
-  if (quadratic) cage = refineQuadratic(cage.mesh).value();
+  if (quadratic) cage = refineQuadratic(cage).value();
   ElasticOptions options;
   options.youngsModulus = 2e5;
   options.density = 100.0;

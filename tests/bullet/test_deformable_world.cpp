@@ -4,6 +4,7 @@
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_world.h>
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -134,6 +135,22 @@ TEST(DeformableWorld, StepsAreDividedWhereABodyIsTooSmallForThemAlone) {
   }
 }
 
+TEST(DeformableWorld, IsNotHarmedByTimesThatAreNone) {
+  constexpr btScalar kNaN = std::numeric_limits<btScalar>::quiet_NaN();
+  constexpr btScalar kInfinite = std::numeric_limits<btScalar>::infinity();
+  tetskin::DeformableWorld world;
+  const auto body = DeformableBody::add(world, smallCageAbove(1)).value();
+  const btVector3 before = body->body().m_nodes[0].m_x;
+  for (const btScalar time : {kNaN, kInfinite, -kInfinite, btScalar(-1)}) {
+    for (const int steps : {0, 1, 4}) EXPECT_EQ(world.stepSimulation(time, steps), 0);
+    EXPECT_EQ(world.stepSimulation(btScalar(0.1), 1, time), 0);
+  }
+  EXPECT_EQ(world.stepSimulation(btScalar(0.1), 1, 0), 0);
+  EXPECT_EQ(body->body().m_nodes[0].m_x, before);
+  EXPECT_EQ(world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240), 4);
+  EXPECT_LT(body->body().m_nodes[0].m_x.y(), before.y());
+}
+
 TEST(DeformableWorld, StepsAsAWorldOfTheSameObjectsDoes) {
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
@@ -143,7 +160,9 @@ TEST(DeformableWorld, StepsAsAWorldOfTheSameObjectsDoes) {
   solver.setDeformableSolver(&bodySolver);
   btDeformableMultiBodyDynamicsWorld byHand(&dispatcher, &broadphase, &solver, &configuration, &bodySolver);
   byHand.setGravity(btVector3(0, btScalar(-9.81), 0));
-  tetskin::DeformableWorld world;
+  DeformableWorldOptions options;
+  options.rigidForces = RigidForceModel::DeformableWorld;
+  tetskin::DeformableWorld world(options);
   const std::vector<btVector3> expected = landed(byHand);
   EXPECT_EQ(landed(world), expected);
   EXPECT_LT(expected[0].y(), 1);

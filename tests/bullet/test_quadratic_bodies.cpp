@@ -19,12 +19,12 @@ using bullet_detail::restTetsOf;
 using bullet_detail::withQuadraticTets;
 using elastic_detail::RestTets;
 
-constexpr double kHeight = 50.0;
+constexpr double kHighUp = 50.0;
 
 /// A bar along x of quadratic tets, far above the ground.
 Cage bar() {
   TetMesh mesh = latticeCage(6, 1, 1, 0.5);
-  for (Eigen::Vector3d& p : mesh.nodes) p.y() += kHeight;
+  for (Eigen::Vector3d& p : mesh.nodes) p.y() += kHighUp;
   return refineQuadratic(mesh).value();
 }
 
@@ -126,7 +126,7 @@ double sagInBullet(const Cage& cage, ForceModel model) {
   EXPECT_TRUE(body.ok()) << body.status().message;
   body.value()->body().setActivationState(DISABLE_DEACTIVATION);
   step(*world, 300);
-  return kHeight - lowest(body.value()->body());
+  return kHighUp - lowest(body.value()->body());
 }
 
 double sagAlone(const Cage& cage) {
@@ -137,9 +137,9 @@ double sagAlone(const Cage& cage) {
   auto body = ElasticBody<double>::create(cage, options).value();
   for (std::size_t n = 0; n < body.nodeCount(); ++n) body.setPinned(n, cage.mesh.nodes[n].x() == 0.0);
   for (int k = 0; k < 1200; ++k) body.step(1.0 / 240.0, {0.0, -10.0, 0.0});
-  double y = kHeight;
+  double y = kHighUp;
   for (std::size_t n = 0; n < body.nodeCount(); ++n) y = std::min(y, body.positions()[n][1]);
-  return kHeight - y;
+  return kHighUp - y;
 }
 
 TEST(QuadraticBodies, SagInBulletAsByThemselvesAndNotAsTheirLinearTets) {

@@ -235,5 +235,28 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
   fails(good, options, StatusCode::InvalidOption);
 }
 
+TEST(SoftBody, IsRefusedFarFromTheOriginForThatReason) {
+  btSoftBodyWorldInfo info;
+  TetMesh cage = test::latticeCage(2, 2, 2, 0.1);
+  for (Eigen::Vector3d& p : cage.nodes) p.x() += sizeof(btScalar) == sizeof(double) ? 1e17 : 1e8;
+  const Status status = createSoftBody(cage, info).status();
+  EXPECT_EQ(status.code, StatusCode::Degenerate);
+  EXPECT_NE(status.message.find("nearer to the origin"), std::string::npos) << status.message;
+}
+
+TEST(SoftBody, IsRefusedWithAMassThatItsNumbersCannotCarry) {
+  btSoftBodyWorldInfo info;
+  SoftBodyOptions options;
+  const double bound = sizeof(btScalar) == sizeof(double) ? 1e100 : 1e15;
+  for (const double mass : {0.9 * bound, 1.1 / bound}) {
+    options.mass = mass;
+    EXPECT_TRUE(createSoftBody(test::latticeCage(2, 2, 2, 0.1), info, options).ok());
+  }
+  for (const double mass : {1.1 * bound, 0.9 / bound}) {
+    options.mass = mass;
+    EXPECT_EQ(createSoftBody(test::latticeCage(2, 2, 2, 0.1), info, options).status().code, StatusCode::InvalidOption);
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

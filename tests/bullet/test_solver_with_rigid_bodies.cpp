@@ -132,5 +132,22 @@ TEST(SolverWithRigidBodies, LieOnBodiesAndBodiesOnThem) {
   }
 }
 
+/// Ten times its mass on a body whose nodes touch, as it gets stiffer.
+TEST(SolverWithRigidBodies, AHeavyBoxOnAStiffCubeComesToRest) {
+  for (const double pressure : {1e6, 1e7, 1e8, 1e9}) {
+    test::TetskinWorld world;
+    SoftBodyOptions options;
+    options.mass = 5;
+    options.youngsModulus = pressure;
+    const auto body = added(world, test::smallCageAbove(0.02), options);
+    Rigid box(world, std::make_unique<btBoxShape>(btVector3(1, 1, 1) * btScalar(0.2)), 50,
+              btVector3(btScalar(0.3), btScalar(0.9), btScalar(0.45)));
+    step(world, 160);
+    EXPECT_FALSE(body->body().isActive()) << pressure;
+    EXPECT_LT(box.body->getLinearVelocity().length(), 1e-4) << pressure;
+    EXPECT_GT(box.height(), 0.75) << pressure;
+  }
+}
+
 }  // namespace
 }  // namespace tetskin

@@ -129,6 +129,19 @@ TEST(ContactLifetimes, ABodyTakenToAnotherWorldIsMetByItsNodesThereAndByItsSurfa
   EXPECT_FALSE(body->contact->contacts().empty());
 }
 
+TEST(ContactLifetimes, ABodyThatReturnsIsMetByItsSurfaceInEitherWorld) {
+  TetskinWorld first, second;
+  const auto lies = lying(first);
+  const double lay = lies->height();
+  for (TetskinWorld* world : {&first, &second, &first}) {
+    lies->body->removeFromWorld();
+    ASSERT_TRUE(lies->body->addToWorld(world->deformable()).ok());
+    step(*world, 30);
+    EXPECT_FALSE(lies->contact->contacts().empty());
+    EXPECT_NEAR(lies->height(), lay, 0.02);
+  }
+}
+
 TEST(ContactLifetimes, ContactThatWasLeftBehindByItsWorldsDispatcherStartsAnewInAnother) {
   auto first = std::make_unique<TetskinWorld>();
   TetskinWorld second;

@@ -133,6 +133,7 @@ TEST_F(SoftRows, NothingIsLeftOfABodyThatGoes) {
   EXPECT_EQ(rows.find(*bodies[0]), nullptr);
   EXPECT_FALSE(rows.isGone(*bodies[0]));
   rows.removeSoftBody(bodies[1].get());
+  world->deformable().removeSoftBody(bodies[1].get());
   EXPECT_TRUE(rows.isGone(*bodies[1]));
   EXPECT_TRUE(contacts().empty());
 }

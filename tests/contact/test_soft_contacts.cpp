@@ -216,6 +216,35 @@ TEST(SoftContacts, ABodyMayLeaveTheWorldWhileItTouches) {
   EXPECT_TRUE(std::isfinite(centreOf(c->body()).y()));
 }
 
+TEST(SoftContacts, ABodyThatReturnsMeetsTheOthersAgain) {
+  const auto world = worldWith(btVector3(0, -10, 0));
+  const auto lies = addBall(*world, Vector3d(0, 0.4, 0)), falls = addBall(*world, Vector3d(0, 1.5, 0));
+  auto gone = addBall(*world, Vector3d(3, 1.5, 0));
+  const auto contacts = contactsIn(*world);
+  for (DeformableBody* body : {lies.get(), falls.get(), gone.get()}) {
+    ASSERT_TRUE(contacts->add(body->body(), ball().shape).ok());
+  }
+  step(*world, 2);
+  for (DeformableBody* body : {falls.get(), gone.get()}) body->removeFromWorld();
+  EXPECT_EQ(contacts->status(falls->body()), StatusCode::NotInWorld);
+  gone.reset();
+  step(*world, 30);
+  EXPECT_TRUE(contacts->contacts().empty());
+  ASSERT_TRUE(falls->addToWorld(world->deformable()).ok());
+  bool hasTouched = false;
+  for (int frame = 0; frame < 30; ++frame) {
+    step(*world, 1);
+    hasTouched |= !contacts->contacts().empty();
+  }
+  EXPECT_TRUE(hasTouched);
+  EXPECT_EQ(contacts->status(falls->body()), StatusCode::Ok);
+  falls->removeFromWorld();
+  contacts->remove(falls->body());
+  ASSERT_TRUE(falls->addToWorld(world->deformable()).ok());
+  step(*world, 1);
+  EXPECT_EQ(contacts->status(falls->body()), StatusCode::NotAdded);
+}
+
 TEST(SoftContacts, SaysThatABodyHasLostItsTets) {
   const auto world = worldWith(btVector3(0, 0, 0));
   const auto contacts = contactsIn(*world);

@@ -209,6 +209,32 @@ TEST(ContactShape, HasTheNumberOfSamplesThatIsAskedFor) {
   }
 }
 
+/// A sheet of 1 : 1 : thickness, in a cage of one layer of cubes, with the middle of its shape inside it.
+TEST(ContactShape, HasCellsThatSeeAThinBody) {
+  const auto sheet = [](double thickness, double height = 0.0) {
+    TriangleMesh box = test::boxMesh(Eigen::Vector3d(0.5, thickness / 2, 0.5));
+    for (Eigen::Vector3d& p : box.positions) p.y() += height;
+    return box;
+  };
+  TetMesh cage = latticeCage(8, 1, 8, 0.125);
+  for (Eigen::Vector3d& p : cage.nodes)
+    p = (p - Eigen::Vector3d(0.5, 0.0625, 0.5)).cwiseProduct(Eigen::Vector3d(1, 0.25, 1));
+  for (const double thickness : {0.02, 0.013}) {
+    const auto made = ContactShape::create(cage, sheet(thickness));
+    ASSERT_TRUE(made.ok()) << made.status().message;
+    GridDistance at;
+    ASSERT_TRUE(dataOf(*made.value()).grid.at(btVector3(0.1, 0, 0.1), at));
+    EXPECT_LT(at.distance, -0.2 * thickness) << thickness;
+    EXPECT_LE(dataOf(*made.value()).grid.spacing(), 0.51 * thickness);
+  }
+  const Status thin = ContactShape::create(cage, sheet(1e-4, 1.1e-3)).status();
+  EXPECT_EQ(thin.code, StatusCode::Degenerate);
+  EXPECT_NE(thin.message.find("gridResolution"), std::string::npos) << thin.message;
+  // What is thick enough keeps the usual ones, whatever stands out of it.
+  EXPECT_NEAR(dataOf(*ContactShape::create(ball().cage, ball().mesh).value()).grid.spacing(),
+              boundingBox(ball().cage.nodes).sizes().maxCoeff() / 64, 1e-6);
+}
+
 TEST(ContactShape, SaysWhatIsWrong) {
   const Ball& model = ball();
   const auto codeOf = [](const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options = {}) {

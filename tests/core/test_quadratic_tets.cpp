@@ -92,6 +92,34 @@ TEST(QuadraticTets, OfASingleTetHasItsCornersAndTheMiddlesOfItsEdges) {
   EXPECT_TRUE(validate(cage).ok());
 }
 
+/// Masses and fractions of a cage that its body does not fill.
+TEST(QuadraticTets, HaveTheMassOfTheCageAndTheFractionsOfTheirParts) {
+  Cage cage(test::singleTet());
+  cage.volumeFraction = {0.25};
+  for (std::size_t k = 0; k < kFineTets; ++k) cage.fineVolumeFraction.push_back(k < kFineTets / 4 ? 255 : 0);
+  cage.masses = {1, 2, 3, 4};
+  cage.stiffnessFactor = {0.5};
+  const Cage quadratic = refineQuadratic(cage).value();
+  EXPECT_TRUE(validate(quadratic).ok());
+  EXPECT_EQ(quadratic.volumeFraction, (std::vector<double>{1, 1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(quadratic.fineVolumeFraction.size(), 8 * kFineTets);
+  EXPECT_EQ(std::count(quadratic.fineVolumeFraction.begin(), quadratic.fineVolumeFraction.end(), 255), 128);
+  EXPECT_NEAR(std::accumulate(quadratic.masses.begin(), quadratic.masses.end(), 0.0), 10.0, 1e-12);
+  EXPECT_TRUE(quadratic.stiffnessFactor.empty());
+  cage.fineVolumeFraction.clear();
+  EXPECT_EQ(refineQuadratic(cage).value().volumeFraction, std::vector<double>(8, 0.25));
+  cage.masses.pop_back();
+  EXPECT_EQ(refineQuadratic(cage).status().code, StatusCode::SizeMismatch);
+}
+
+TEST(QuadraticTets, AreNotMadeOfDuplicates) {
+  Cage cage(test::singleTet());
+  cage.mesh.tets.push_back(cage.mesh.tets[0]);
+  cage.sourceTet = {0, 0};
+  ASSERT_TRUE(cage.hasDuplicates());
+  EXPECT_EQ(refineQuadratic(cage).status().code, StatusCode::InvalidOption);
+}
+
 TEST(QuadraticTets, NeighboursShareTheMidpointsOfTheirFace) {
   const Cage cage = refined({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}});
   EXPECT_EQ(cage.mesh.nodeCount(), 5u + 9u);

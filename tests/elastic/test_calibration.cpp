@@ -246,6 +246,19 @@ TEST(Calibration, OfAMixedCageIsBetweenThoseOfLinearAndQuadraticOnes) {
   }
 }
 
+/// Of a beam whose half is quadratic, the other half alone was too stiff.
+TEST(Calibration, OfAMixedCageLeavesFullQuadraticTetsAlone) {
+  Cage mixed = mixedBeam();
+  const CalibrationReport report = calibrate(mixed).value();
+  EXPECT_LT(std::max(report.modeError, report.sagError), 0.15);
+  for (std::size_t t = 0; t < mixed.mesh.tetCount(); ++t) {
+    const double least = mixed.quadraticTet[t] < 0 ? 0.1 : 1.0, most = mixed.quadraticTet[t] < 0 ? 0.9 : 1.0;
+    EXPECT_GE(mixed.stiffnessFactor[t], least);
+    EXPECT_LE(mixed.stiffnessFactor[t], most);
+  }
+  EXPECT_LT(report.leastFactor, report.greatestFactor);
+}
+
 /// Work of gravity along an axis on a body that is held where `held` says so, by stiff springs.
 template <class Held>
 double sagOf(const Cage& cage, int axis, Held&& held) {
@@ -307,6 +320,22 @@ TEST(Calibration, SaysBothErrors) {
   EXPECT_GT(report.sagError, 0.0);
   EXPECT_LT(std::max(report.modeError, report.sagError), 0.2);
   EXPECT_NE(report.describe().find("% in sags"), std::string::npos);
+}
+
+/// A column under its own weight gives way as the report says.
+TEST(Calibration, SaysHowMuchTooSoftACageIsWhereItIsPressed) {
+  for (const int cubes : {1, 2}) {
+    Cage cage = beam(cubes);
+    const Cage plain = cage, fine = refineQuadratic(refineUniformly(cage.mesh).mesh).value();
+    const CalibrationReport report = calibrate(cage).value();
+    const auto held = [](const Vector3d& p) { return p.x() < 0.01; };
+    const double limit = sagOf(fine, 0, held);
+    EXPECT_NEAR(sagOf(plain, 0, held) / limit - 1.0, report.plainStretchError, 0.05) << cubes;
+    EXPECT_NEAR(sagOf(cage, 0, held) / limit - 1.0, report.stretchError, 0.1) << cubes;
+    EXPECT_LT(std::abs(report.plainStretchError), 0.05);
+    EXPECT_GT(report.stretchError, 0.05);
+    EXPECT_NE(report.describe().find("stretched or pressed"), std::string::npos);
+  }
 }
 
 TEST(Calibration, FinerCagesNeedLess) {

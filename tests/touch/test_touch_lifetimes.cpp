@@ -141,6 +141,39 @@ TEST(TouchLifetime, BodiesTakenOutOfTheWorldTakeTheirSpringsAlong) {
   substep(*world);
 }
 
+/// A body that hangs by a spring, and carries a box that is welded to it.
+TEST(TouchLifetime, ABodyThatReturnsHangsByItsSpringAndCarriesWhatIsWeldedToIt) {
+  auto world = deformableWorld(10);
+  TouchedBody body(*world, TouchModel(0.38, 3));
+  const int top = body.furthest(Vector3d(0, 1, 0)), bottom = body.furthest(Vector3d(0, -1, 0));
+  auto spring = SurfaceSpring::add(world->deformable(), body.vertex(top)).value();
+  RigidBox box(*world, 0.1, *body.vertex(bottom).position() - btVector3(0, btScalar(0.1), 0));
+  auto weld = SurfaceWeld::add(world->deformable(), body.vertex(bottom), *box).value();
+  box->setActivationState(DISABLE_DEACTIVATION);
+  step(*world, 60);
+  const auto pull = [&] { return static_cast<double>(spring->force().y()); };
+  ASSERT_NEAR(pull(), 11, 3);
+  body.owner->removeFromWorld();
+  EXPECT_EQ(spring->status(), StatusCode::NotInWorld);
+  EXPECT_EQ(weld->status(), StatusCode::NotInWorld);
+  const btScalar before = box->getLinearVelocity().y();
+  step(*world, 6);
+  EXPECT_NEAR(box->getLinearVelocity().y() - before, -1, 0.01);  // nothing holds it
+  box->setLinearVelocity(btVector3(0, 0, 0));
+  box->setWorldTransform(
+      btTransform(btMatrix3x3::getIdentity(), *body.vertex(bottom).position() - btVector3(0, btScalar(0.1), 0)));
+  ASSERT_TRUE(body.owner->addToWorld(world->deformable()).ok());
+  EXPECT_EQ(spring->status(), StatusCode::Ok);
+  EXPECT_EQ(weld->status(), StatusCode::Ok);
+  step(*world, 120);
+  EXPECT_NEAR(pull(), 11, 3);
+  EXPECT_LT(weld->separation(), 0.01);
+  body.owner->removeFromWorld();
+  body.owner.reset();
+  step(*world, 2);
+  EXPECT_EQ(spring->status(), StatusCode::BodyDeleted);
+}
+
 TEST(TouchLifetime, AnApplicationsOwnBodyIsReleasedBeforeItGoes) {
   auto world = deformableWorld(0);
   const TouchModel model(0.38, 3);

@@ -137,7 +137,7 @@ CageModel calibrateCage(const CageModel& model, double poissonRatio, int modeCou
 }
 
 CageModel quadraticCage(const CageModel& model) {
-  return modelOf(take(refineQuadratic(model.cage->mesh)));
+  return modelOf(take(refineQuadratic(*model.cage)));
 }
 CageModel scaledCage(const CageModel& model, double scale) {
   if (!(scale > 0.0 && scale < Limits::kMaxCoordinate))

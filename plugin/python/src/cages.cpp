@@ -53,7 +53,7 @@ CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount,
 }
 
 CageModel quadratic(const CageModel& model) {
-  return {sharedOf(take(refineQuadratic(model.cage->mesh))), {}};
+  return {sharedOf(take(refineQuadratic(*model.cage))), {}};
 }
 
 nb::tuple stateOf(const CageModel& model) {

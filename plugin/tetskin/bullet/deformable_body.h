@@ -24,8 +24,9 @@ enum class SolverPath {
 /// deletes all of them in its destructor. Destroy it before the world. If the world has been deleted first, this object
 /// only frees its memory; but a solver that outlives its world must then not be used in another one.
 ///
-/// The application may remove the body from the world itself: it then has no forces any more. If it has added the body
-/// to another world, the application owns the body: it stays there when this object is destroyed, and is not deleted.
+/// The application may remove the body from the world itself: it then has no forces until `addToWorld`. If it has added
+/// the body to another world, the application owns the body: it stays there when this object is destroyed, and is not
+/// deleted.
 class TETSKIN_BULLET_API DeformableBody {
  public:
   /// Creates the body (see `createSoftBody`) and adds it to the world. Unless `options.configureWorld` is false,
@@ -48,6 +49,19 @@ class TETSKIN_BULLET_API DeformableBody {
   ~DeformableBody();
   DeformableBody(const DeformableBody&) = delete;
   DeformableBody& operator=(const DeformableBody&) = delete;
+
+  /// Takes the body out of its world, in which it costs nothing any more, until `addToWorld`. Its nodes, velocities,
+  /// material, gravity and pins stay, and so do skins, its SurfaceContact, its place in SoftContacts, springs and welds,
+  /// whose status is NotInWorld meanwhile. Pushes of several steps are dropped. Nothing happens to a body that is not in
+  /// its world. A snapshot of the world with the body is refused as long as it is out.
+  void removeFromWorld();
+  /// Puts it back, into the world that it was in or another one, where it continues; it wakes. What SoftContacts,
+  /// springs and welds have of it acts in the world in which they were created, once the body is there again. Also for
+  /// a body that the application has taken out by Bullet's own call, and may have added again.
+  /// world   created with a solver as for `add`. The body follows its gravity, unless it has one of its own
+  /// Errors  InvalidOption: the body is in a world; the world has another solver, or a gravity too large for the body.
+  ///         On an error nothing is changed
+  Status addToWorld(btDeformableMultiBodyDynamicsWorld& world);
 
   btSoftBody& body();              ///< Bullet's body, owned by this object
   const btSoftBody& body() const;  ///< Bullet's body, owned by this object

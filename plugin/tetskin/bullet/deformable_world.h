@@ -131,11 +131,18 @@ class TETSKIN_BULLET_API DeformableSolver : public btDeformableBodySolver {
   std::unique_ptr<Impl> impl_;
 };
 
+/// How forces act on rigid bodies in a DeformableWorld.
+enum class RigidForceModel {
+  PlainWorld,       ///< as in btDiscreteDynamicsWorld: once
+  DeformableWorld,  ///< as in btDeformableMultiBodyDynamicsWorld: those of the application twice, gravity once
+};
+
 /// Options of a DeformableWorld.
 struct DeformableWorldOptions {
   btVector3 gravity{0, btScalar(-9.81), 0};  ///< world length / s^2
   ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
   bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; the world then turns rigid bodies, too
+  RigidForceModel rigidForces = RigidForceModel::PlainWorld;  ///< the other one for what was tuned in Bullet's world
 };
 
 /// Internal to DeformableWorld: the objects that a world needs, as a base class so that they are destroyed after it.
@@ -148,7 +155,8 @@ class TETSKIN_BULLET_API DeformableWorldObjects {
 };
 
 /// A deformable world that owns everything it needs: Bullet's collision configuration, dispatcher, broadphase and
-/// constraint solver, and a `DeformableSolver`. For everything else it is a `btDeformableMultiBodyDynamicsWorld`.
+/// constraint solver, and a `DeformableSolver`. Rigid bodies move as in Bullet's `btMultiBodyDynamicsWorld`. For
+/// everything else it is a `btDeformableMultiBodyDynamicsWorld`.
 ///
 ///     tetskin::DeformableWorld world;
 ///     auto body = tetskin::DeformableBody::add(world, cage).value();
@@ -175,7 +183,8 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
 
   /// As of Bullet, but steps in which gravity moves a soft body by more than 6 % of its size are divided, into at most
   /// 64: after a hitch, or with a body of some millimetres. A tick callback is called in each part, with its length.
-  /// Within it, the world can be neither saved nor restored.
+  /// Within it, the world can be neither saved nor restored. A time that is negative or not finite, or a fixedTimeStep
+  /// of 0, changes nothing.
   /// Returns  the number of steps, parts counted
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;

@@ -78,7 +78,7 @@ enum class ForceModel {
 /// Material and settings of a soft body. Lengths are world lengths. The defaults are stable in Bullet's deformable
 /// world at 60 Hz with 4 substeps.
 struct SoftBodyOptions {
-  std::optional<double> mass;  ///< total, in kg, above 0; not given: from density
+  std::optional<double> mass;  ///< total, above 0, 1e-15 to 1e15 in float; not given: from density
   /// Mass per volume: of the mesh if the cage stores it, otherwise of the cage. The default, in kg / m^3, is that of
   /// foam, which is closer to most soft objects of everyday size than water; where lengths are not metres, give a mass.
   double density = 100.0;

@@ -27,9 +27,11 @@ struct ContactShapeOptions {
   /// triangles; of fine ones some vertices are left out. Empty: as many as vertices, or 30 for each node of the cage's
   /// surface if these are more; but at least 2,000 and at most 8,000.
   std::optional<std::size_t> sampleCount;
-  /// Cells of the distance grid along the largest side of the cage's box. Features thinner than two cells are not
-  /// resolved well. The time to create the shape grows nearly with their cube: 256 take some 30 times as long as 64.
-  int gridResolution = 64;
+  /// Cells of the distance grid along the largest side of the cage's box, 4 to 1,024. Features thinner than two cells
+  /// are not resolved well. The time to create the shape grows nearly with their cube: 256 take some 30 times as long
+  /// as 64. Empty: 64, or, where a tenth of the surface is of parts thinner than two of these, as many as they need,
+  /// but no more than a grid of 400,000 corners has; so that a sheet of 1 : 1 : 0.01 has 200.
+  std::optional<int> gridResolution;
 };
 
 namespace contact_detail {
@@ -46,7 +48,8 @@ class TETSKIN_CONTACT_API ContactShape {
   /// mesh    in the cage's rest space, triangles counter-clockwise from outside; not kept. Small holes are closed;
   ///         surfaces of components that lie within other components are left out
   /// Cost    a second for 20,000 triangles and the default grid
-  /// Errors  those of `validate`, `Cage::checkMesh` and `embed`; Degenerate for a surface that encloses nothing;
+  /// Errors  those of `validate`, `Cage::checkMesh` and `embed`; Degenerate for a surface that encloses nothing, or
+  ///         nothing that the grid resolves;
   ///         InvalidOption: options out of range
   static Result<std::shared_ptr<const ContactShape>> create(const Cage& cage, const TriangleMesh& mesh,
                                                             const ContactShapeOptions& options = {});

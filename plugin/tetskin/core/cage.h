@@ -119,13 +119,16 @@ struct QuadraticTet {
 ///         the tets of one number are not eight, or not the uniform refinement of a tet
 TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage);
 
-/// Makes a cage of quadratic tets: each tet of the mesh becomes one, with nodes at the middles of its edges. For meshes
-/// that are filled by their body; a mesh of an eighth of the tets then serves as well as a linear one, and better.
-/// mesh      valid (see `validate`), without flat tets; rest space, any unit
-/// Returns   a cage of 8 T tets for T tets; the mesh's nodes come first, in their order
+/// Makes a cage of quadratic tets: each tet becomes one, with nodes at the middles of its edges. For meshes that are
+/// filled by their body; a mesh of an eighth of the tets then serves as well as a linear one, and better.
+/// cage      valid (see `validate`), without flat tets and duplicate elements; rest space, any unit. Pass a cage and not
+///           its `mesh`, of which nothing else is known: a body of it would have the mass of full tets
+/// Returns   a cage of 8 T tets for T tets, of the same mass; the cage's nodes come first, in their order. Volume
+///           fractions are those of the smaller tets, stiffness factors are left out
 /// Cost      O(T log T)
-/// Errors    those of `validate(const TetMesh&)`; Degenerate: flat tets; TooLarge: 8 T tets are too many
-TETSKIN_CORE_API Result<Cage> refineQuadratic(const TetMesh& mesh);
+/// Errors    those of `validate(const Cage&)`; InvalidOption: duplicate elements; Degenerate: flat tets; TooLarge: 8 T
+///           tets are too many
+TETSKIN_CORE_API Result<Cage> refineQuadratic(const Cage& cage);
 
 /// Finds the quadratic tets of a mesh that was refined uniformly, wholly or in part, by any program: groups of eight
 /// tets that `refineQuadratic` could have made of one, in any order and orientation. For meshes that are filled by

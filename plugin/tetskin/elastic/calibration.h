@@ -3,7 +3,8 @@
 //
 // Linear tets are too stiff, the coarser the more: a cage bends and twists less than the body whose shape it has. Most
 // of that is one factor, known before anything is simulated: how much softer the cage becomes when it is refined. Where
-// thin parts need another factor than thick ones, there is one by region.
+// thin parts need another factor than thick ones, there is one by region. The same factor makes a cage too soft where
+// it is pressed or stretched, as linear tets are right there: `CalibrationReport::stretchError` tells by how much.
 #pragma once
 
 #include <tetskin/core/cage.h>
@@ -27,7 +28,7 @@ struct CalibrationOptions {
 /// Result of a calibration.
 struct TETSKIN_ELASTIC_API CalibrationReport {
   double stiffnessFactor = 1.0;  ///< factor of the stiffness, above 0 and at most 1: of all tets, or their mean
-  bool byRegion = false;         ///< the factors differ, as one does not fit the whole body
+  bool byRegion = false;         ///< the factors differ by region, as one does not fit the whole body
   double leastFactor = 1.0;      ///< the least among the tets
   double greatestFactor = 1.0;   ///< the greatest among the tets
   bool needless = false;         ///< all tets are quadratic and full: the factor is 1, and nothing was compared
@@ -41,6 +42,10 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
   /// accelerations, which is twice that of their frequencies.
   double modeError = 0.0;
   double sagError = 0.0;  ///< the same of the displacement under sags
+  /// How much farther than the limit, as a fraction of the displacement, the cage is pressed or stretched by forces
+  /// along its axes: as it was, and calibrated; a negative one is too stiff. What is mostly pressed, as a column under
+  /// its own weight, is better left as it was, or given quadratic tets or more of them.
+  double plainStretchError = 0.0, stretchError = 0.0;
   /// Estimate of the remaining error: the mean of both errors, plus half of the extrapolation from the refinements. A
   /// fraction of the displacement.
   double remainingError = 0.0;
@@ -60,7 +65,7 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
 ///
 /// All tets get one factor, unless factors by region, made for the one kind of loads, predict the other kind clearly
 /// better; then each tet has its own, which varies slowly over the body. Cages may have quadratic tets among linear
-/// ones; the eight tets of a quadratic one have the same factor. Errors from regions that are fused in the cage appear
+/// ones: those that are full keep the factor 1, and the eight tets of any other have the same factor. Errors from regions that are fused in the cage appear
 /// in no refinement, and no factor corrects them.
 ///
 /// cage     valid (see `validate`), without flat tets; rest space, any unit and size; its stiffness factors are

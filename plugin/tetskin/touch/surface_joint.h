@@ -82,8 +82,8 @@ class TETSKIN_TOUCH_API SurfaceSpring {
   /// InvalidOption. On an error nothing is changed.
   StatusCode setMaxForce(double force);
 
-  /// Status of the surface point, see `SurfacePoint::status`; NotInWorld once the body has been removed from the world,
-  /// which is final.
+  /// Status of the surface point, see `SurfacePoint::status`; NotInWorld as long as the body is out of its world,
+  /// see `DeformableBody::removeFromWorld`.
   StatusCode status() const;
   /// Force on the soft body in the last step in which it was awake, world space.
   btVector3 force() const;
@@ -116,8 +116,8 @@ class TETSKIN_TOUCH_API SurfaceWeld {
   SurfaceWeld(const SurfaceWeld&) = delete;
   SurfaceWeld& operator=(const SurfaceWeld&) = delete;
 
-  /// Status of the surface point, see `SurfacePoint::status`; NotInWorld once the body has been removed from the world,
-  /// which is final.
+  /// Status of the surface point, see `SurfacePoint::status`; NotInWorld as long as the body is out of its world,
+  /// see `DeformableBody::removeFromWorld`.
   StatusCode status() const;
   /// Force on the soft body in the last step in which it was awake, world space.
   btVector3 force() const;

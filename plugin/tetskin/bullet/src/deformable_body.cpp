@@ -9,6 +9,7 @@
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/build/rigid_objects.h>
 #include <tetskin/bullet/src/build/soft_bodies.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
@@ -83,6 +84,13 @@ void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
   force.setDamping(0, damping);
 }
 
+void setWorld(ElasticForce& force, btDeformableMultiBodyDynamicsWorld& world) {
+  force.setWorld(world);
+}
+/// Bullet's forces know no world.
+template <class Force>
+void setWorld(Force&, btDeformableMultiBodyDynamicsWorld&) {}
+
 void setMaterial(ElasticForce& force, const ElasticMaterial& material) {
   force.setMaterial(material);
 }
@@ -147,17 +155,19 @@ std::vector<Eigen::Vector3d> roundedNodes(std::vector<Eigen::Vector3d> nodes) {
 /// The members of a DeformableBody, in such an order that forces are destroyed before the body on which they act.
 struct DeformableBody::Impl final : BodyOwner {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, btDeformableBodySolver& ofSolver, std::unique_ptr<btSoftBody> made)
-      : world(ofWorld),
-        solver(ofSolver),
+      : world(&ofWorld),
+        solver(&ofSolver),
         hasOwnSolver(deformableSolver(&ofSolver)),
-        list(*ofSolver.getLagrangianForceArray()),
+        list(ofSolver.getLagrangianForceArray()),
         body(std::move(made)),
-        gravity(ofWorld, list, !hasOwnSolver, *this) {}
+        gravity(ofWorld, *list, !hasOwnSolver, *this) {}
 
-  btDeformableMultiBodyDynamicsWorld& world;
-  btDeformableBodySolver& solver;
+  // The world that the body is in, or was in last.
+  btDeformableMultiBodyDynamicsWorld* world;
+  btDeformableBodySolver* solver;
   bool hasOwnSolver;  ///< it is a DeformableSolver, of which it is known whether it still exists
-  ForceList& list;
+  ForceList* list;
+  ObjectFilters filters;  ///< of the body, when it was taken out
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
   ElasticMaterial material;
@@ -166,11 +176,16 @@ struct DeformableBody::Impl final : BodyOwner {
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
   std::function<void(const ElasticMaterial&)> applyMaterial;  ///< sets the material of `elasticity`
+  std::function<void()> moveElasticity;                       ///< tells `elasticity` that the world is another one
 
   template <class Force, class... Arguments>
   void makeElasticity(Arguments&&... arguments) {
-    auto force = std::make_unique<OwnForce<Force>>(list, std::forward<Arguments>(arguments)...);
+    auto force = std::make_unique<OwnForce<Force>>(*list, std::forward<Arguments>(arguments)...);
     applyMaterial = [to = static_cast<Force*>(force.get())](const ElasticMaterial& now) { setMaterial(*to, now); };
+    moveElasticity = [this, to = force.get()] {
+      to->setList(*list);
+      setWorld(static_cast<Force&>(*to), *world);
+    };
     elasticity = std::move(force);
   }
   /// Creates the force of the body's material.
@@ -189,20 +204,21 @@ struct DeformableBody::Impl final : BodyOwner {
     if (status.ok()) apply(now);
     return status;
   }
-  void enter(const ObjectFilters& filters = {});
+  void enter();
+  void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void visitState(WorldStream& stream) override;
   void describe(BuildStream& stream) override;
   btSoftBody& ownedBody() override { return *body; }
   btDeformableLagrangianForce& elasticForce() override { return *elasticity; }
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
-  bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == &solver; }
+  bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == solver; }
   /// True if the forces are still in the world: whoever removes the body from the world removes it from its forces, and
   /// elasticity drops a body with tets that it cannot simulate.
   bool isActedOn() const {
     return isInItsWorld() && gravity.m_softBodies.size() > 0 && elasticity->m_softBodies.size() > 0;
   }
-  bool solverLives() const { return !hasOwnSolver || deformableSolver(&solver); }
+  bool solverLives() const { return !hasOwnSolver || deformableSolver(solver); }
   Status checkNode(int node) const {
     if (node >= 0 && node < static_cast<int>(masses.size())) return {};
     return {StatusCode::IndexOutOfRange, "node " + std::to_string(node) + " does not exist in a cage of " +
@@ -259,19 +275,19 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
 }
 
 /// Adds the body and its forces to the world. What may run out of memory comes first: from then on, nothing throws.
-void DeformableBody::Impl::enter(const ObjectFilters& filters) {
+void DeformableBody::Impl::enter() {
   assert(elasticity);
-  btDispatcher& dispatcher = *world.getDispatcher();
+  btDispatcher& dispatcher = *world->getDispatcher();
   if (forceModel == ForceModel::Corotated && !isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
     registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
   }
-  world.addSoftBody(body.get(), filters.group, filters.mask);
+  if (!isInAWorld()) world->addSoftBody(body.get(), filters.group, filters.mask);
   for (btDeformableLagrangianForce* force : {static_cast<btDeformableLagrangianForce*>(&gravity), elasticity.get()}) {
-    force->setIndices(solver.getIndices());
+    force->setIndices(solver->getIndices());
   }
-  addToList(list, gravity, *elasticity, *body);
+  addToList(*list, gravity, *elasticity, *body);
   if (forceModel != ForceModel::Corotated) return;
-  Access<DeformableSolver>::requireOwnSolve(static_cast<DeformableSolver&>(solver), world);
+  Access<DeformableSolver>::requireOwnSolve(static_cast<DeformableSolver&>(*solver), *world);
 }
 
 void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
@@ -287,7 +303,7 @@ void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const 
       applyMaterial(material);
       return;
     default:
-      makeElasticity<ElasticForce>(world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
+      makeElasticity<ElasticForce>(*world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
                                    SolverSettings{options.solverTolerance, options.maxIterations});
   }
 }
@@ -347,7 +363,8 @@ std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& strea
   impl->weightPressure = parts.weightPressure;
   std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
   made->impl_->makeElasticity(options, rest.value(), std::move(parts.quadratic));
-  made->impl_->enter(parts.filters);
+  made->impl_->filters = parts.filters;
+  made->impl_->enter();
   return made;
 }
 
@@ -363,8 +380,8 @@ SolverPath DeformableBody::solverPath() const {
 /// As the world would remove it, without telling the solver, which has been destroyed before the world.
 void DeformableBody::Impl::leaveWithoutSolver() {
   assert(isInItsWorld());
-  world.getSoftBodyArray().remove(body.get());
-  world.btCollisionWorld::removeCollisionObject(body.get());
+  world->getSoftBodyArray().remove(body.get());
+  world->btCollisionWorld::removeCollisionObject(body.get());
 }
 
 DeformableBody::~DeformableBody() {
@@ -379,9 +396,47 @@ DeformableBody::~DeformableBody() {
     impl_->leaveWithoutSolver();
     return;
   }
-  removeFromList(impl_->list, &impl_->gravity);
-  removeFromList(impl_->list, impl_->elasticity.get());
-  impl_->world.removeSoftBody(impl_->body.get());
+  removeFromList(*impl_->list, &impl_->gravity);
+  removeFromList(*impl_->list, impl_->elasticity.get());
+  impl_->world->removeSoftBody(impl_->body.get());
+}
+
+/// The body is in no world, or in this one without its forces.
+void DeformableBody::Impl::moveTo(btDeformableMultiBodyDynamicsWorld& to) {
+  assert(!isActedOn());
+  if (&to == world && &solverOf(to) == solver) return;
+  world = &to;
+  solver = &solverOf(to);
+  hasOwnSolver = deformableSolver(solver);
+  list = solver->getLagrangianForceArray();
+  body->m_worldInfo = &to.getWorldInfo();
+  gravity.setWorld(to, *list, !hasOwnSolver);
+  moveElasticity();
+  BodyWithTrees& own = *bodyWithTrees(*body);
+  own.setMovesCountedBy(nullptr);
+  if (const auto contacts = own.surfaceContacts().lock()) contacts->setDispatcher(to.getDispatcher());
+}
+
+void DeformableBody::removeFromWorld() {
+  if (!impl_->isInItsWorld()) return;
+  assert(impl_->solverLives());
+  impl_->filters.readFrom(body());
+  impl_->world->removeSoftBody(impl_->body.get());
+}
+
+Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
+  if (impl_->isActedOn()) return invalid("the body is in a world already: call removeFromWorld first");
+  const auto& inWorld = world.getSoftBodyArray();
+  const bool isThere = inWorld.findLinearSearch(impl_->body.get()) < inWorld.size();
+  if (impl_->isInAWorld() && !isThere) return invalid("the body is in another world: remove it there first");
+  SoftBodyOptions options;
+  options.forceModel = impl_->forceModel;
+  if (Status status = checkSolver(solverOf(world), options); !status.ok()) return status;
+  if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
+  impl_->moveTo(world);
+  impl_->enter();
+  body().activate();
+  return {};
 }
 
 btSoftBody& DeformableBody::body() {

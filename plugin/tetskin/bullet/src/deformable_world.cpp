@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/motion/rigid_forces.h>
 #include <tetskin/bullet/src/motion/rigid_turns.h>
 #include <tetskin/bullet/src/step/step.h>
 #include <tetskin/bullet/src/step/watched_detection.h>
@@ -79,6 +80,7 @@ struct DeformableWorldObjects::Impl {
   DeformableSolver deformableSolver;
   btDeformableMultiBodyConstraintSolver constraintSolver;
   RigidTurns turns;
+  std::unique_ptr<RigidForces> forces;  ///< null: as Bullet has them
 };
 
 DeformableWorldObjects::DeformableWorldObjects() : impl_(std::make_unique<Impl>()) {}
@@ -92,6 +94,10 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
   setUseProjection(true);
   impl_->deformableSolver.setThreads(options.threads);
   impl_->deformableSolver.setDeterministic(options.deterministic);
+  if (options.rigidForces == RigidForceModel::PlainWorld) {
+    impl_->forces = std::make_unique<RigidForces>(m_nonStaticRigidBodies);
+    impl_->deformableSolver.impl_->rigidForces = impl_->forces.get();
+  }
 }
 
 DeformableWorld::~DeformableWorld() = default;
@@ -100,6 +106,11 @@ DeformableWorld::~DeformableWorld() = default;
 /// the application's forces after the last one.
 int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
   const Simulation simulation(*impl_->deformableSolver.impl_, getSoftBodyArray());
+  // Bullet would add it to its clock, or divide by it.
+  if (!(timeStep >= 0 && timeStep < BT_LARGE_FLOAT) ||
+      (maxSubSteps > 0 && !(fixedTimeStep > 0 && fixedTimeStep < BT_LARGE_FLOAT))) {
+    return 0;
+  }
   const btScalar seconds = maxSubSteps > 0 ? fixedTimeStep : timeStep;
   const int parts = partsOf(*this, seconds);
   if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
@@ -122,18 +133,17 @@ btCollisionDispatcher& DeformableWorld::dispatcher() {
   return impl_->dispatcher;
 }
 
-/// As of btDeformableMultiBodyDynamicsWorld, with turns by our own sine after Bullet's.
+/// As of btDeformableMultiBodyDynamicsWorld. Of a deterministic world, turns by our own sine after Bullet's.
 void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
-  if (!impl_->deformableSolver.deterministic()) {
-    return btDeformableMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
-  }
-  btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);  // NOLINT(bugprone-parent-virtual-call): in place of its own
-  RigidTurns::predict(m_nonStaticRigidBodies, dt);
+  btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);  // NOLINT(bugprone-parent-virtual-call): the soft ones below
+  if (impl_->deformableSolver.deterministic()) RigidTurns::predict(m_nonStaticRigidBodies, dt);
+  if (impl_->forces) impl_->forces->afterPrediction(dt);
   impl_->deformableSolver.predictMotion(dt);
 }
 
 /// As of btDeformableMultiBodyDynamicsWorld, likewise.
 void DeformableWorld::integrateTransforms(btScalar dt) {
+  if (impl_->forces) impl_->forces->end();
   if (!impl_->deformableSolver.deterministic()) return btDeformableMultiBodyDynamicsWorld::integrateTransforms(dt);
   positionCorrection(dt);
   impl_->turns.begin(m_nonStaticRigidBodies);

@@ -56,9 +56,17 @@ void addToList(ForceList& list, BodyGravity& gravity, btDeformableLagrangianForc
 BodyGravity::BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals,
                          BodyOwner& owner)
     : OwnForce<btDeformableGravityForce>(list, world.getGravity()),
-      world_(world),
+      world_(&world),
       isToldOfRemovals_(isToldOfRemovals),
       owner_(owner) {}
+
+void BodyGravity::setWorld(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals) {
+  assert(m_softBodies.size() == 0);
+  setList(list);
+  world_ = &world;
+  isToldOfRemovals_ = isToldOfRemovals;
+  removed_ = nullptr;
+}
 
 btDeformableLagrangianForceType BodyGravity::getForceType() {
   return inCallback_ ? BT_GRAVITY_FORCE : kOwnForceType;
@@ -75,7 +83,7 @@ void BodyGravity::reinitialize(bool) {
   removed_ = nullptr;
   inCallback_ = !removal;
   const btVector3 before = m_gravity;
-  m_gravity = own_.value_or(world_.getGravity());
+  m_gravity = own_.value_or(world_->getGravity());
   for (int i = 0; i < m_softBodies.size(); ++i) {
     updateConstants(*m_softBodies[i]);
     if (m_gravity != before) m_softBodies[i]->activate();
@@ -134,9 +142,9 @@ void BodyGravity::stopSleepers() {
 /// The gravity that Bullet has found. Forces of this library that stand behind this one still answer, so that there is
 /// always one.
 btVector3 BodyGravity::requestedGravity() const {
-  for (int i = list_.size() - 1; i >= 0; --i) {
-    if (list_[i]->getForceType() != BT_GRAVITY_FORCE) continue;
-    return static_cast<const btDeformableGravityForce*>(list_[i])->m_gravity;
+  for (int i = list_->size() - 1; i >= 0; --i) {
+    if ((*list_)[i]->getForceType() != BT_GRAVITY_FORCE) continue;
+    return static_cast<const btDeformableGravityForce*>((*list_)[i])->m_gravity;
   }
   assert(false && "Bullet has asked for a gravity, and this one was not there");
   return m_gravity;

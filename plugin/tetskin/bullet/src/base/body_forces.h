@@ -74,16 +74,18 @@ class OwnForce : public Force {
  public:
   template <class... Arguments>
   explicit OwnForce(ForceList& list, Arguments&&... arguments)
-      : Force(std::forward<Arguments>(arguments)...), list_(list) {}
+      : Force(std::forward<Arguments>(arguments)...), list_(&list) {}
 
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
   void removeSoftBody(btSoftBody* body) override {
     Force::removeSoftBody(body);
-    if (this->m_softBodies.size() == 0) replaceByNothing(list_, this);
+    if (this->m_softBodies.size() == 0) replaceByNothing(*list_, this);
   }
+  /// Of the world that its body is about to enter.
+  void setList(ForceList& list) { list_ = &list; }
 
  protected:
-  ForceList& list_;
+  ForceList* list_;
 };
 
 /// What has created a body, its gravity and its elasticity.
@@ -111,7 +113,9 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   /// isToldOfRemovals  the solver calls `reinitialize` when a body has been removed, as Bullet's does
   BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals, BodyOwner& owner);
   BodyOwner& owner() const { return owner_; }
-  btDeformableMultiBodyDynamicsWorld& world() const { return world_; }
+  btDeformableMultiBodyDynamicsWorld& world() const { return *world_; }
+  /// The world that its body is about to enter; as in the constructor.
+  void setWorld(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals);
 
   /// gravity  world units per second squared; empty: the world's
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
@@ -138,7 +142,7 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   void stopSleepers();
 
   OwnObject registered_{OwnObject::Kind::BodyGravity, static_cast<const btDeformableLagrangianForce*>(this)};
-  btDeformableMultiBodyDynamicsWorld& world_;
+  btDeformableMultiBodyDynamicsWorld* world_;
   bool isToldOfRemovals_;
   std::optional<btVector3> own_;
   const btSoftBody* removed_ = nullptr;  ///< until the next call of `reinitialize`

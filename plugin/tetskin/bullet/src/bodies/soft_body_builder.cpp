@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdio>
 #include <memory>
 #include <numeric>
 
@@ -110,6 +111,33 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   }
 }
 
+/// Rejects a cage so far from the origin that its tets have another shape in the precision of positions.
+Status checkPlace(const TetMesh& cage, const std::vector<btVector3>& nodes) {
+  constexpr double kLeft = 0.5;  // of a volume
+  for (std::size_t t = 0; t < cage.tetCount(); ++t) {
+    TetCorners rounded;
+    for (std::size_t k = 0; k < 4; ++k) rounded[k] = toEigen(nodes[static_cast<std::size_t>(cage.tets[t][k])]);
+    if (signedVolume(rounded) > kLeft * signedVolume(cornersOf(cage, cage.tets[t]))) continue;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "tet %zu is flat or inside out when positions %.3g from the origin are rounded to Bullet's numbers: "
+                  "create the body nearer to the origin, or build Bullet in double precision",
+                  t, rounded[0].cwiseAbs().maxCoeff());
+    return {StatusCode::Degenerate, text};
+  }
+  return {};
+}
+
+/// Rejects masses whose products with lengths and times of any use leave the range of Bullet's numbers.
+Status checkMass(double mass) {
+  const double heaviest = sizeof(btScalar) == sizeof(double) ? 1e100 : 1e15;
+  if (mass <= heaviest && mass >= 1 / heaviest) return {};
+  char text[160];
+  std::snprintf(text, sizeof text, "a body of mass %.3g is beyond %.0g to %.0g: choose another unit of mass", mass,
+                1 / heaviest, heaviest);
+  return {StatusCode::InvalidOption, text};
+}
+
 /// Does what Bullet would do in the first step, but with our trees.
 void finish(const SoftBodyOptions& options, BodyWithTrees& body) {
   body.updateConstants();
@@ -201,10 +229,14 @@ Result<BuiltBody> bullet_detail::buildBody(const Cage& cage, btSoftBodyWorldInfo
 
   std::vector<btVector3> nodes(positive.nodeCount());
   std::transform(positive.nodes.begin(), positive.nodes.end(), nodes.begin(), toBullet);
+  std::vector<double> masses = massesOf(positive, options);
+  for (const Status& status :
+       {checkPlace(positive, nodes), checkMass(std::accumulate(masses.begin(), masses.end(), 0.0))}) {
+    if (!status.ok()) return status;
+  }
   auto body = std::make_unique<BodyWithTrees>(worldInfo, nodes);
   configure(positive, options, *body);
   appendElements(positive, *body);
-  std::vector<double> masses = massesOf(positive, options);
   setMasses(positive, options, masses, *body);
   if (options.forceModel != ForceModel::Corotated) scaleMeasures(options.stiffnessScale, *body);
   finish(options, *body);

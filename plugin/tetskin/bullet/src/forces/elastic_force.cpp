@@ -17,8 +17,7 @@ ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody
   assert(stiffnessScale.empty() || stiffnessScale.size() == linear.count());
   assert(settings.tolerance >= 0.0 && settings.tolerance < 1.0 && settings.iterations >= 1);
   body_.body = &body;
-  body_.world = &world;
-  body_.worldInfo = &world.getWorldInfo();
+  setWorld(world);
   body_.stiffnessScale = std::move(stiffnessScale);
   body_.quadratic = std::move(quadratic);
   body_.build(linear, material);
@@ -28,6 +27,11 @@ void ElasticForce::setMaterial(const ElasticMaterial& material) {
   assert(checkMaterial(material).ok());
   material_ = material;
   body_.setMaterial(material);
+}
+
+void ElasticForce::setWorld(btDeformableMultiBodyDynamicsWorld& world) {
+  body_.world = &world;
+  body_.worldInfo = &world.getWorldInfo();
 }
 
 void ElasticForce::reinitialize(bool) {

@@ -26,6 +26,8 @@ class ElasticForce : public InactiveForce {
                std::vector<QuadraticShape> quadratic, const SolverSettings& settings);
 
   void setMaterial(const ElasticMaterial& material);
+  /// The world that its body is about to enter.
+  void setWorld(btDeformableMultiBodyDynamicsWorld& world);
   const SolverSettings& settings() const { return settings_; }
   ForcedBody& body() { return body_; }
 

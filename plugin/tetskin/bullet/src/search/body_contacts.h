@@ -45,6 +45,8 @@ class BodyContacts {
   BodyContacts& operator=(const BodyContacts&) = delete;
 
   const btDispatcher* dispatcher() const { return dispatcher_; }
+  /// Of another world, which the body is about to enter.
+  void setDispatcher(const btDispatcher* dispatcher) { dispatcher_ = dispatcher; }
   /// If this is false, only `forget` and the accessors may be called.
   bool bodyLives() const { return !lifetime_.expired(); }
 

@@ -24,6 +24,7 @@
 #include <tetskin/bullet/src/state/world_state.h>
 
 #include <memory>
+#include <string>
 
 namespace tetskin::bullet_detail {
 namespace {
@@ -186,6 +187,10 @@ class PairVisitor {
     int index;  ///< in the list
   };
 
+  static std::string nameOf(const btCollisionObjectWrapper& object) {
+    return "object " + std::to_string(object.getCollisionObject()->getWorldArrayIndex()) + " (" +
+           object.getCollisionShape()->getName() + ")";
+  }
   static bool isSoft(const btCollisionObjectWrapper& object) {
     return object.getCollisionObject()->getInternalType() == btCollisionObject::CO_SOFT_BODY;
   }
@@ -196,7 +201,10 @@ class PairVisitor {
     const bool soft = isSoft(first) || isSoft(second);
     const auto kindNow = [&] { return soft && algorithm ? AlgorithmKind::Stateless : classes.kindOf(algorithm); };
     AlgorithmKind kind = kindNow();
-    if (kind == AlgorithmKind::Unknown) return stream_.refuse("a collision algorithm that is none of Bullet's own");
+    if (kind == AlgorithmKind::Unknown) {
+      return stream_.refuse("the contact of " + nameOf(first) + " and " + nameOf(second) +
+                            ", whose collision algorithm it does not know: that of a GImpact mesh, or your own");
+    }
     stream_(kind);
     if (stream_.restoring() && !make(algorithm, kind != AlgorithmKind::None && !stream_.failed(), first, second))
       return;

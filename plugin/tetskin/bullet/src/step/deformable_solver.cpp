@@ -85,6 +85,7 @@ void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& sof
   impl_->loads.dropAllBut(softBodies);
   if (!(dt > 0)) return impl_->dropRemoved(softBodies);
   impl_->clock.restart();
+  if (impl_->rigidForces) impl_->rigidForces->begin();
   impl_->gather(softBodies, dt);
   setMovesCounted(softBodies, impl_->solving ? this : nullptr);
   impl_->clock.end(&StepTimes::prediction);

@@ -16,6 +16,7 @@
 #include <tetskin/bullet/src/base/node_loads.h>
 #include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/bullet/src/motion/driven_nodes.h>
+#include <tetskin/bullet/src/motion/rigid_forces.h>
 #include <tetskin/bullet/src/motion/sleepers.h>
 #include <tetskin/bullet/src/motion/stillness.h>
 #include <tetskin/bullet/src/rows/contact_rows.h>
@@ -140,6 +141,7 @@ struct DeformableSolver::Impl {
   StepObjects objects;
   btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world, which may have been destroyed
   const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
+  RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
   bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
   bool inStep = false;                                  ///< from `gather` until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it

@@ -28,7 +28,7 @@ void DeformedTet::setPlanes(const btScalar minimum[4]) {
 }
 
 ContactBody::ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number)
-    : body(&solved), shape(std::move(ofShape)), self(meetsItself), id(number) {
+    : body(&solved), shape(std::move(ofShape)), self(meetsItself), id(number), solver_(solved.getSoftBodySolver()) {
   const auto* own = bullet_detail::bodyWithTrees(solved);
   if (!own) return;
   watched_ = true;

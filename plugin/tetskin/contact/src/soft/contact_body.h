@@ -91,6 +91,9 @@ class ContactBody {
   const ShapeData& data() const { return dataOf(*shape); }
   /// False if the body is known to have been deleted; of bodies of the application, this is not known.
   bool lives() const { return !watched_ || !life_.expired(); }
+  bool isWatched() const { return watched_; }
+  /// True if the living body is in the world in which it was added.
+  bool isInWorld() const { return body->getBroadphaseHandle() && body->getSoftBodySolver() == solver_; }
   /// True if the body has the nodes and tets that the shape was made for.
   bool fits() const;
 
@@ -137,6 +140,7 @@ class ContactBody {
   void placeGroup(const TetGroup& group, GroupBoxes& boxes) const;
   void fitTrees();
 
+  const btSoftBodySolver* solver_;
   bool watched_ = false;
   std::weak_ptr<const void> life_;  ///< of a watched body
   OncePerStep placed_, fitted_;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/other_components.h>
 #include <tetskin/contact/src/soft/sample_normals.h>
+#include <tetskin/contact/src/soft/surface_thickness.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
@@ -46,10 +47,21 @@ Status checkOptions(const ContactShapeOptions& options) {
   if (options.sampleCount && (*options.sampleCount < 1 || *options.sampleCount > 10'000'000)) {
     return {StatusCode::InvalidOption, "the number of samples of a contact shape must be between 1 and 10,000,000"};
   }
-  if (options.gridResolution < 4 || options.gridResolution > 1024) {
+  if (options.gridResolution && (*options.gridResolution < 4 || *options.gridResolution > 1024)) {
     return {StatusCode::InvalidOption, "the number of cells of a contact shape's grid must be between 4 and 1,024"};
   }
   return {};
+}
+
+/// Default number of cells of the grid; and what bounds it where parts are thinner than two of them.
+constexpr int kUsualCells = 64;
+constexpr double kMostCorners = 4e5;
+/// Cells along the longest side of the box, so that the body is two of them thick, within the bound.
+int cellsFor(double thickness, const Box3& box) {
+  const double size = box.sizes().maxCoeff();
+  int cells = static_cast<int>(std::ceil(2 * size / std::max(thickness, size / 512)));
+  while (cells > kUsualCells && cornersOfGrid(box, cells) > kMostCorners) cells -= 1 + cells / 100;
+  return std::max(cells, kUsualCells);
 }
 
 Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShapeOptions& options) {
@@ -364,13 +376,17 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
   const std::vector<int> visible = visibleTriangles(mesh, solid);
   const TriangleBvh surface(mesh, visible);
   auto data = std::make_unique<ShapeData>();
-  if (!visible.empty()) data->grid = DistanceGrid(surface, solid, boundingBox(cage.mesh.nodes), options.gridResolution);
+  const Box3 box = boundingBox(cage.mesh.nodes);
+  const double resolved = 2 * box.sizes().maxCoeff() / kUsualCells;
+  const int cells = options.gridResolution ? *options.gridResolution
+                                           : cellsFor(usualThickness(mesh, visible, surface, resolved), box);
+  if (!visible.empty()) data->grid = DistanceGrid(surface, solid, box, cells);
   if (!data->grid.hasInside()) {
     return Status{StatusCode::Degenerate,
                   facesInwards(mesh)
                       ? "the mesh's triangles face inwards; reverse their orientation"
-                      : "the mesh encloses no volume that the grid resolves; close the mesh, or give the "
-                        "shape more cells"};
+                      : "the mesh encloses no volume that a grid of " + std::to_string(cells) +
+                            " cells along its longest side resolves: close the mesh, or give a larger gridResolution"};
   }
   const std::vector<SurfaceSample> samples =
       sampleSurface(mesh, visible, options.sampleCount.value_or(defaultSampleCount(cage, mesh)));

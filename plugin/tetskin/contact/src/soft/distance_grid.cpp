@@ -17,15 +17,25 @@ btScalar between(btScalar a, btScalar b, btScalar t) {
   return a + (b - a) * t;
 }
 
+int cornersAlong(double side, double spacing) {
+  return static_cast<int>(std::ceil(side / spacing)) + 2 * kGridBorder + 1;
+}
+
 }  // namespace
+
+double cornersOfGrid(const Box3& box, int cells) {
+  assert(!box.isEmpty() && cells > 0);
+  const double spacing = box.sizes().maxCoeff() / cells;
+  double corners = 1.0;
+  for (int k = 0; k < 3; ++k) corners *= cornersAlong(box.sizes()[k], spacing);
+  return corners;
+}
 
 DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid, const Box3& box, int cells) {
   assert(!box.isEmpty() && cells > 0);
   const double spacing = box.sizes().maxCoeff() / cells;
   const Eigen::Vector3d low = box.min() - Eigen::Vector3d::Constant(kGridBorder * spacing);
-  for (int k = 0; k < 3; ++k) {
-    counts_[k] = static_cast<int>(std::ceil(box.sizes()[k] / spacing)) + 2 * kGridBorder + 1;
-  }
+  for (int k = 0; k < 3; ++k) counts_[k] = cornersAlong(box.sizes()[k], spacing);
   findStrides();
   low_ = toBullet(low);
   spacing_ = static_cast<btScalar>(spacing);

@@ -24,6 +24,10 @@ struct GridDistance {
   btVector3 gradient{0, 0, 0};
 };
 
+/// The number of corners that a grid has.
+/// cells  as for its constructor
+double cornersOfGrid(const Box3& box, int cells);
+
 /// Signed distances at the corners of cubes. Between the corners they are interpolated trilinearly; the gradient is
 /// that of the interpolation.
 class DistanceGrid {

@@ -84,7 +84,9 @@ ContactBody* SoftContactRows::find(const btSoftBody& body) const {
 }
 
 bool SoftContactRows::isGone(const btSoftBody& body) const {
-  return std::find(gone_.begin(), gone_.end(), &body) != gone_.end();
+  const auto isIt = [&](const auto& gone) { return gone->body == &body; };
+  return std::find(gone_.begin(), gone_.end(), &body) != gone_.end() ||
+         std::any_of(away_.begin(), away_.end(), isIt);
 }
 
 bool SoftContactRows::isWithin(const ContactBody& body) const {
@@ -103,8 +105,15 @@ void SoftContactRows::include(btSoftBody& body, std::shared_ptr<const ContactSha
 
 void SoftContactRows::exclude(const btSoftBody& body) {
   gone_.erase(std::remove(gone_.begin(), gone_.end(), &body), gone_.end());
+  const auto isIt = [&](const auto& gone) { return gone->body == &body; };
+  away_.erase(std::remove_if(away_.begin(), away_.end(), isIt), away_.end());
+  (void)take(body);
+}
+
+/// Null if it is not there.
+std::unique_ptr<ContactBody> SoftContactRows::take(const btSoftBody& body) {
   const ContactBody* solved = find(body);
-  if (!solved) return;
+  if (!solved) return nullptr;
   // Nothing stored in the step before may refer to the body.
   const int id = solved->id;
   for (auto* contacts : {&contacts_, &sleeping_}) {
@@ -114,19 +123,36 @@ void SoftContactRows::exclude(const btSoftBody& body) {
   for (auto kept = pairStates_.begin(); kept != pairStates_.end();) {
     kept = kept->first.first == id || kept->first.second == id ? pairStates_.erase(kept) : std::next(kept);
   }
-  bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; }));
+  const auto found = std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& b) { return b.get() == solved; });
+  std::unique_ptr<ContactBody> taken = std::move(*found);
+  bodies_.erase(found);
+  return taken;
+}
+
+/// Bodies that were taken out of the world, and are in it again.
+void SoftContactRows::includeReturned() {
+  for (std::size_t k = away_.size(); k-- > 0;) {
+    if (away_[k]->lives() && !away_[k]->isInWorld()) continue;
+    const std::unique_ptr<ContactBody> back = std::move(away_[k]);
+    away_.erase(away_.begin() + static_cast<std::ptrdiff_t>(k));
+    if (back->lives()) include(*back->body, back->shape, back->self);
+  }
 }
 
 void SoftContactRows::excludeDeleted() {
   for (std::size_t k = bodies_.size(); k-- > 0;) {
-    if (!bodies_[k]->lives()) exclude(*bodies_[k]->body);
+    if (!bodies_[k]->lives()) (void)take(*bodies_[k]->body);
   }
 }
 
 void SoftContactRows::removeSoftBody(btSoftBody* body) {
-  if (!find(*body)) return;
-  exclude(*body);
-  gone_.push_back(body);
+  std::unique_ptr<ContactBody> taken = take(*body);
+  if (!taken) return;
+  if (taken->isWatched()) {
+    away_.push_back(std::move(taken));
+  } else {
+    gone_.push_back(body);
+  }
 }
 
 void SoftContactRows::dropCandidates() {
@@ -137,6 +163,7 @@ void SoftContactRows::dropCandidates() {
 
 PointContacts* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads) {
   assert(seconds > 0);
+  includeReturned();
   keepSleeping();
   runTasks(threads, bodies_.size(), [&](std::size_t k) {
     bodies_[k]->readable = false;

@@ -25,6 +25,7 @@ class SoftContactRows : public RowSource {
   /// Excludes bodies that were deleted after their world, which cannot tell any more that they go.
   void excludeDeleted();
   ContactBody* find(const btSoftBody& body) const;
+  /// True of a body that was added, and is not in the world.
   bool isGone(const btSoftBody& body) const;
   /// True if the body lay wholly within another one in the last step.
   bool isWithin(const ContactBody& body) const;
@@ -75,8 +76,12 @@ class SoftContactRows : public RowSource {
   void addContact(const ContactBody& first, const ContactBody& second, const Touch& touch, btScalar seconds);
 
   SoftContactOptions options_;
+  std::unique_ptr<ContactBody> take(const btSoftBody& body);
+  void includeReturned();
+
   std::vector<std::unique_ptr<ContactBody>> bodies_;
-  std::vector<const btSoftBody*> gone_;
+  std::vector<std::unique_ptr<ContactBody>> away_;  ///< out of the world; they may come back
+  std::vector<const btSoftBody*> gone_;             ///< the same of bodies of which it is not known whether they live
   int nextId_ = 0;
   std::vector<PairSearch> searches_;                     ///< one for each task
   std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids

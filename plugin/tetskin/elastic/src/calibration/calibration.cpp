@@ -78,12 +78,14 @@ void report(const StiffnessFit& fit, CalibrationReport& report) {
   report.leastFactor = *least;
   report.greatestFactor = *greatest;
   const double sum = std::accumulate(factors.begin(), factors.end(), 0.0);
-  report.stiffnessFactor = fit.byRegion() ? sum / static_cast<double>(factors.size()) : factors.front();
+  report.stiffnessFactor = *least < *greatest ? sum / static_cast<double>(factors.size()) : *least;
   report.byRegion = fit.byRegion();
   report.responses = fit.responses();
   report.skippedModes = fit.skippedModes();
   report.modeError = fit.modeError();
   report.sagError = fit.sagError();
+  report.plainStretchError = fit.plainStretchError();
+  report.stretchError = fit.stretchError();
   const double extrapolated = std::max(0.0, 1.0 - report.responses.back());
   report.remainingError = std::hypot(std::sqrt(0.5) * std::hypot(fit.modeError(), fit.sagError()), 0.5 * extrapolated);
 }
@@ -99,12 +101,17 @@ std::string CalibrationReport::describe() const {
     text << "not calibrated: the cage has more tets than can be refined; the stiffness is not scaled\n";
   } else {
     text << "stiffness scaled by " << stiffnessFactor;
-    if (byRegion) text << " on average, by region from " << leastFactor << " to " << greatestFactor;
+    if (leastFactor < greatestFactor) {
+      text << " on average, " << (byRegion ? "by region " : "") << "from " << leastFactor << " to " << greatestFactor;
+    }
     text << " (" << refinements << (refinements == 1 ? " refinement" : " refinements") << ", the finest with "
          << refinedTets << " tets); estimated remaining error " << std::lround(100.0 * remainingError)
          << " % of a displacement, less with more tets\n"
          << "compared with the limit of the refinements: " << std::lround(100.0 * modeError)
-         << " % in vibrations (half of that in their frequencies), " << std::lround(100.0 * sagError) << " % in sags\n";
+         << " % in vibrations (half of that in their frequencies), " << std::lround(100.0 * sagError) << " % in sags\n"
+         << "stretched or pressed it gives way by " << std::showpos << std::lround(100.0 * stretchError)
+         << " % of what is right, without calibration by " << std::lround(100.0 * plainStretchError) << std::noshowpos
+         << " %\n";
   }
   if (skippedModes > 0) text << skippedModes << " vibrations of loosely connected components were left out\n";
   text << std::setprecision(6) << milliseconds << " ms\n";

@@ -27,11 +27,18 @@ constexpr double kBetter = 0.9;
 /// Fractions of a calibration's time at which its solves for both kinds of loads end, about.
 constexpr double kModesDone = 0.6, kSagsDone = 0.9;
 
-/// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
-Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
+/// A body's axes, those of its inertia: the longest is the last.
+struct Axes {
+  Eigen::Vector3d centre, extents;  ///< mean squares along the axes
+  Eigen::Matrix3d directions;       ///< by column
+
+  Axes(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses);
+  Eigen::Vector3d along(const Eigen::Vector3d& node) const { return directions.transpose() * (node - centre); }
+};
+
+Axes::Axes(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) : centre(0, 0, 0) {
   assert(masses.size() == static_cast<Eigen::Index>(3 * nodes.size()));
   const auto massOf = [&](std::size_t n) { return masses[static_cast<Eigen::Index>(3 * n)]; };
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double mass = 0.0;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     centre += massOf(n) * nodes[n];
@@ -42,13 +49,33 @@ Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     covariance += massOf(n) / mass * (nodes[n] - centre) * (nodes[n] - centre).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(covariance);
+  extents = principal.eigenvalues();
+  directions = principal.eigenvectors();
+}
+
+/// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
+Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
+  const Axes axes(nodes, masses);
   Fields accelerations(masses.size(), 6);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const Eigen::Vector3d along = axes.eigenvectors().transpose() * (nodes[n] - centre);
+    const Eigen::Vector3d along = axes.along(nodes[n]);
     for (Eigen::Index k = 0; k < 6; ++k) {
-      const double square = along[2 - k / 3] * along[2 - k / 3] / axes.eigenvalues()[2];
-      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = square * axes.eigenvectors().col(k % 3);
+      const double square = along[2 - k / 3] * along[2 - k / 3] / axes.extents[2];
+      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = square * axes.directions.col(k % 3);
+    }
+  }
+  return accelerations;
+}
+
+/// Away from the middle, along one axis in each column, as the position there.
+Fields stretchAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
+  const Axes axes(nodes, masses);
+  Fields accelerations(masses.size(), 3);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Eigen::Vector3d along = axes.along(nodes[n]);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = along[k] * axes.directions.col(k);
     }
   }
   return accelerations;
@@ -155,14 +182,23 @@ Eigen::VectorXd shared(const Cage& cage, Eigen::VectorXd values) {
   return values;
 }
 
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& value : values) value = std::min(value * factor, 1.0);
-  return values;
+/// Which tets are quadratic and full; empty: none is.
+std::vector<bool> exactTets(const Cage& cage) {
+  std::vector<bool> exact;
+  for (std::size_t t = 0; t < cage.quadraticTet.size(); ++t) {
+    const bool isFull = cage.volumeFraction.empty() || cage.volumeFraction[t] == 1.0;
+    exact.push_back(cage.quadraticTet[t] >= 0 && isFull);
+  }
+  return std::find(exact.begin(), exact.end(), true) == exact.end() ? std::vector<bool>() : exact;
 }
+
+/// Passes in which one factor is found for a part of the tets.
+constexpr int kFactorPasses = 4;
 
 }  // namespace
 
-StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress& progress) : bodies_(bodies) {
+StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress& progress)
+    : bodies_(bodies), exact_(exactTets(bodies.cage())) {
   const Eigen::VectorXd& masses = bodies.masses(0);
   modes_ = applied(bodies, softestModes(bodies.coarsest(), bodies.direct(), modeCount));
   for (Eigen::Index k = 0; k < modes_.weights.size(); ++k) {
@@ -173,18 +209,53 @@ StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress&
   sags_ = applied(bodies, sagAccelerations(bodies.cage().mesh.nodes, masses));
 
   if (!progress.reach(kSagsDone)) return;
-  const std::vector<double> ones(bodies.cage().mesh.tetCount(), 1.0);
-  Ratios ratios = ratiosWith(ones);
-  factor_ = std::min(meanOf(ratios), 1.0);
-  factors_ = scaled(ones, factor_);
+  fitOneFactor();
   byRegion_ = regionsPredict();
   if (byRegion_) {
     factors_ = regional(modes_.energies + sags_.energies, modes_.limitEnergies + sags_.limitEnergies);
     factors_ = scaled(factors_, meanOf(ratiosWith(factors_)));
   }
-  ratios = ratiosWith(factors_);
+  const Ratios ratios = ratiosWith(factors_);
   modeError_ = rootMeanSquare(ratios.modes.array() - 1.0, modes_.weights);
   sagError_ = rootMeanSquare(ratios.sags.array() - 1.0, sags_.weights);
+  measureStretch();
+}
+
+std::vector<double> StiffnessFit::scaled(std::vector<double> values, double factor) const {
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    values[t] = !exact_.empty() && exact_[t] ? 1.0 : std::min(values[t] * factor, 1.0);
+  }
+  return values;
+}
+
+/// Displacements are inverse to a factor of all tets; of some of them, it takes several passes.
+void StiffnessFit::fitOneFactor() {
+  const std::vector<double> ones(bodies_.cage().mesh.tetCount(), 1.0);
+  factors_ = ones;
+  for (int pass = 0; pass < (exact_.empty() ? 1 : kFactorPasses); ++pass) {
+    factor_ = std::min(factor_ * meanOf(ratiosWith(factors_)), 1.0);
+    factors_ = scaled(ones, factor_);
+  }
+}
+
+void StiffnessFit::measureStretch() {
+  const Fields accelerations = stretchAccelerations(bodies_.cage().mesh.nodes, bodies_.masses(0));
+  const Fields finer = bodies_.refined(0, accelerations);
+  Fields fineLoads = bodies_.masses(1).asDiagonal() * finer;
+  bodies_.balance(1, fineLoads);
+  const Fields loads = bodies_.coarsened(1, fineLoads), plain = bodies_.direct().solve(loads);
+  const Eigen::RowVectorXd works = products(loads, plain);
+  const Eigen::RowVectorXd finest = products(fineLoads, bodies_.solve(1, fineLoads, bodies_.refined(0, plain)));
+  const Eigen::RowVectorXd limit = bodies_.levelCount() > 2 ? limitOf(works, finest) : finest;
+  const Eigen::RowVectorXd weights = limit.cwiseQuotient(products(fineLoads, finer)).cwiseMax(0.0);
+  Cage cage = bodies_.cage();
+  cage.stiffnessFactor = factors_;
+  const RestBody calibrated(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
+  const auto errorOf = [&](const Eigen::RowVectorXd& found) {
+    return geometricMean(found.cwiseQuotient(limit), weights) - 1.0;
+  };
+  plainStretchError_ = errorOf(works);
+  stretchError_ = errorOf(products(loads, DirectSolver(calibrated).solve(loads)));
 }
 
 /// Factors by region, about as large as that of the whole body.

@@ -33,6 +33,9 @@ struct LoadSet {
 /// Factors by region come from strain energies. Where a load goes through a body like a current through resistors in
 /// series, each region's energy under it is its compliance: its share in the cage, divided by that in the limit, is the
 /// factor of its stiffness.
+///
+/// Quadratic tets that are full are not too stiff: their factor is 1. Nor are linear ones under loads that stretch or
+/// press the body: what the factors cost there is told.
 class StiffnessFit {
  public:
   /// bodies    must outlive this; at least one refinement
@@ -46,12 +49,19 @@ class StiffnessFit {
   /// Root mean square errors of the cage with the factors: of the responses to its vibrations, and of its sags.
   double modeError() const { return modeError_; }
   double sagError() const { return sagError_; }
+  /// How much farther than the limit of its refinements the cage is stretched or pressed along its axes, as a fraction:
+  /// without the factors, and with them.
+  double plainStretchError() const { return plainStretchError_; }
+  double stretchError() const { return stretchError_; }
 
  private:
   struct Ratios {
     Eigen::RowVectorXd modes, sags;  ///< responses relative to the limit
   };
 
+  std::vector<double> scaled(std::vector<double> values, double factor) const;
+  void fitOneFactor();
+  void measureStretch();
   std::vector<double> regional(const Eigen::VectorXd& energies, const Eigen::VectorXd& limitEnergies) const;
   bool regionsPredict() const;
   double spreadWith(const std::vector<double>& factors, const LoadSet& loads) const;
@@ -59,11 +69,12 @@ class StiffnessFit {
   double meanOf(const Ratios& ratios) const;
 
   const RefinedBodies& bodies_;
+  std::vector<bool> exact_;  ///< by tet of the cage: quadratic and full; empty: none is
   LoadSet modes_, sags_;
   double factor_ = 1.0;  ///< of all tets
   std::vector<double> factors_;
   bool byRegion_ = false;
-  double modeError_ = 0.0, sagError_ = 0.0;
+  double modeError_ = 0.0, sagError_ = 0.0, plainStretchError_ = 0.0, stretchError_ = 0.0;
 };
 
 }  // namespace tetskin::elastic_detail

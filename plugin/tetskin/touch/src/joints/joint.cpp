@@ -34,6 +34,7 @@ double meanNodeMass(const btSoftBody& body) {
 
 Joint::Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings)
     : point_(point),
+      solver_(point.body()->getSoftBodySolver()),
       anchor_(anchor),
       settings_(settings),
       nodeMass_(meanNodeMass(*point.body())),
@@ -50,6 +51,11 @@ Joint::Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSe
 
 Joint::~Joint() {
   drop();
+}
+
+bool Joint::isInWorld() const {
+  const btSoftBody* own = body();
+  return own && own->getBroadphaseHandle() && own->getSoftBodySolver() == solver_;
 }
 
 void Joint::drop() {

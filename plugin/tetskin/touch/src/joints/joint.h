@@ -51,6 +51,7 @@ class Joint : public ActiveJoint {
   btScalar turn() const;
 
   btSoftBody* body() const override { return dropped_ ? nullptr : point_.body(); }
+  bool isInWorld() const override;
   void drop() override;
   bool spent() const override { return !body(); }
   void addJoints(btScalar seconds, std::vector<PointJoint>& joints) override;
@@ -71,6 +72,7 @@ class Joint : public ActiveJoint {
   void makeSpring(btScalar seconds, PointJoint& row) const;
 
   SurfacePoint point_;
+  const btSoftBodySolver* solver_;  ///< of the world in which it acts
   JointAnchor anchor_;
   JointSettings settings_;
   double nodeMass_;  ///< mean mass of the body's nodes that can move

@@ -35,7 +35,7 @@ JointOwner::JointOwner(std::shared_ptr<Joint> joint)
 StatusCode JointOwner::status() const {
   if (released_) return StatusCode::Released;
   const StatusCode status = joint_->point().status();
-  return status == StatusCode::Ok && joint_->dropped() ? StatusCode::NotInWorld : status;
+  return status == StatusCode::Ok && !joint_->isInWorld() ? StatusCode::NotInWorld : status;
 }
 
 void JointOwner::release() {

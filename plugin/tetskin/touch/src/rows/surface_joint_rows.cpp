@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/body_forces.h>
+#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
@@ -48,6 +49,8 @@ void SurfaceJointRows::leave() {
 }
 
 void SurfaceJointRows::removeSoftBody(btSoftBody* body) {
+  // One that is known as long as it lives may come back.
+  if (bodyWithTrees(*body)) return;
   for (const auto& joint : active_) {
     if (joint->body() == body) joint->drop();
   }
@@ -66,7 +69,7 @@ std::vector<PointJoint>* SurfaceJointRows::joints(btScalar seconds) {
   firsts_.clear();
   for (const auto& joint : active_) {
     firsts_.push_back(joints_.size());
-    joint->addJoints(seconds, joints_);
+    if (joint->isInWorld()) joint->addJoints(seconds, joints_);
   }
   return &joints_;
 }
@@ -79,22 +82,24 @@ void SurfaceJointRows::finish(btScalar seconds) {
 
 void SurfaceJointRows::visitState(WorldStream& stream) {
   for (const auto& joint : active_) {
-    if (!joint->spent()) joint->visitState(stream);
+    if (joint->isInWorld()) joint->visitState(stream);
   }
 }
 
 void SurfaceJointRows::checkState(WorldStream& stream) {
-  const auto count = std::count_if(active_.begin(), active_.end(), [](const auto& joint) { return !joint->spent(); });
+  const auto count = std::count_if(active_.begin(), active_.end(), [](const auto& joint) { return joint->isInWorld(); });
   stream.same(count, "other springs or welds");
   for (const auto& joint : active_) {
-    if (!joint->spent() && !stream.failed()) joint->checkState(stream);
+    if (joint->isInWorld() && !stream.failed()) joint->checkState(stream);
   }
 }
 
 void SurfaceJointRows::describe(BuildStream& stream) {
-  eraseSpent();
-  (void)stream.length(active_.size());
-  for (const auto& joint : active_) joint->describe(stream);
+  const auto isInWorld = [](const auto& joint) { return joint->isInWorld(); };
+  (void)stream.length(static_cast<std::size_t>(std::count_if(active_.begin(), active_.end(), isInWorld)));
+  for (const auto& joint : active_) {
+    if (isInWorld(joint)) joint->describe(stream);
+  }
 }
 
 }  // namespace tetskin::touch_detail

@@ -24,7 +24,9 @@ class ActiveJoint {
 
   /// The body on which it acts; null if the body has been destroyed.
   virtual btSoftBody* body() const = 0;
-  /// Called when the body has left the world for good.
+  /// True if its living body is in the world in which it was made.
+  virtual bool isInWorld() const = 0;
+  /// Called when a body has left the world of which it is not known whether it will live.
   virtual void drop() = 0;
   /// True if it will not act any more.
   virtual bool spent() const = 0;

@@ -3,8 +3,12 @@
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -23,6 +27,41 @@ Status notEight(std::size_t number, std::size_t count, int first) {
   return invalid(found + ", the first of which is tet " + std::to_string(first) +
                  ", and these are not the eight of a "
                  "uniformly refined tet, with nodes at the middles of its edges");
+}
+
+/// Volume fractions of the eight tets of each: the means of those after a further refinement, where they are known.
+void refineFill(const Cage& linear, Cage& refined) {
+  if (linear.volumeFraction.empty()) return;
+  constexpr std::size_t kPieces = kFineTets / kSubTets;
+  for (std::size_t t = 0; t < refined.mesh.tetCount(); ++t) {
+    if (linear.fineVolumeFraction.empty()) {
+      refined.volumeFraction.push_back(linear.volumeFraction[t / kSubTets]);
+      continue;
+    }
+    double sum = 0.0;
+    for (std::size_t piece = 0; piece < kPieces; ++piece) {
+      const std::uint8_t fraction = linear.fineVolumeFraction[kPieces * t + piece];
+      sum += fraction;
+      refined.fineVolumeFraction.insert(refined.fineVolumeFraction.end(), kFineTets / kPieces, fraction);
+    }
+    refined.volumeFraction.push_back(sum / (255.0 * static_cast<double>(kPieces)));
+  }
+}
+
+/// By what fills the tets, so that the sum stays the same; an empty tet has a share that holds its nodes.
+void refineMasses(const Cage& linear, Cage& refined) {
+  if (linear.masses.empty()) return;
+  refined.masses.assign(refined.mesh.nodeCount(), 0.0);
+  for (std::size_t t = 0; t < refined.mesh.tetCount(); ++t) {
+    const double fraction = refined.volumeFraction.empty() ? 1.0 : refined.volumeFraction[t];
+    const double volume = std::abs(signedVolume(cornersOf(refined.mesh, refined.mesh.tets[t])));
+    for (const int n : refined.mesh.tets[t]) {
+      refined.masses[n] += 0.25 * volume * std::max(fraction, Limits::kMinVolumeFraction);
+    }
+  }
+  const double before = std::accumulate(linear.masses.begin(), linear.masses.end(), 0.0);
+  const double after = std::accumulate(refined.masses.begin(), refined.masses.end(), 0.0);
+  for (double& mass : refined.masses) mass *= before / after;
 }
 
 }  // namespace
@@ -60,16 +99,25 @@ Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage) {
   return found;
 }
 
-Result<Cage> refineQuadratic(const TetMesh& mesh) {
+Result<Cage> refineQuadratic(const Cage& linear) {
+  const TetMesh& mesh = linear.mesh;
   TetMesh positive = mesh;
   const TetMeshReport report = repairTetMesh(positive);
   if (Status status = validate(mesh, report); !status.ok()) return status;
+  if (Status status = validateAttributes(linear); !status.ok()) return status;
+  if (linear.hasDuplicates()) {
+    return invalid(
+        "a cage with duplicate elements has no quadratic one: create it with CageOptions::duplicateElements false");
+  }
   if (report.zeroVolume.count + report.repeatedNode.count > 0) {
     return Status{StatusCode::Degenerate, "a flat tet has no quadratic one; remove flat tets"};
   }
   if (Status status = checkTetCounts(mesh.nodeCount(), kSubTets * mesh.tetCount()); !status.ok()) return status;
   Cage cage(refineUniformly(positive).mesh);
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) cage.quadraticTet.push_back(static_cast<int>(t / kSubTets));
+  refineFill(linear, cage);
+  refineMasses(linear, cage);
+  cage.meshHash = linear.meshHash;
   return cage;
 }
 
