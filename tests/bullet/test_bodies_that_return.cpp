@@ -151,9 +151,9 @@ TEST(BodiesThatReturn, AlsoIfTheApplicationHasMovedThemByBulletsCalls) {
 TEST(BodiesThatReturn, WakeWhatLayOnThem) {
   TetskinWorld world;
   const auto body = added(world, smallCageAbove(0.05));
-  btBoxShape shape(btVector3(1, 1, 1) * btScalar(0.1));
-  btRigidBody box(btScalar(0.2), nullptr, &shape, btVector3(1, 1, 1) * btScalar(0.001));
-  const btVector3 above(btScalar(0.3), btScalar(0.8), btScalar(0.45));
+  btBoxShape shape(btVector3(1, 1, 1) * btScalar(0.25));
+  btRigidBody box(btScalar(0.2), nullptr, &shape, btVector3(1, 1, 1) * btScalar(0.01));
+  const btVector3 above(btScalar(0.3), btScalar(0.95), btScalar(0.45));
   box.setWorldTransform(btTransform(btQuaternion::getIdentity(), above));
   world.deformable().addRigidBody(&box);
   step(world, 400);

@@ -185,12 +185,12 @@ double fallOfABeamAt(double place, bool quadratic) {
   return fallen / count / (8 * edge);
 }
 
-/// In float, a position has 1 cm there: the rest shapes are the cage's all the same.
+/// In float, positions are rounded to 4 mm at the last place: the rest shapes are the cage's all the same.
 TEST(QuadraticBodies, BendAsMuchWhereverTheyAreCreated) {
   for (const bool quadratic : {true, false}) {
     const double near = fallOfABeamAt(0.0, quadratic);
     EXPECT_GT(near, 0.02);
-    for (const double place : {5e3, 6e4, 2e5}) {
+    for (const double place : {5e3, 2e4, 6e4}) {
       EXPECT_NEAR(fallOfABeamAt(place, quadratic), near, 0.01 * near) << quadratic << ' ' << place;
     }
   }

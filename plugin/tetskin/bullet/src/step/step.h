@@ -146,9 +146,9 @@ struct DeformableSolver::Impl {
   StepClock clock;
   HiddenBodies hidden;
   StepObjects objects;
-  RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
   btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world, which may have been destroyed
   const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
+  RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
   bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
   bool inStep = false;                                  ///< from `gather` until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it
