@@ -343,8 +343,7 @@ int main(int argc, char** argv) {
   ModelOptions options;
   CommandLine line(
       "Benchmarks embedding, updating, building and writing, each beside Bullet's own. Also takes the options of "
-      "Google "
-      "Benchmark: --benchmark_filter=REGEX, --benchmark_out=FILE, ...",
+      "Google Benchmark: --benchmark_filter=REGEX, --benchmark_out=FILE, ...",
       {{{"tetskin_bench --benchmark_filter=^Update/linear$ --benchmark_out=update.json",
          "one benchmark, and a JSON file of its times"},
         {"tetskin_bench --mesh yours.obj --tets 1000 --benchmark_filter=^Attach/",

@@ -60,8 +60,7 @@ int run(const StressOptions& options) {
         std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.verdict.solve.unconverged > 0; });
     std::printf(
         "\n%zu cases; %td failed; %td are stable with tetskin's elasticity but not with Bullet's; in %td, contact did "
-        "not "
-        "converge in some step\n",
+        "not converge in some step\n",
         rows.size(), broken, gained, unconverged);
   }
   return broken == 0 ? kDone : kRunFailed;

@@ -92,16 +92,18 @@ World::Alone::Alone(World& world) : world_(world) {
   world.stepping_ = true;
 }
 
-World::MotorImpulses::MotorImpulses(World& world, btScalar substep) {
+World::MotorImpulses::MotorImpulses(World& world, btScalar substep) : world_(world) {
+  world.torques_.clear();
   for (const auto& state : world.joints_) {
     btHingeConstraint* hinge = hingeOf(*state);
     if (!hinge) continue;
-    torques_.emplace_back(hinge, hinge->getMaxMotorImpulse());
-    hinge->setMaxMotorImpulse(torques_.back().second * substep);
+    const btScalar torque = hinge->getMaxMotorImpulse();
+    world.torques_.emplace_back(hinge, torque);
+    hinge->setMaxMotorImpulse(torque * substep);
   }
 }
 World::MotorImpulses::~MotorImpulses() {
-  for (const auto& [hinge, torque] : torques_) hinge->setMaxMotorImpulse(torque);
+  for (const auto& [hinge, torque] : world_.torques_) hinge->setMaxMotorImpulse(torque);
 }
 
 bool World::step(Replay& replay) {

@@ -95,7 +95,7 @@ class World : public std::enable_shared_from_this<World> {
   std::atomic<unsigned> lockedIn{0};  ///< for who locks: the process, see Locked of the Python package
 
   /// Steps, and updates all surfaces. Returns the number of substeps that were made; none, if dt is 0. Throws after the
-  /// step if a body is not finite, before it for anything else.
+  /// step if a body is not finite, or has other nodes than its surface knows; before it for anything else.
   /// stepped  how the world is stepped: by itself, or by a recorder
   template <class Stepped>
   int step(double dt, int substeps, Stepped&& stepped) {
@@ -177,7 +177,7 @@ class World : public std::enable_shared_from_this<World> {
     MotorImpulses& operator=(const MotorImpulses&) = delete;
 
    private:
-    std::vector<std::pair<btHingeConstraint*, btScalar>> torques_;
+    World& world_;
   };
 
   void updateSkins();
@@ -204,6 +204,7 @@ class World : public std::enable_shared_from_this<World> {
   std::vector<std::shared_ptr<TouchState>> touches_;
   std::vector<SoftBodySkin*> skins_;
   std::vector<StatusCode> statuses_;
+  std::vector<std::pair<btHingeConstraint*, btScalar>> torques_;  ///< of motors, within a step
   bool stepping_ = false;
 };
 

@@ -114,6 +114,10 @@ TEST(Teleports, RefuseWhatIsNoRigidMotion) {
   motion.setBasis(btMatrix3x3(2, 0, 0, 0, 2, 0, 0, 0, 2));
   EXPECT_EQ(body->teleport(motion).code, StatusCode::InvalidOption);
   EXPECT_EQ(body->teleport(btTransform(btQuaternion(0, 0, 0), btVector3(0, NAN, 0))).code, StatusCode::InvalidOption);
+  for (const double far : {2e18, 1e30}) {  // no surface follows there
+    motion = btTransform(btQuaternion::getIdentity(), btVector3(0, btScalar(far), 0));
+    EXPECT_EQ(body->teleport(motion).code, StatusCode::InvalidOption) << far;
+  }
   EXPECT_EQ(stateOf(body->body()), before);
 }
 

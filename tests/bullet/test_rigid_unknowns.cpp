@@ -6,10 +6,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
 #include "deformable_test.h"
+#include "support/allocation_count.h"
 
 namespace tetskin {
 
@@ -260,6 +262,23 @@ TEST(RigidUnknowns, OfAMultibodyMoveAPointAsBulletDoes) {
     EXPECT_LT((velocity - went).length(), btScalar(0.03)) << link;
     EXPECT_GT(velocity.length(), 0.1);
   }
+}
+
+int bulletsAllocations = 0;
+
+TEST(RigidUnknowns, OfAMultibodyNeedNoMemoryForFurtherPoints) {
+  Chain chain;
+  RigidUnknowns rigids;
+  const RigidPoint point = rigids.at(chain.last(), chain.corner());
+  const btVector3 first = rigids.velocityAt(point, chain.last(), kSeconds);
+  btAlignedAllocSetCustom([](std::size_t size) { return ++bulletsAllocations, std::malloc(size); }, std::free);
+  const std::size_t before = test::allocationCount();
+  bulletsAllocations = 0;
+  const btVector3 second = rigids.velocityAt(point, chain.last(), kSeconds);
+  EXPECT_EQ(test::allocationCount(), before);
+  EXPECT_EQ(bulletsAllocations, 0);
+  btAlignedAllocSetCustom(nullptr, nullptr);
+  EXPECT_EQ(second, first);
 }
 
 TEST(RigidUnknowns, ChangeVelocitiesInBullet) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tetskin/core/src/base/progress.h>
 
+#include <algorithm>
 #include <chrono>
 #include <vector>
 
@@ -54,6 +55,28 @@ TEST(Progress, WithinAnotherOneIsAskedInItsPlace) {
   EXPECT_EQ(inner.size(), 1u);
   EXPECT_TRUE(outer.empty());
   goOnUntilAsked(outer);
+}
+
+TEST(Progress, IsNotAskedByWhatItsOwnFunctionComputes) {
+  int depth = 0, deepest = 0, others = 0;
+  const std::function<bool(double)> tellOther = [&](double) { return ++others, false; };
+  const std::function<bool(double)> tell = [&](double) {
+    deepest = std::max(deepest, ++depth);
+    if (depth < 3) {
+      for (const auto start = Clock::now(); Clock::now() - start < std::chrono::milliseconds(250);) Progress::goOn();
+      Progress other(tellOther);
+      EXPECT_FALSE(other.reach(0.0));
+    }
+    return --depth, true;
+  };
+  Progress progress(tell);
+  EXPECT_NO_THROW(EXPECT_TRUE(progress.reach(0.5)));
+  EXPECT_EQ(deepest, 1);
+  EXPECT_EQ(others, 1);
+  for (const auto start = Clock::now(); others == 1 && Clock::now() - start < std::chrono::seconds(5);) {
+    Progress::goOn();
+  }
+  EXPECT_EQ(others, 2) << "it is asked again afterwards";
 }
 
 }  // namespace

@@ -38,6 +38,15 @@ TEST(RecordedCalls, OfADeformableBody) {
           {"setYoungsModulus", [](CallScene& s, int) { (void)s.ball->setYoungsModulus(3 * s.ball->youngsModulus()); }},
           {"setPoissonRatio", [](CallScene& s, int) { (void)s.ball->setPoissonRatio(0.45); }},
           {"setStiffnessDamping", [](CallScene& s, int) { (void)s.ball->setStiffnessDamping(0.1); }},
+          {"teleport",
+           [](CallScene& s, int k) {
+             const btTransform motion(btQuaternion(btVector3(0, 1, 0), btScalar(0.4)), btVector3(0, btScalar(k), 0));
+             EXPECT_TRUE(s.ball->teleport(motion).ok());
+           }},
+          {"teleport what is pinned",
+           [](CallScene& s, int) { EXPECT_TRUE(s.bar->teleport(placedAt(0.1, 0.05, 0)).ok()); }},
+          {"reset", [](CallScene& s, int) { EXPECT_TRUE(s.ball->reset().ok()); }},
+          {"reset what is pinned", [](CallScene& s, int) { EXPECT_TRUE(s.bar->reset().ok()); }},
       },
       true);
 }
@@ -380,6 +389,12 @@ TEST(RecordedCalls, OfTheWorld) {
   expectRepeats(
       {
           {"setGravity", [](CallScene& s, int k) { s.world.setGravity(btVector3(btScalar(k), -5, 0)); }},
+          {"shiftOrigin",
+           [](CallScene& s, int k) {
+             s.plateState.setWorldTransform(s.plate->getWorldTransform());  // a restored snapshot does not tell it
+             EXPECT_TRUE(shiftOrigin(s.world, btVector3(btScalar(4 + k), 0, -8)).ok());
+           },
+           Kind::Outside},
           {"m_numIterations", [=](CallScene& s, int) { s.world.getSolverInfo().m_numIterations = 2, push(s); }},
           {"m_erp",
            [=](CallScene& s, int) {

@@ -215,6 +215,46 @@ TEST(Replay, NeitherAsksNorTellsMotionStatesAndARecorderAsksNoMoreThanBullet) {
   EXPECT_EQ(scene.plate.getMotionState(), &scene.path);
 }
 
+/// What Bullet calls in a step: it keeps the motion state that the plate has there, and may remove the plate.
+struct PlateWatch {
+  OnPath& scene;
+  std::vector<btMotionState*> seen;
+  bool removes = false;
+
+  explicit PlateWatch(OnPath& to) : scene(to) {
+    for (const bool before : {true, false}) scene.world.setInternalTickCallback(&PlateWatch::look, this, before);
+  }
+  static void look(btDynamicsWorld* world, btScalar) {
+    auto& watch = *static_cast<PlateWatch*>(world->getWorldUserInfo());
+    watch.seen.push_back(watch.scene.plate.getMotionState());
+    if (watch.removes) world->removeRigidBody(&watch.scene.plate);
+  }
+};
+
+TEST(Replay, LeavesMotionStatesToWhatAStepCallsAlsoOfABodyThatThisRemoves) {
+  const TemporaryFile file("watched");
+  const auto secondsOf = [](int frame) { return frame == 2 ? btScalar(0) : kFrame; };
+  {
+    DeformableWorld world;
+    OnPath scene(world);
+    const auto recorder = Recorder::start(world, file.path).value();
+    for (int frame = 0; frame < 5; ++frame) recorder->step(secondsOf(frame), 4, kFrame / 4);
+  }
+  DeformableWorld world;
+  OnPath scene(world);
+  PlateWatch watch(scene);
+  const auto replay = Replay::open(world, file.path).value();
+  for (int frame = 0; frame < 5; ++frame) {
+    watch.removes = frame == 4;
+    watch.seen.clear();
+    (void)replay->step();
+    EXPECT_EQ(watch.seen, std::vector<btMotionState*>(secondsOf(frame) > 0 ? 8 : 0, &scene.path)) << frame;
+    EXPECT_EQ(scene.plate.getMotionState(), &scene.path) << frame;
+  }
+  EXPECT_FALSE(scene.plate.isInWorld());
+  EXPECT_EQ(scene.path.asked, 0);
+}
+
 TEST(Replay, OfAFileThatWasCutShortPlaysItsWholeSteps) {
   const TemporaryFile file("cut");
   record("drag", file.path, 12);

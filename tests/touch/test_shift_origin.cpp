@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bullet/recorded_forces.h"
@@ -225,6 +226,53 @@ TEST(ShiftOrigin, RefusesWhatIsNotFinite) {
   const std::vector<Vector3> before = crowd.positions(0);
   EXPECT_EQ(shiftOrigin(crowd.world.deformable(), btVector3(NAN, 0, 0)).code, StatusCode::NonFinite);
   EXPECT_EQ(farthest(crowd.positions(0), before), 0);
+}
+
+TEST(ShiftOrigin, RefusesPlacesThatNoSurfaceFollows) {
+  tetskin::DeformableWorld world;
+  const auto body = DeformableBody::add(world, smallCageAbove(2)).value();
+  const btVector3& node = body->body().m_nodes[0].m_x;
+  const btVector3 start = node, far(0, 0, btScalar(0.8e18));
+  for (int k = 0; k < 3; ++k) {
+    const Status refused = shiftOrigin(world, btVector3(0, btScalar(2e38), 0));
+    EXPECT_EQ(refused.code, StatusCode::InvalidOption);
+    EXPECT_NE(refused.message.find("kMaxCoordinate"), std::string::npos);
+    EXPECT_EQ(node, start);
+  }
+  ASSERT_TRUE(shiftOrigin(world, far).ok());
+  EXPECT_EQ(shiftOrigin(world, far).code, StatusCode::InvalidOption);
+  ASSERT_TRUE(body->teleport(btTransform(btQuaternion::getIdentity(), far)).ok());
+  EXPECT_EQ(node.z(), 0);
+  EXPECT_EQ(shiftOrigin(world, far).code, StatusCode::InvalidOption) << "the body's start would be there";
+  ASSERT_TRUE(shiftOrigin(world, -far).ok());
+  EXPECT_EQ(node.z(), far.z());
+}
+
+TEST(ShiftOrigin, OfAWorldWithABodyThatHasExplodedGoesOn) {
+  tetskin::DeformableWorld world;
+  const auto wild = DeformableBody::add(world, smallCageAbove(2)).value();
+  const auto calm = DeformableBody::add(world, smallCageAbove(4)).value();
+  wild->body().m_nodes[0].m_x.setY(btScalar(3e18));
+  const btVector3 before = calm->body().m_nodes[0].m_x, origin(8, 0, 0);
+  ASSERT_TRUE(shiftOrigin(world, origin).ok());
+  EXPECT_EQ(calm->body().m_nodes[0].m_x, before - origin);
+}
+
+TEST(ShiftOrigin, MovesBothPlacesOfAMultibodyOnce) {
+  for (const int type : {0, int(btCollisionObject::CF_KINEMATIC_OBJECT)}) {
+    tetskin::DeformableWorld world;
+    btMultiBody links(0, 1, btVector3(1, 1, 1), false, true);
+    links.setBaseDynamicType(type);
+    links.finalizeMultiDof();
+    const btVector3 base(1000, 2, 0), interpolated(999, 2, 0), origin(100, 0, -50);
+    links.setBasePos(base);
+    links.setInterpolateBasePos(interpolated);
+    world.addMultiBody(&links);
+    EXPECT_TRUE(shiftOrigin(world, origin).ok());
+    EXPECT_EQ(links.getBasePos(), base - origin) << type;
+    EXPECT_EQ(links.getInterpolateBasePos(), interpolated - origin) << type;
+    world.removeMultiBody(&links);
+  }
 }
 
 TEST(ShiftOrigin, TakesTheStartAlong) {

@@ -7,6 +7,8 @@ const kBodyOptions = {position: [0, 0, 0], rotation: [0, 0, 0, 1], density: 100,
   relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, margin: NaN, solverTolerance: 5e-3,
   maxIterations: 100, contactMargin: NaN, sampleSpacing: NaN, interpolation: "linear", normals: "none", visible: true,
   surfaceContact: true, softContact: false, selfContact: false, pinned: []};
+/** Errors of a step that was made. */
+const kAfterStep = ["NonFinite", "TopologyChanged"];
 const kCauses = ["contact", "friction", "joints", "total"];
 const kStages = ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces", "total"];
 
@@ -33,7 +35,7 @@ class World extends Thing {
       this.hidden.time += dt;
       return made;
     } catch (error) {
-      if (error.code === "NonFinite") this.hidden.time += dt;  // the step was made
+      if (kAfterStep.includes(error.code)) this.hidden.time += dt;
       throw error;
     }
   }

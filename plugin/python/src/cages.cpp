@@ -163,6 +163,7 @@ void bindCages(nb::module_& module) {
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
       "fit"_a = true, "progress"_a.none() = nb::none(),
+<<<<<<< HEAD
       "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same "
       "input gives "
       "the same cage. Some half a second for 60,000 triangles; the GIL is released.\n\n"
@@ -172,14 +173,21 @@ void bindCages(nb::module_& module) {
       "from 0 to "
       "1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised. True: prints a "
       "bar. Ctrl-C, or a notebook's interrupt button, cancels with any.");
+=======
+      "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same input "
+      "gives the same cage. Some half a second for 60,000 triangles; the GIL is released.\n\n"
+      "duplicate_elements: where regions of the mesh are nearer to each other than the size of a tet, each gets its "
+      "own copy of the tet. fit: move boundary nodes towards the surface. progress: called with the fraction done, "
+      "from 0 to 1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised. True: "
+      "prints a bar; Ctrl-C, or a notebook's interrupt button, then cancels.");
+>>>>>>> h5
   module.def(
       "calibrate", calibrated, "cage"_a, nb::kw_only(), "poisson_ratio"_a = 0.3, "mode_count"_a = 6,
       "progress"_a.none() = nb::none(),
       "A copy of the cage with the stiffness factors that make it as compliant as the body with its shape: coarse tets "
       "are too stiff. Some two seconds for 3,000 tets; the GIL is released.\n\n"
       "poisson_ratio: 0 to below 0.5, of the material that will be simulated. mode_count: number of vibrations that "
-      "are "
-      "compared. progress: as of create_cage.");
+      "are compared. progress: as of create_cage.");
   module.def("refine_quadratic", quadratic, "cage"_a,
              "A cage of quadratic tets: each tet of the cage becomes one, held as eight. For meshes that are filled by "
              "their body.");

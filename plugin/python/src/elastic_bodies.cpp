@@ -84,8 +84,7 @@ void bindElasticBodies(nb::module_& module) {
           },
           "dt"_a, "acceleration"_a = Vec3{},
           "Advances by dt seconds; returns the number of iterations: none for 0 seconds. acceleration: of all nodes "
-          "that are not pinned, "
-          "such as gravity.")
+          "that are not pinned, such as gravity.")
       .def(
           "forces",
           [](ElasticModel& m) {

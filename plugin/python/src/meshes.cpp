@@ -125,8 +125,7 @@ MeshModel meshOf(const MeshLike& mesh) {
   }
   throw nb::type_error(
       "mesh: neither a tetskin.TriangleMesh nor a mesh with `vertices` and `faces`, as trimesh has them, `vertices` "
-      "and "
-      "`triangles` (Open3D), or `points` and `cells` (meshio)");
+      "and `triangles` (Open3D), or `points` and `cells` (meshio)");
 }
 
 void bindMeshes(nb::module_& module) {

@@ -265,8 +265,7 @@ nb::object page() {
 
 constexpr const char* kShowWords =
     "Draws it in a notebook, as it is now: drag to turn, wheel to zoom. height: pixels. Needs IPython; the page that "
-    "it "
-    "draws, about 1 MB and more, is kept in the notebook. Elsewhere: save_page.";
+    "it draws, about 1 MB and more, is kept in the notebook. Elsewhere: save_page.";
 constexpr const char* kSaveWords =
     "Writes what show draws as one HTML file, which any browser opens without a network.";
 

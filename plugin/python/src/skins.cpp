@@ -125,10 +125,8 @@ void bindSkins(nb::module_& module) {
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
           "outside"_a = "nearest", "max_distance"_a = nb::none(),
           "Embeds the mesh in the cage at rest. interpolation: 'linear' or 'quadratic'; normals: 'none', 'transformed' "
-          "or "
-          "'recomputed'; outside: 'nearest' or 'barycentric', which tet carries a vertex outside the cage; "
-          "max_distance: rest "
-          "units; a vertex farther than this from every tet is an Error.")
+          "or 'recomputed'; outside: 'nearest' or 'barycentric', which tet carries a vertex outside the cage; "
+          "max_distance: rest units; a vertex farther than this from every tet is an Error.")
       .def(
           "update",
           [](Skin& skin, const ArrayLike& nodes) {
@@ -163,8 +161,7 @@ void bindSkins(nb::module_& module) {
           },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "gradients"_a = false, "layout"_a = "rows",
           "layout: 'rows', 3 rows of 4, or 'columns', the 4 columns of a 4x4 matrix. gradients: bones of the linear "
-          "surface carry "
-          "the gradients of the nodes, for normals in a shader.")
+          "surface carry the gradients of the nodes, for normals in a shader.")
       .def(
           "update",
           [](Palette& palette, const ArrayLike& nodes) {

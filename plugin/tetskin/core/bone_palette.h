@@ -69,8 +69,7 @@ struct PaletteOptions {
 /// GPU for instance. A vertex at the rest position X, with the bones and weights b of `skinnedMeshOf`, gets the
 /// position sum of b_i (A_i X + t_i), where with X_i rest and x_i current nodes, and F_i the gradient at node i:
 /// - quadratic: A_i = F_i / 2, t_i = x_i - F_i X_i / 2. In a tet, where X is the sum of b_i X_i, the position is the
-/// sum
-///   of b_i x_i + sum of b_i b_j (F_i - F_j) (X_j - X_i) / 2 over the pairs i < j, which is the surface of the skin.
+///   sum of b_i x_i + sum of b_i b_j (F_i - F_j) (X_j - X_i) / 2 over pairs i < j, which is the surface of the skin.
 /// - linear: A_i = 1, t_i = x_i - X_i.
 /// - linear with `gradients`: A_i = F_i, t_i = x_i - X_i, for a shader that computes X + sum of b_i t_i.
 ///

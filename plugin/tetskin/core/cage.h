@@ -121,9 +121,9 @@ TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cag
 
 /// Makes a cage of quadratic tets: each tet becomes one, with nodes at the middles of its edges. For meshes that are
 /// filled by their body; a mesh of an eighth of the tets then serves as well as a linear one, and better.
-/// cage      valid (see `validate`), without flat tets and duplicate elements; rest space, any unit. Pass a cage and
-/// not
-///           its `mesh`, of which nothing else is known: a body of it would have the mass of full tets
+/// cage      valid (see `validate`), without flat tets and duplicate elements; rest space, any unit.
+///           Pass a cage and not its `mesh`, of which nothing else is known: a body of it would have the mass of full
+///           tets
 /// Returns   a cage of 8 T tets for T tets, of the same mass; the cage's nodes come first, in their order. Volume
 ///           fractions are those of the smaller tets, stiffness factors are left out
 /// Cost      O(T log T)

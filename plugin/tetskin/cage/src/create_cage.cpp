@@ -77,8 +77,7 @@ Status notDivisible(const Surface& surface) {
   std::ostringstream text;
   text << "the vertices lie between (" << surface.box.min().transpose() << ") and (" << surface.box.max().transpose()
        << "), too far apart to divide into tets in double precision; move the mesh to the origin, scale it, or remove "
-          "vertices "
-          "that are far from all others";
+          "vertices that are far from all others";
   return {StatusCode::Degenerate, text.str()};
 }
 

@@ -43,6 +43,11 @@ btVector3 Placement::turned(const btVector3& vector) const {
   return toBullet(turnedExactly(vector));
 }
 
+bool isUsable(const btVector3& place) {
+  const btScalar point[] = {place.x(), place.y(), place.z()};
+  return firstUnusable(PointView<const btScalar>(point, 1)) == 1;
+}
+
 bool isRigid(const btTransform& motion) {
   const btMatrix3x3& m = motion.getBasis();
   const btMatrix3x3 square = m.transposeTimes(m);
@@ -50,7 +55,7 @@ bool isRigid(const btTransform& motion) {
   for (int row = 0; row < 3; ++row) {
     for (int k = 0; k < 3; ++k) off += btFabs(square[row][k] - btScalar(row == k ? 1 : 0));
   }
-  return off < kNotRigid && m.determinant() > 0 && toEigen(motion.getOrigin()).allFinite();
+  return off < kNotRigid && m.determinant() > 0 && isUsable(motion.getOrigin());
 }
 
 }  // namespace tetskin::bullet_detail

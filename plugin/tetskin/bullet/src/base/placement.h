@@ -37,7 +37,10 @@ struct Placement {
   Eigen::Vector3d turnedExactly(const btVector3& vector) const;
 };
 
-/// True for a rotation and a translation, both finite; false where a transform scales, shears or mirrors.
+/// True for a place that a surface can follow: finite, and not beyond Limits::kMaxCoordinate.
+bool isUsable(const btVector3& place);
+/// True for a rotation and a translation, the latter to a usable place; false where a transform scales, shears or
+/// mirrors.
 bool isRigid(const btTransform& motion);
 
 }  // namespace tetskin::bullet_detail

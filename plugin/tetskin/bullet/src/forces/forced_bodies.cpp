@@ -8,15 +8,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace tetskin::bullet_detail {
 namespace {
 
-/// By how much a tet may differ from its nodes at rest, as a share of its size, because of rounding: of the rest shapes
-/// of tets, from one to the next; and of positions in the world, where the body was created, which may be anywhere.
-constexpr double kRoundedTets = 3e-5, kRoundedCage = std::numeric_limits<double>::infinity();
+/// By how much a tet may differ from its nodes at rest, as a share of its size, because of rounding of the rest shapes
+/// from one tet to the next. There is no such bound for the nodes of a cage: the tets were made of rounded ones, at the
+/// place in the world where the body was created, which may be anywhere.
+constexpr double kRoundedTets = 3e-5;
 
 /// 0: it is pinned.
 btScalar massOf(const btSoftBody::Node& node) {
@@ -101,8 +101,7 @@ Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body) {
     if (std::count(rest.tets[t].begin(), rest.tets[t].end(), -1) > 0) {
       return badTet(t,
                     " refers to a node that the body does not have: Bullet leaves tets dangling when nodes are "
-                    "appended after them; "
-                    "append the nodes first");
+                    "appended after them; append the nodes first");
     }
     if (!hasRestShape(tetra)) {
       return badTet(
@@ -147,7 +146,7 @@ void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMate
   const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
   const auto nodes = static_cast<std::size_t>(body->m_nodes.size());
   elastic_detail::RestTets exact = linear;
-  if (linear.nodes.empty() || !takeRestShapes(exact, kRoundedCage)) {
+  if (linear.nodes.empty() || !takeRestShapes(exact)) {
     findRestNodes(exact, nodes);
     takeRestShapes(exact, kRoundedTets);
   }

@@ -108,6 +108,34 @@ Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world) {
   return bytes;
 }
 
+/// Tells Bullet, once, where the body is, and gives it back the motion state that it has had.
+class LedToTargets::StandIn : public btMotionState {
+ public:
+  explicit StandIn(btRigidBody& body) : body_(body), own_(body.getMotionState()), place_(body.getWorldTransform()) {
+    body_.*memberOf(MotionStateMember()) = this;
+  }
+  void getWorldTransform(btTransform& to) const override {
+    to = place_;
+    giveBack();
+  }
+  void setWorldTransform(const btTransform&) override {}
+  void giveBack() const {
+    body_.*memberOf(MotionStateMember()) = own_;
+    isDone_ = true;
+  }
+  /// For a step of no time, in which Bullet does not ask.
+  void giveBackIn(const btCollisionObjectArray& objects) const {
+    if (isDone_ || objects.findLinearSearch(&body_) == objects.size()) return;
+    if (body_.getMotionState() == this) giveBack();
+  }
+
+ private:
+  btRigidBody& body_;
+  btMotionState* const own_;
+  const btTransform place_;
+  mutable bool isDone_ = false;
+};
+
 LedToTargets::LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& bytes) : world_(world) {
   std::vector<Target> targets;
   WorldStream stream(world, bytes.data(), bytes.size());
@@ -123,16 +151,13 @@ LedToTargets::LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Byte
   }
   for (int k = 0; k < world.getNumCollisionObjects(); ++k) {
     btRigidBody* body = kinematicAt(world, k);
-    if (!body || !body->getMotionState()) continue;
-    silent_.emplace_back(body, std::exchange(body->*memberOf(MotionStateMember()), nullptr));
+    const bool isAsked = body && body->getMotionState() && body->getActivationState() != ISLAND_SLEEPING;
+    if (isAsked) standIns_.push_back(std::make_unique<StandIn>(*body));
   }
 }
 
 LedToTargets::~LedToTargets() {
-  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
-  for (const auto& [body, state] : silent_) {
-    if (objects.findLinearSearch(body) < objects.size()) body->*memberOf(MotionStateMember()) = state;
-  }
+  for (const auto& standIn : standIns_) standIn->giveBackIn(world_.getCollisionObjectArray());
 }
 
 }  // namespace tetskin::bullet_detail

@@ -9,8 +9,8 @@
 #include <tetskin/bullet/src/record/state_patch.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tetskin::bullet_detail {
@@ -26,6 +26,7 @@ Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world);
 
 /// As long as this exists, kinematic bodies go to recorded targets: their motion states, which are the application's,
 /// are not asked, and not told. Those of Bullet's own class, which do nothing but store a place, get the new one.
+/// Bullet asks as a step begins, once, and is answered in their stead; whatever it calls later finds the bodies' own.
 class LedToTargets {
  public:
   LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& bytes);
@@ -36,8 +37,9 @@ class LedToTargets {
   bool fits() const { return fits_; }
 
  private:
+  class StandIn;
   btDeformableMultiBodyDynamicsWorld& world_;
-  std::vector<std::pair<btRigidBody*, btMotionState*>> silent_;  ///< kinematic bodies, with their motion states
+  std::vector<std::unique_ptr<StandIn>> standIns_;
   bool fits_ = false;
 };
 

@@ -63,17 +63,6 @@ const btMultiBodyLinkCollider* linkOf(const btCollisionObject& object) {
   return btMultiBodyLinkCollider::upcast(&object);
 }
 
-/// The angular velocity of a link, world space.
-btVector3 turningOf(const btMultiBodyLinkCollider& link) {
-  const btMultiBody& body = *link.m_multiBody;
-  if (link.m_link < 0) return body.getBaseOmega();
-  btAlignedObjectArray<btVector3> turning, moving;  // in the links' own frames; the base is the first
-  turning.resize(body.getNumLinks() + 1);
-  moving.resize(body.getNumLinks() + 1);
-  body.compTreeLinkVelocities(&turning[0], &moving[0]);
-  return body.localDirToWorld(link.m_link, turning[link.m_link + 1]);
-}
-
 /// True if nothing that the object meets changes its motion.
 bool movesFreely(const btCollisionObject& object) {
   if (const btMultiBodyLinkCollider* link = linkOf(object)) return link->m_multiBody != nullptr;
@@ -169,13 +158,28 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
     for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
       sum += jacobian.col(k) * static_cast<double>(body.getVelocityVector()[k]);
     }
-    return toBullet(sum) + (seconds > 0 ? bend(turningOf(*linkOf(object)), at.arm, seconds) : btVector3(0, 0, 0));
+    btVector3 bent(0, 0, 0);
+    if (seconds > 0) bent = bend(turningOf(object, unknowns_[static_cast<std::size_t>(at.unknown)]), at.arm, seconds);
+    return toBullet(sum) + bent;
   }
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (!rigid) return {0, 0, 0};
   const btVector3 velocity =
       rigid->getVelocityInLocalPoint(at.arm) + bend(rigid->getAngularVelocity(), at.arm, seconds);
   return rigid->isKinematicObject() ? carriedBy(*rigid, at.arm, velocity, seconds) : velocity;
+}
+
+/// The angular velocity of a link before the solve, world space. Bullet finds those of all links at once.
+btVector3 RigidUnknowns::turningOf(const btCollisionObject& link, RigidUnknown& unknown) {
+  const btMultiBody& body = *unknown.multiBody;
+  const int index = linkOf(link)->m_link;
+  if (index < 0) return body.getBaseOmega();
+  if (unknown.turning.empty()) {
+    unknown.turning.resize(static_cast<std::size_t>(body.getNumLinks()) + 1);
+    moving_.resize(unknown.turning.size());
+    body.compTreeLinkVelocities(unknown.turning.data(), moving_.data());
+  }
+  return body.localDirToWorld(index, unknown.turning[static_cast<std::size_t>(index) + 1]);
 }
 
 /// Bullet computes the angular velocity of a kinematic body from the arc cosine of its rotation in a step, which leaves

@@ -39,6 +39,8 @@ struct RigidUnknown {
   Eigen::Index size = 6;        ///< degrees of freedom
   Eigen::Index first = 0;       ///< index of the first of them in its system's vectors
   Eigen::MatrixXd inverseMass;  ///< size x size
+  /// Of the base and the links of a multibody before the solve, in their own frames; empty: not asked for yet.
+  std::vector<btVector3> turning;
 };
 
 /// The derivative of the velocity of a point of a rigid body by those of the body.
@@ -90,11 +92,13 @@ class RigidUnknowns {
  private:
   int add(const btCollisionObject& object);
   btVector3 carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity, btScalar seconds) const;
+  btVector3 turningOf(const btCollisionObject& link, RigidUnknown& unknown);
   int addLinkPoint(const btCollisionObject& object, const btVector3& position);
 
   std::vector<RigidUnknown> unknowns_;
   std::unordered_map<const void*, int> indices_;  ///< index in the list, by rigid body or multibody
   std::vector<Jacobian> jacobians_;
+  std::vector<btVector3> moving_;  ///< scratch: of links, which Bullet finds with their turning
   std::shared_ptr<KinematicPaths> paths_ = std::make_shared<KinematicPaths>();
 };
 

@@ -16,9 +16,8 @@
 namespace tetskin {
 namespace {
 
-/// counter  null where Bullet's own code solves: it moves sleeping bodies, too, if they have a velocity, so that in
-/// each
-///          step all bodies would count as moved
+/// counter  null where Bullet's own code solves: it moves sleeping bodies, too, if they have a velocity, so that all
+///          bodies would count as moved in each step
 void setMovesCounted(const btAlignedObjectArray<btSoftBody*>& bodies, const btSoftBodySolver* counter) {
   for (int b = 0; b < bodies.size(); ++b) {
     if (auto* own = bodyWithTrees(*bodies[b])) own->setMovesCountedBy(counter);

@@ -37,9 +37,11 @@ void shiftObject(btCollisionObject& object, const btVector3& by) {
   body->getMotionState()->setWorldTransform(shown);
 }
 
+/// `setBasePos` sets both places, unless the base is kinematic.
 void shiftMultiBody(btMultiBody& body, const btVector3& by) {
-  body.setBasePos(body.getBasePos() + by);
-  body.setInterpolateBasePos(body.getInterpolateBasePos() + by);
+  const btVector3 base = body.getBasePos() + by, interpolated = body.getInterpolateBasePos() + by;
+  body.setBasePos(base);
+  body.setInterpolateBasePos(interpolated);
   for (int k = 0; k < body.getNumLinks(); ++k) body.getLink(k).m_cachedWorldTransform.getOrigin() += by;
 }
 
@@ -127,6 +129,22 @@ void shiftSoft(btSoftBody& body, const btVector3& by) {
   }
 }
 
+/// False if what is at a usable place, or the place from which a body's start is counted, would get to one that is not.
+bool canShift(const World& world, const btVector3& by) {
+  const auto remains = [&](const btVector3& place) { return !isUsable(place) || isUsable(place + by); };
+  bool all = isUsable(by);
+  const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+  for (int k = 0; k < objects.size(); ++k) {
+    all = all && remains(objects[k]->getWorldTransform().getOrigin());
+    const btSoftBody* body = btSoftBody::upcast(objects[k]);
+    for (int n = 0; all && body && n < body->m_nodes.size(); ++n) all = remains(body->m_nodes[n].m_x);
+    const BodyWithTrees* own = body ? bodyWithTrees(*body) : nullptr;
+    all = all && (!own || remains(own->shifted()));
+  }
+  for (int k = 0; k < world.getNumMultibodies(); ++k) all = all && remains(world.getMultiBody(k)->getBasePos());
+  return all;
+}
+
 }  // namespace
 
 void DeformableSolver::Impl::shift(World& world, const btVector3& by) {
@@ -167,14 +185,19 @@ void Access<DeformableSolver>::shift(DeformableSolver& solver, World& world, con
   solver.impl_->shift(world, by);
 }
 
-Status shiftOrigin(World& world, const btVector3& shift) {
+Status shiftOrigin(World& world, const btVector3& origin) {
   DeformableSolver* solver = deformableSolverOf(world);
   if (!solver) return refusal("shiftOrigin", {kUseDeformableSolver});
   if (isWithinStep(*solver)) {
     return {StatusCode::InvalidOption, "shiftOrigin: within a step; call it between two steps"};
   }
-  if (!toEigen(shift).allFinite()) return {StatusCode::NonFinite, "shiftOrigin: the shift is not finite"};
-  Access<DeformableSolver>::shift(*solver, world, -shift);
+  if (!toEigen(origin).allFinite()) return {StatusCode::NonFinite, "shiftOrigin: the origin is not finite"};
+  if (!canShift(world, -origin)) {
+    const char* const fault =
+        "shiftOrigin: coordinates would pass Limits::kMaxCoordinate; choose a point near the bodies";
+    return {StatusCode::InvalidOption, fault};
+  }
+  Access<DeformableSolver>::shift(*solver, world, -origin);
   return {};
 }
 

@@ -7,9 +7,8 @@
 namespace tetskin::cage_detail {
 
 /// Makes the triangles' orientation as consistent as it can be, in three steps, and sets `openEdges` and `oriented`:
-/// - a patch (triangles connected by edges of exactly two) in which neighbours disagree is made to agree, then turned
-/// so
-///   that its volume is positive;
+/// - a patch (triangles connected by edges of exactly two) in which neighbours disagree is made to agree, then
+///   turned so that its volume is positive;
 /// - a closed patch of negative volume is a cavity if it lies within another patch; otherwise it was inside out, and is
 ///   turned;
 /// - open patches whose triangles agree are left as they are: their author may know better.

@@ -3,6 +3,7 @@
 #include <tetskin/core/src/base/progress.h>
 
 #include <cassert>
+#include <utility>
 
 namespace tetskin {
 namespace {
@@ -27,9 +28,25 @@ Progress::~Progress() {
   current() = outer_;
 }
 
+/// What an application computes while it is told is nobody's part: it would be told without end, and cancel the wrong
+/// computation.
+class Progress::Pause {
+ public:
+  Pause() : before_(std::exchange(current(), nullptr)) {}
+  ~Pause() { current() = before_; }
+  Pause(const Pause&) = delete;
+  Pause& operator=(const Pause&) = delete;
+
+ private:
+  Progress* const before_;
+};
+
 bool Progress::reach(double fraction) {
-  if (!cancelled_ && tell_) cancelled_ = !tell_(fraction);
   fraction_ = fraction;
+  if (!cancelled_ && tell_) {
+    const Pause pause;
+    cancelled_ = !tell_(fraction);
+  }
   told_ = Clock::now();
   return !cancelled_;
 }

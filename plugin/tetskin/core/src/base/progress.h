@@ -14,7 +14,7 @@ namespace tetskin {
 struct TETSKIN_CORE_API Cancellation {};
 
 /// Tells an application how much of a long computation is done, and learns whether to go on. Of several in a
-/// thread, the last one begun is asked.
+/// thread, the last one begun is asked; while it is, none of them is.
 class TETSKIN_CORE_API Progress {
  public:
   /// tell  returns false to cancel; may be empty; must outlive this
@@ -36,9 +36,13 @@ class TETSKIN_CORE_API Progress {
   static void goOnWithRound();
 
  private:
+<<<<<<< HEAD
   /// Reading the clock takes some tens of nanoseconds.
   static constexpr std::size_t kRoundsPerClock = 64;
 
+=======
+  class Pause;
+>>>>>>> h5
   using Clock = std::chrono::steady_clock;
 
   const std::function<bool(double)>& tell_;

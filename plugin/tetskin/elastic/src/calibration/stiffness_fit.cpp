@@ -29,8 +29,8 @@ constexpr double kModesDone = 0.6, kSagsDone = 0.9;
 
 /// A body's axes, those of its inertia: the longest is the last.
 struct Axes {
-  Eigen::Vector3d centre, extents;  ///< mean squares along the axes
-  Eigen::Matrix3d directions;       ///< by column
+  Eigen::Vector3d centre, variances;  ///< of the mass along the axes
+  Eigen::Matrix3d directions;         ///< by column
 
   Axes(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses);
   Eigen::Vector3d along(const Eigen::Vector3d& node) const { return directions.transpose() * (node - centre); }
@@ -50,7 +50,7 @@ Axes::Axes(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& mas
     covariance += massOf(n) / mass * (nodes[n] - centre) * (nodes[n] - centre).transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(covariance);
-  extents = principal.eigenvalues();
+  variances = principal.eigenvalues();
   directions = principal.eigenvectors();
 }
 
@@ -61,7 +61,7 @@ Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Eigen::Vector3d along = axes.along(nodes[n]);
     for (Eigen::Index k = 0; k < 6; ++k) {
-      const double square = along[2 - k / 3] * along[2 - k / 3] / axes.extents[2];
+      const double square = along[2 - k / 3] * along[2 - k / 3] / axes.variances[2];
       accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = square * axes.directions.col(k % 3);
     }
   }

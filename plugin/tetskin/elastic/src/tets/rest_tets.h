@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -51,7 +52,8 @@ TETSKIN_ELASTIC_API RestTets restTets(const Cage& cage, const std::vector<Quadra
 TETSKIN_ELASTIC_API void findRestNodes(RestTets& linear, std::size_t nodes);
 
 /// Gives linear tets the shapes that their nodes have, in double, where all of them have these shapes already, but for
-/// a share of a tet's size. Otherwise the tets stay as they are, without nodes, and false is returned. Cost O(T)
-TETSKIN_ELASTIC_API bool takeRestShapes(RestTets& linear, double tolerance);
+/// a share of a tet's size, if one is given. Otherwise, and if the nodes make flat tets, the tets stay as they are,
+/// without nodes, and false is returned. Cost O(T)
+TETSKIN_ELASTIC_API bool takeRestShapes(RestTets& linear, double tolerance = std::numeric_limits<double>::infinity());
 
 }  // namespace tetskin::elastic_detail
