@@ -163,24 +163,12 @@ void bindCages(nb::module_& module) {
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
       "fit"_a = true, "progress"_a.none() = nb::none(),
-<<<<<<< HEAD
-      "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same "
-      "input gives "
-      "the same cage. Some half a second for 60,000 triangles; the GIL is released.\n\n"
-      "duplicate_elements: where regions of the mesh are nearer to each other than the size of a tet, each gets "
-      "its own "
-      "copy of the tet. fit: move boundary nodes towards the surface. progress: called with the fraction done, "
-      "from 0 to "
-      "1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised. True: prints a "
-      "bar. Ctrl-C, or a notebook's interrupt button, cancels with any.");
-=======
       "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same input "
       "gives the same cage. Some half a second for 60,000 triangles; the GIL is released.\n\n"
       "duplicate_elements: where regions of the mesh are nearer to each other than the size of a tet, each gets its "
       "own copy of the tet. fit: move boundary nodes towards the surface. progress: called with the fraction done, "
       "from 0 to 1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised. True: "
-      "prints a bar; Ctrl-C, or a notebook's interrupt button, then cancels.");
->>>>>>> h5
+      "prints a bar. Ctrl-C, or a notebook's interrupt button, cancels with any.");
   module.def(
       "calibrate", calibrated, "cage"_a, nb::kw_only(), "poisson_ratio"_a = 0.3, "mode_count"_a = 6,
       "progress"_a.none() = nb::none(),

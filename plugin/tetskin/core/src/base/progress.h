@@ -36,13 +36,10 @@ class TETSKIN_CORE_API Progress {
   static void goOnWithRound();
 
  private:
-<<<<<<< HEAD
   /// Reading the clock takes some tens of nanoseconds.
   static constexpr std::size_t kRoundsPerClock = 64;
 
-=======
   class Pause;
->>>>>>> h5
   using Clock = std::chrono::steady_clock;
 
   const std::function<bool(double)>& tell_;
