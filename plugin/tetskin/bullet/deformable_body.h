@@ -115,7 +115,8 @@ class TETSKIN_BULLET_API DeformableBody {
   /// Move the rigid bodies to which it is attached by the same motion, between the same two steps: they would pull it.
   /// motion  world space, from where the body is: x becomes motion * x
   /// Cost    O(nodes + faces)
-  /// Errors  InvalidOption: not a rigid motion, the body is not in its world, or within a step; nothing is changed then
+  /// Errors  InvalidOption: not a rigid motion, or by more than Limits::kMaxCoordinate; the body is not in its world,
+  ///         or within a step; nothing is changed then
   Status teleport(const btTransform& motion);
 
   /// Puts the body back into the state in which it was added: where it was then, at rest, with nothing remembered, so
