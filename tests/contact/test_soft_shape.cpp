@@ -219,7 +219,7 @@ TEST(ContactShape, HasCellsThatSeeAThinBody) {
   TetMesh cage = latticeCage(8, 1, 8, 0.125);
   for (Eigen::Vector3d& p : cage.nodes)
     p = (p - Eigen::Vector3d(0.5, 0.0625, 0.5)).cwiseProduct(Eigen::Vector3d(1, 0.25, 1));
-  for (const double thickness : {0.02, 0.013}) {
+  for (const double thickness : {0.018, 0.013}) {
     const auto made = ContactShape::create(cage, sheet(thickness));
     ASSERT_TRUE(made.ok()) << made.status().message;
     GridDistance at;

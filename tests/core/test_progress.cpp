@@ -63,7 +63,7 @@ TEST(Progress, IsNotAskedByWhatItsOwnFunctionComputes) {
   const std::function<bool(double)> tell = [&](double) {
     deepest = std::max(deepest, ++depth);
     if (depth < 3) {
-      for (const auto start = Clock::now(); Clock::now() - start < std::chrono::milliseconds(250);) Progress::goOn();
+      for (const auto start = Clock::now(); Clock::now() - start < std::chrono::milliseconds(250);) Progress::goOn(0);
       Progress other(tellOther);
       EXPECT_FALSE(other.reach(0.0));
     }
@@ -74,7 +74,7 @@ TEST(Progress, IsNotAskedByWhatItsOwnFunctionComputes) {
   EXPECT_EQ(deepest, 1);
   EXPECT_EQ(others, 1);
   for (const auto start = Clock::now(); others == 1 && Clock::now() - start < std::chrono::seconds(5);) {
-    Progress::goOn();
+    Progress::goOn(0);
   }
   EXPECT_EQ(others, 2) << "it is asked again afterwards";
 }

@@ -244,7 +244,8 @@ TETSKIN_BULLET_API Status restoreSnapshot(btDeformableMultiBodyDynamicsWorld& wo
 /// world   created with a `DeformableSolver`
 /// origin  world space; best a whole number that a float represents, such as a multiple of 1,024
 /// Cost    O(nodes + objects + contacts)
-/// Errors  InvalidOption: another solver, or within a step; NonFinite. On an error nothing is changed
+/// Errors  InvalidOption: another solver, within a step, or a place would pass Limits::kMaxCoordinate; NonFinite. On an
+///         error nothing is changed
 TETSKIN_BULLET_API Status shiftOrigin(btDeformableMultiBodyDynamicsWorld& world, const btVector3& origin);
 
 /// A force, and its torque about the centre of mass of the object that it acts on: for a soft body that of its nodes'

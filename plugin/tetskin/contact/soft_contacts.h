@@ -29,7 +29,7 @@ struct ContactShapeOptions {
   std::optional<std::size_t> sampleCount;
   /// Cells of the distance grid along the largest side of the cage's box, 4 to 1,024. Features thinner than two cells
   /// are not resolved well. The time to create the shape grows nearly with their cube: 256 take some 30 times as long
-  /// as 64. Empty: 64, or, where a tenth of the surface is of parts thinner than two of these, as many as they need,
+  /// as 64. Empty: 64, or, where half of the surface is of parts thinner than one of these, two in their thickness,
   /// but no more than a grid of 400,000 corners has; so that a sheet of 1 : 1 : 0.01 has 200.
   std::optional<int> gridResolution;
 };

@@ -555,11 +555,17 @@ void DeformableBody::Impl::wakeNeighbours() {
 Status DeformableBody::teleport(const btTransform& motion) {
   if (Status status = impl_->checkIsPlaced("teleport"); !status.ok()) return status;
   if (!isRigid(motion)) {
-    return invalid("teleport: the transform is not a rigid motion: it is not finite, or scales, shears or mirrors");
+    return invalid(
+        "teleport: the transform is not a rigid motion: it is not finite, scales, shears or mirrors, or leads too far");
   }
   btSoftBody& soft = body();
   ElasticForce* elastic = impl_->corotated();
   const Placement placement(motion);
+  for (int n = 0; n < soft.m_nodes.size(); ++n) {
+    if (isUsable(soft.m_nodes[n].m_x) && !isUsable(motion * soft.m_nodes[n].m_x)) {
+      return invalid("teleport: a node would pass Limits::kMaxCoordinate");
+    }
+  }
   const auto moveNodes = [&] { carryNodes(soft, elastic ? elastic->body().dynamics.get() : nullptr, placement); };
   impl_->wakeNeighbours();
   if (impl_->hasOwnSolver) {

@@ -56,9 +56,13 @@ Status checkOptions(const ContactShapeOptions& options) {
 /// Default number of cells of the grid; and what bounds it where parts are thinner than two of them.
 constexpr int kUsualCells = 64;
 constexpr double kMostCorners = 4e5;
-/// Cells along the longest side of the box, so that the body is two of them thick, within the bound.
-int cellsFor(double thickness, const Box3& box) {
-  const double size = box.sizes().maxCoeff();
+/// Cells along the longest side of the box: more than usual where the usual ones would hardly have one in the thickness
+/// of the body; then two, within the bound.
+int cellsFor(const TriangleMesh& mesh, const std::vector<int>& visible, const TriangleBvh& surface, const Box3& box) {
+  constexpr double kSeen = 1.25;  // of a cell: a corner is inside
+  const double size = box.sizes().maxCoeff(), seen = kSeen * size / kUsualCells;
+  const double thickness = usualThickness(mesh, visible, surface, seen);
+  if (!(thickness < seen)) return kUsualCells;
   int cells = static_cast<int>(std::ceil(2 * size / std::max(thickness, size / 512)));
   while (cells > kUsualCells && cornersOfGrid(box, cells) > kMostCorners) cells -= 1 + cells / 100;
   return std::max(cells, kUsualCells);
@@ -377,9 +381,7 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
   const TriangleBvh surface(mesh, visible);
   auto data = std::make_unique<ShapeData>();
   const Box3 box = boundingBox(cage.mesh.nodes);
-  const double resolved = 2 * box.sizes().maxCoeff() / kUsualCells;
-  const int cells = options.gridResolution ? *options.gridResolution
-                                           : cellsFor(usualThickness(mesh, visible, surface, resolved), box);
+  const int cells = options.gridResolution ? *options.gridResolution : cellsFor(mesh, visible, surface, box);
   if (!visible.empty()) data->grid = DistanceGrid(surface, solid, box, cells);
   if (!data->grid.hasInside()) {
     return Status{StatusCode::Degenerate,

@@ -10,9 +10,10 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Places at which the thickness of a body is measured; and the part of its surface that may be thinner.
+/// Places at which the thickness of a body is measured; and the part of its surface that may be thinner: fins and horns
+/// do not make a body thin.
 constexpr int kThicknessPlaces = 500;
-constexpr double kThinPart = 0.1;
+constexpr double kThinPart = 0.5;
 
 /// The thickness of the body behind the middle of a triangle, up to a bound: twice the depth at which its middle lies.
 double thicknessAt(const Eigen::Vector3d& middle, const Eigen::Vector3d& inwards, const TriangleBvh& surface,

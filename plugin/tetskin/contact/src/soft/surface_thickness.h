@@ -11,7 +11,7 @@
 
 namespace tetskin::contact_detail {
 
-/// The thickness that a body has behind nine tenths of its surface, up to a bound.
+/// The thickness that a body has behind half of its surface, up to a bound.
 /// triangles  those of the surface; surface: made of them
 /// most       rest length, above 0
 /// Cost       some thousand searches for nearest points
