@@ -46,6 +46,12 @@ TEST(RecordedCalls, OfADeformableBody) {
           {"teleport what is pinned",
            [](CallScene& s, int) { EXPECT_TRUE(s.bar->teleport(placedAt(0.1, 0.05, 0)).ok()); }},
           {"reset", [](CallScene& s, int) { EXPECT_TRUE(s.ball->reset().ok()); }},
+          {"removeFromWorld and addToWorld",
+           [](CallScene& s, int) {
+             s.ball->removeFromWorld();
+             EXPECT_TRUE(s.ball->addToWorld(s.world).ok());
+           },
+           Kind::Structure},
           {"reset what is pinned", [](CallScene& s, int) { EXPECT_TRUE(s.bar->reset().ok()); }},
       },
       true);

@@ -306,6 +306,7 @@ void SolverBodies::visitState(WorldStream& stream) {
   if (stream.restoring()) {
     clear();
     dropped_ = true;
+    seen_.copyFromArray(stream.world().getSoftBodyArray());  // what leaves before the next step is known to go
   }
   stream.byObject(persistent_, [&](const btSoftBody&, PersistentState& kept) {
     stream(kept.hasRows);
