@@ -43,9 +43,10 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
   double modeError = 0.0;
   double sagError = 0.0;  ///< the same of the displacement under sags
   /// How much farther than the limit, as a fraction of the displacement, the cage is pressed or stretched by forces
-  /// along its axes: as it was, and calibrated; a negative one is too stiff. What is mostly pressed, as a column under
-  /// its own weight, is better left as it was, or given quadratic tets or more of them.
-  double plainStretchError = 0.0, stretchError = 0.0;
+  /// along its axes, as it was, without factors; a negative one is too stiff.
+  double plainStretchError = 0.0;
+  double stretchError = 0.0;  ///< the same of the calibrated cage. What is mostly pressed, as a column under its own
+                              ///< weight, is better left as it was, or given quadratic tets or more of them
   /// Estimate of the remaining error: the mean of both errors, plus half of the extrapolation from the refinements. A
   /// fraction of the displacement.
   double remainingError = 0.0;
