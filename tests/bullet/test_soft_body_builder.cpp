@@ -236,9 +236,10 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
 }
 
 TEST(SoftBody, IsRefusedFarFromTheOriginForThatReason) {
+  if (sizeof(btScalar) == sizeof(double)) return;  // a cage has no more digits
   btSoftBodyWorldInfo info;
   TetMesh cage = test::latticeCage(2, 2, 2, 0.1);
-  for (Eigen::Vector3d& p : cage.nodes) p.x() += sizeof(btScalar) == sizeof(double) ? 1e17 : 1e8;
+  for (Eigen::Vector3d& p : cage.nodes) p.x() += 1e8;
   const Status status = createSoftBody(cage, info).status();
   EXPECT_EQ(status.code, StatusCode::Degenerate);
   EXPECT_NE(status.message.find("nearer to the origin"), std::string::npos) << status.message;
