@@ -561,11 +561,6 @@ Status DeformableBody::teleport(const btTransform& motion) {
   btSoftBody& soft = body();
   ElasticForce* elastic = impl_->corotated();
   const Placement placement(motion);
-  for (int n = 0; n < soft.m_nodes.size(); ++n) {
-    if (isUsable(soft.m_nodes[n].m_x) && !isUsable(motion * soft.m_nodes[n].m_x)) {
-      return invalid("teleport: a node would pass Limits::kMaxCoordinate");
-    }
-  }
   const auto moveNodes = [&] { carryNodes(soft, elastic ? elastic->body().dynamics.get() : nullptr, placement); };
   impl_->wakeNeighbours();
   if (impl_->hasOwnSolver) {
