@@ -30,7 +30,7 @@ Placement::Placement(const btTransform& motion) : Placement(motion.getOrigin()) 
 }
 
 Eigen::Vector3d Placement::turnedExactly(const btVector3& vector) const {
-  const Eigen::Vector3d v = toEigen(vector);
+  Eigen::Vector3d v = toEigen(vector);
   if (!turns) return v;
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(turn.data()) * v;
 }
