@@ -119,8 +119,8 @@ void ImpulseHistory<S>::visitState(StateStream& stream, const BlockMatrix<S>& ma
 
 #define TETSKIN_INSTANTIATE(Scalar)                                                     \
   template class ImpulseHistory<Scalar>;                                                \
-  template void turnWide(Scalar* wide, const std::vector<std::array<double, 9>>& turns, \
-                         const std::vector<std::uint32_t>& partOf);
+  template void turnWide(Scalar* wide, /* NOLINT(bugprone-macro-parentheses): a type */ \
+                         const std::vector<std::array<double, 9>>& turns, const std::vector<std::uint32_t>& partOf);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 
