@@ -8,14 +8,12 @@
 #include <tetskin/bullet/src/base/row_source.h>
 #include <Eigen/Core>
 
-#include <functional>
 #include <memory>
 #include <vector>
 
 namespace tetskin::bullet_detail {
 
 class WorldStream;
-struct Placement;
 
 struct NodePush {
   int node = 0;
