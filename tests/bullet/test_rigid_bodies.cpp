@@ -539,6 +539,37 @@ TEST(RigidBodies, PressOnASoftBodyByTheForceThatPushesThem) {
   EXPECT_NEAR(record->forcesOn(plate).contact.force.y(), 2 + 9.81, 0.05);
 }
 
+/// A world divides its steps for a soft body of a millimetre: a motor's impulse, and that at which a joint breaks, are
+/// of the application's step all the same.
+TEST(RigidBodies, HaveTheSameLimitsWhereAStepIsDivided) {
+  btScalar speeds[2];
+  for (const bool divided : {false, true}) {
+    tetskin::DeformableWorld world;
+    PlainScene scene(world, 1);
+    btRigidBody& body = scene.floating();
+    auto& hinge = scene.join<btHingeConstraint>(body, cube(0), along(2, 1));
+    hinge.enableAngularMotor(true, 5, btScalar(0.002));
+    auto& glue = scene.join<btPoint2PointConstraint>(scene.awake(1, along(0, 5)), cube(0));
+    glue.setBreakingImpulseThreshold(btScalar(0.1));
+    world.setGravity(along(1, -5));  // on the glue: an impulse of 0.083
+    body.setGravity(cube(0));
+    std::unique_ptr<DeformableBody> crumb;
+    if (divided) {
+      TetMesh small = smallCageAbove(0);
+      for (Eigen::Vector3d& p : small.nodes) p = 0.001 * p + Eigen::Vector3d(0, 50, 0);
+      crumb = DeformableBody::add(world, small).value();
+    }
+    EXPECT_EQ(world.stepSimulation(btScalar(1) / 60, 0) > 1, divided);
+    scene.run(7);
+    speeds[divided] = body.getAngularVelocity().z();
+    EXPECT_EQ(hinge.getMaxMotorImpulse(), btScalar(0.002));
+    EXPECT_TRUE(glue.isEnabled());
+    EXPECT_EQ(glue.getBreakingImpulseThreshold(), btScalar(0.1));
+  }
+  EXPECT_GT(std::abs(speeds[0]), 0.1);
+  EXPECT_NEAR(speeds[1], speeds[0], 0.01 * std::abs(speeds[0]));
+}
+
 /// Gravity, which a step adds to the forces, has left them again.
 TEST(RigidBodies, KeepTheirForcesIfAnExceptionEndsAStep) {
   tetskin::DeformableWorld world;

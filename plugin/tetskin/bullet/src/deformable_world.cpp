@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <tetskin/bullet/deformable_world.h>
+#include <tetskin/bullet/src/motion/divided_limits.h>
 #include <tetskin/bullet/src/motion/rigid_forces.h>
 #include <tetskin/bullet/src/motion/rigid_turns.h>
 #include <tetskin/bullet/src/step/step.h>
@@ -114,6 +115,7 @@ int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar
   const btScalar seconds = maxSubSteps > 0 ? fixedTimeStep : timeStep;
   const int parts = partsOf(*this, seconds);
   if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+  const DividedLimits limits(*this, parts);
   // A step of the caller's own length is all of it, although rounding may have made the parts a little longer.
   constexpr btScalar kRounding = 4 * SIMD_EPSILON;
   const btScalar part = seconds / static_cast<btScalar>(parts) * (1 - kRounding);
