@@ -124,6 +124,18 @@ inline std::unique_ptr<DeformableBody> addBall(EmptyWorld& world, const Eigen::V
   return added(world, ball().at(at), options);
 }
 
+/// Positions and velocities of all nodes of these bodies.
+inline std::vector<btScalar> motionOf(const std::vector<std::unique_ptr<DeformableBody>>& bodies) {
+  std::vector<btScalar> all;
+  for (const auto& body : bodies) {
+    for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+      const btSoftBody::Node& node = body->body().m_nodes[n];
+      for (int axis = 0; axis < 3; ++axis) all.insert(all.end(), {node.m_x[axis], node.m_v[axis]});
+    }
+  }
+  return all;
+}
+
 /// The largest speed of any node of these bodies, in units per second.
 inline double fastestNode(const std::vector<std::unique_ptr<DeformableBody>>& bodies) {
   btScalar fastest = 0;

@@ -54,16 +54,7 @@ struct LandingBalls {
     surfaces.push_back(SurfaceContact::add(world, bodies.back()->body(), *binding, mesh).value());
   }
   void frame() { world.stepSimulation(kStepOfResets, 4, kStepOfResets / 4); }
-  std::vector<btScalar> motion() const {
-    std::vector<btScalar> all;
-    for (const auto& body : bodies) {
-      for (int n = 0; n < body->body().m_nodes.size(); ++n) {
-        const btSoftBody::Node& node = body->body().m_nodes[n];
-        for (int axis = 0; axis < 3; ++axis) all.insert(all.end(), {node.m_x[axis], node.m_v[axis]});
-      }
-    }
-    return all;
-  }
+  std::vector<btScalar> motion() const { return motionOf(bodies); }
 };
 
 /// By which the box in the broadphase covers where the surface will be: otherwise what is fast passes through thin

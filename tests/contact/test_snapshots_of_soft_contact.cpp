@@ -53,16 +53,7 @@ struct SavedHeap {
     const Status status = world.restore(bytes.data(), bytes.size());
     ASSERT_TRUE(status.ok()) << status.message;
   }
-  std::vector<btScalar> motion() const {
-    std::vector<btScalar> all;
-    for (const auto& body : bodies) {
-      for (int n = 0; n < body->body().m_nodes.size(); ++n) {
-        const btSoftBody::Node& node = body->body().m_nodes[n];
-        for (int axis = 0; axis < 3; ++axis) all.insert(all.end(), {node.m_x[axis], node.m_v[axis]});
-      }
-    }
-    return all;
-  }
+  std::vector<btScalar> motion() const { return motionOf(bodies); }
 };
 
 /// A run, by frame.
