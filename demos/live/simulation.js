@@ -91,7 +91,9 @@ class Shelf {
   cage(name, tets, quadratic) {
     const key = `${name} ${tets} ${quadratic}`;
     if (!this.cages.has(key)) {
-      let cage = this.module.createCage(this.mesh(name).mesh, {targetTets: quadratic ? Math.ceil(tets / 8) : tets});
+      // Duplicate elements have no quadratic ones.
+      const options = {targetTets: quadratic ? Math.ceil(tets / 8) : tets, duplicateElements: !quadratic};
+      let cage = this.module.createCage(this.mesh(name).mesh, options);
       if (quadratic) {
         const coarse = cage;
         cage = this.module.refineQuadratic(coarse);
