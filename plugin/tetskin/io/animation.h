@@ -73,7 +73,7 @@ class TETSKIN_IO_API GlbWriter {
   /// Adds a rigid object, which stays, or moves. Error: Empty for a mesh without triangles.
   Status addObject(const std::string& name, const TriangleMesh& mesh, bool moves);
 
-  /// About how many bytes the file will have with so many frames.
+  /// About how many bytes the file will have with this number of frames.
   double bytesFor(int frames) const;
 
   /// Adds the next frame.
