@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The only place in which the demos make Bullet worlds and add bodies to them.
+// The Bullet worlds of the demos' scenes, and the bodies that are added to them.
 #pragma once
 
 #include <tetskin/bullet/soft_body_skin.h>

@@ -20,17 +20,13 @@ constexpr ClaimEvent kClaimEvents[] = {ClaimEvent::Free, ClaimEvent::Landing, Cl
 using Choice = std::vector<int>;
 
 Choice choiceOf(const Claim& claim) {
-  const auto toPosition = [](const auto& values, const auto& value) {
+  const auto indexOf = [](const auto& values, const auto& value) {
     return static_cast<int>(std::find(std::begin(values), std::end(values), value) - std::begin(values));
   };
-  return {static_cast<int>(claim.shape),
-          toPosition(kModuli, claim.youngsModulus),
-          toPosition(kDensities, claim.density),
-          toPosition(kDampings, claim.damping),
-          toPosition(kSpins, claim.spin),
-          toPosition(kSteps, claim.seconds),
-          toPosition(kTolerances, claim.tolerance),
-          static_cast<int>(claim.event)};
+  return {static_cast<int>(claim.shape),         indexOf(kModuli, claim.youngsModulus),
+          indexOf(kDensities, claim.density),    indexOf(kDampings, claim.damping),
+          indexOf(kSpins, claim.spin),           indexOf(kSteps, claim.seconds),
+          indexOf(kTolerances, claim.tolerance), static_cast<int>(claim.event)};
 }
 
 /// All subsets with this many of its values, each with its kind.

@@ -44,5 +44,5 @@ endforeach()
 set(DOXYGEN_HAVE_DOT NO)
 set(DOXYGEN_QUIET YES)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
-set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)  # a parameter needs no line of its own if its type and name are clear
+set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)  # a parameter needs no line if its type and name are clear
 doxygen_add_docs(docs ${main_page} ${guide} ${public_headers} COMMENT "Pages of the public headers: ${PROJECT_BINARY_DIR}/docs")

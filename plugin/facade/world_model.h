@@ -111,7 +111,7 @@ class World : public std::enable_shared_from_this<World> {
     updateSkins();
     return made;
   }
-  /// Makes the next step of a run, and updates all surfaces. False: there is none.
+  /// Makes the next step of a run, and updates all surfaces. Returns false if there is no further step.
   bool step(Replay& replay);
   std::vector<char> save() const;
   void restore(const void* snapshot, std::size_t size);

@@ -13,7 +13,7 @@
 /** Of the npm package. */
 export const version: string;
 
-/** Starts the module: compiles it, with memory of its own. Each call gives another one, with no thing in common. */
+/** Compiles and starts the module, with its own memory. Each call returns a new one: they share nothing. */
 export function load(): Promise<Tetskin>;
 
 export type ErrorCode =
@@ -32,7 +32,7 @@ export type ErrorCode =
   /** A fault of tetskin's own, which its message asks to report. */
   | "Internal";
 
-/** What all functions throw. When one has thrown, nothing has changed. */
+/** What all functions throw. Nothing has changed then, except on `NonFinite`, which `step` throws after the step. */
 export class TetskinError extends Error {
   readonly name: "TetskinError";
   /** For programs; `message` says what is wrong, and what to do. */
@@ -162,7 +162,7 @@ export interface Cage extends Thing {
   readonly tets: Int32Array;
   /** Of each vertex of the mesh that the cage was made for, the tet that carries it; or empty. */
   readonly vertexTets: Int32Array;
-  /** Of each tet, the number of the quadratic tet of which it is one of eight, or -1; or empty. */
+  /** Of each tet, the number of the quadratic tet that it is an eighth of, or -1; or empty. */
   readonly quadraticTet: Int32Array;
   /** e x 2 node indices of all edges, a new array. */
   edges(): Int32Array;
@@ -321,7 +321,7 @@ export interface BodyOptions {
 export interface World extends Thing {
   gravity: Float64Array | Vector;
   /**
-   * Goes on by dt seconds, in so many of Bullet's steps; 1/60 and 4.
+   * Advances by dt seconds in `substeps` of Bullet's steps; 1/60 and 4 by default.
    * @returns the number of steps made
    * @throws NonFinite, after the step, if the simulation is unstable: restore a snapshot
    */

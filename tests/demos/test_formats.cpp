@@ -83,6 +83,7 @@ TEST_F(DropFormats, APointCacheHasThePositionsOfTheObjFrames) {
   const PointCache cache(folder.read("o/animation.pc2"));
   EXPECT_EQ(cache.vertices(), 8);
   ASSERT_EQ(cache.frames(), 3);
+  EXPECT_EQ(cache.at<float>(20), 0.0f) << "the first frame";
   EXPECT_EQ(cache.step(), 4.0f);
   EXPECT_EQ(cache.text.size(), 32u + 3u * 8u * 12u);
   cache.expectFrame(0, test::objPositions(folder.read("o/frame_0000.obj")));

@@ -59,7 +59,7 @@ def main():
     good = compare('GLB', skinned[0], scene, frames)
     if (folder / 'animation.pc2').exists():
         scene = empty_scene()
-        bpy.ops.wm.obj_import(filepath=str(folder / 'animation.obj'))
+        bpy.ops.wm.obj_import(filepath=str(folder / 'animation.obj'), use_split_objects=False)
         thing = next(thing for thing in bpy.data.objects if thing.type == 'MESH')
         cache = thing.modifiers.new('cache', 'MESH_CACHE')
         cache.cache_format = 'PC2'

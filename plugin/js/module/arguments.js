@@ -42,7 +42,7 @@ function numbersOf(value, name, columns = 1) {
   return value;
 }
 
-/** So many numbers, as an array. */
+/** `length` numbers, as an array. */
 function vectorOf(value, name, length = 3) {
   if (numbersOf(value, name).length !== length) throw invalid(`${name}: must be ${length} numbers`);
   return Array.from(value, number => numberOf(number, name));

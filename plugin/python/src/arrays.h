@@ -57,7 +57,7 @@ struct PathLike {
   /// In UTF-8, or, where that is how the system names files, as bytes of any kind.
   std::string text() const;
 };
-/// Text from a file or of a path, of which what is not UTF-8 is written as \\x and two digits.
+/// Text from a file or of a path. Bytes that are not UTF-8 are written as \\x and two digits.
 nb::str textOf(const std::string& text);
 /// Called with the fraction done; True, which prints a bar; or None.
 struct Progress {
@@ -236,8 +236,8 @@ template <class Of>
 struct Made {
   nb::object array;
 };
-/// An array of Python's that is made once, and of which each call gets a view: a fifth of what another one costs. Each
-/// gets its own, as arrays can be given another shape in place. Needs the GIL, also to end, if it has been made.
+/// A Python array that is made once; each call gets a view of it, at a fifth of the cost of a new array. Each call gets
+/// its own view, as arrays can be given another shape in place. Needs the GIL, also to end, if it has been made.
 template <class Of>
 class Kept {
  public:
@@ -327,7 +327,7 @@ struct type_caster<tetskin::python::Progress> {
     return source.is_none() || PyBool_Check(source.ptr()) || PyCallable_Check(source.ptr());
   }
 };
-/// Vectors and quaternions: any sequence of numbers, which an array is too, though for type checkers it is none.
+/// Vectors and quaternions: any sequence of numbers. An array is one, too, but type checkers do not know that.
 template <std::size_t N>
 struct type_caster<std::array<double, N>> : array_caster<std::array<double, N>, double, N> {
   static constexpr auto Name = const_name("Vector");

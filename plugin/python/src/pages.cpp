@@ -28,7 +28,8 @@ const std::vector<ViewMaterial> kMaterials = {
     {"wall", {0.66, 0.72, 0.78}, 0.0, 0.22}, {"floor", {0.957, 0.949, 0.933}, 0.0},
 };
 constexpr std::size_t kSoftColours = 6;
-/// Planes end so many sizes of what is shown away from its middle: a ground where it has faded, another one sooner.
+/// Distance from the middle of the scene at which planes end, in sizes of the scene: a ground where it has faded, other
+/// planes sooner.
 constexpr double kGroundReach = 12.0, kWallReach = 1.0;
 /// Cosine of the steepest ground.
 constexpr double kLevel = 0.9999;

@@ -43,7 +43,7 @@ def _error(code: str, message: str) -> _core.Error:
 
 
 def _connected(client: int) -> Any:
-    """pybullet, of which this client is connected."""
+    """pybullet, with which this client is connected."""
     p = _pybullet()
     if not p.getConnectionInfo(client)["isConnected"]:
         raise _error("NOT_ADDED", f"client {client} of pybullet is not connected: call pybullet.connect first, and "
@@ -258,8 +258,8 @@ class Mirror:
 
     def add(self, body: int, links: Iterable[int] | None = None) -> None:
         """Mirrors another body as it is now. links: only these, with -1 for its base; None: all. Their friction is
-        pybullet's lateralFriction now. An Error if it is mirrored already, is none, or has a shape that pybullet does
-        not tell."""
+        pybullet's lateralFriction now. An Error if it is mirrored already, does not exist, or has a shape that
+        pybullet does not tell."""
         p = _connected(self.client)
         _check_body(p, body, self.client)
         if body in self._bodies:
@@ -312,7 +312,7 @@ class Mirror:
         return force.copy(), torque.copy()
 
     def step(self, substeps: int = 4) -> None:
-        """Steps both by pybullet's time step: pybullet, by stepSimulation, then the world, in so many substeps.
+        """Steps both by pybullet's time step: pybullet, by stepSimulation, then the world, in `substeps` steps.
 
         Pybullet's step has the forces of the world's last one; then bodies move on to where pybullet has brought them,
         and the world steps with them. So both are at the same time afterwards, and bodies have moved with exactly the

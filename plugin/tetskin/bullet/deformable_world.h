@@ -229,7 +229,7 @@ TETSKIN_BULLET_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyD
 /// snapshot  size bytes, not aligned, as `saveSnapshot` has written them; only read
 /// Errors    Malformed: the bytes are damaged; UnsupportedFormat: they are of another version, precision or kind of
 ///           machine; SnapshotMismatch: the world is another one, the message names what was added, removed or is
-///           different; NotSaved. On any error nothing is changed
+///           different; NotSaved. On an error nothing is changed, but for bytes that were altered and hashed anew
 TETSKIN_BULLET_API Status restoreSnapshot(btDeformableMultiBodyDynamicsWorld& world, const void* snapshot,
                                           std::size_t size);
 

@@ -128,8 +128,8 @@ class TETSKIN_BULLET_API Replay {
   /// which the world changed, from 0. Without one, such a file is played up to there.
   void onChange(std::function<void(std::size_t step)> change);
 
-  /// Makes the next step of the file. Returns false, and makes none, if there is none, if the last one has ended in
-  /// another state than the recorded one, or on an error, see `status`.
+  /// Makes the next step of the file. Returns false, without a step, at the end of the file, if the last step has ended
+  /// in another state than the recorded one, or on an error, see `status`.
   bool step();
   const ReplayReport& report() const;  ///< of the steps so far
   const Status& status() const;        ///< Ok, or why the file cannot be played any further

@@ -29,8 +29,8 @@ using SoftBodyBinding = SkinBinding<btScalar>;
 /// a tick callback: at no callback are the positions final in all worlds. A body that was moved, scaled or teleported
 /// by hand needs only the next update. Several skins may share a body, and several bodies a binding. The body must
 /// outlive the skin's last update: once it is destroyed, `update`, `recordStep`, `markTeleported` and
-/// `setVisible(true)` would read freed memory, while all other functions may be called, including `bind` to another
-/// body. A skin can be moved, not copied.
+/// `setVisible(true)` read freed memory, unless `createSoftBody` or `DeformableBody` made it, which skins notice. All
+/// other functions may be called, including `bind` to another body. A skin can be moved, not copied.
 ///
 /// An application that draws at another rate than it steps records each step, and draws between the last two; it
 /// manages the time itself, and the surface is then one step behind:
@@ -104,7 +104,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// The next update will not skip a sleeping body. Needed only where the application has written the m_x of single
   /// nodes of a body in a world of `DeformableSolver`, and wants to see it before the next step, which finds it out and
   /// wakes the body. There, steps, `translate`, `rotate`, `transform`, `scale` and snapshots are counted; for the rest,
-  /// four nodes are compared that are not in one plane, of which every affine motion of the whole body moves one.
+  /// four nodes that are not in one plane are compared: every affine motion of the whole body moves one of them.
   void markMoved() { moved_ = true; }
   /// Call this after moving a body by hand, asleep or awake, to a position where it shall appear at once: updates do
   /// not show it in between, and the next one has no motion (see `previousPositions`). Without it, the next recorded

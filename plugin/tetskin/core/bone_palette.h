@@ -109,7 +109,7 @@ class TETSKIN_CORE_API BonePalette {
   /// NonFinite.
   std::size_t firstNonFiniteNode() const;
 
-  std::size_t boneCount() const;  ///< number of nodes, of which each has a bone
+  std::size_t boneCount() const;  ///< number of nodes: each has a bone
   BoneLayout layout() const;      ///< of the matrices
   /// Linear, or Quadratic if the bones are those of a quadratic surface.
   Interpolation interpolation() const;

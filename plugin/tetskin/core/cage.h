@@ -39,7 +39,7 @@ struct TETSKIN_CORE_API Cage {
   std::vector<double> masses;  ///< nodeCount, above 0, for a density of 1: their sum is the mesh's volume
   std::vector<int> component;  ///< tetCount, from 0: component of the cage, connected through shared nodes
   std::vector<int> sourceTet;  ///< tetCount, from 0: equal for all duplicates of one tet
-  /// tetCount, from -1: number of the quadratic tet of which the tet is one of eight; -1: it is linear. See
+  /// tetCount, from -1: number of the quadratic tet that the tet is an eighth of; -1: it is linear. See
   /// `quadraticTets`.
   std::vector<int> quadraticTet;
   /// tetCount x kFineTets, in 255ths: volume fractions after two refinements.
@@ -122,7 +122,7 @@ TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cag
 /// Makes a cage of quadratic tets: each tet becomes one, with nodes at the middles of its edges. For meshes that are
 /// filled by their body; a mesh of an eighth of the tets then serves as well as a linear one, and better.
 /// cage      valid (see `validate`), without flat tets and duplicate elements; rest space, any unit.
-///           Pass a cage and not its `mesh`, of which nothing else is known: a body of it would have the mass of full
+///           Pass a cage and not its `mesh`, which has no fractions: a body of it would have the mass of full
 ///           tets
 /// Returns   a cage of 8 T tets for T tets, of the same mass; the cage's nodes come first, in their order. Volume
 ///           fractions are those of the smaller tets, stiffness factors are left out

@@ -58,7 +58,7 @@ struct TETSKIN_ELASTIC_API CalibrationReport {
 
 /// Sets the cage's `stiffnessFactor` so that it is as compliant as the body with its shape, or, if the cage stores
 /// volume fractions, as the mesh in it. The cage is compared with the limit of its uniform refinements under two kinds
-/// of loads, of which none presumes a scene's pins: the accelerations of its own softest modes, free, each body with
+/// of loads; neither assumes particular pins. These are: the accelerations of its softest modes, free, each body with
 /// its own lumped masses; and sags, gravity that grows from the middle to the ends of the body, in three directions,
 /// the same on all bodies. Both kinds count alike. A mode is weighted by the fraction of the body that takes part in
 /// it: the softest ones are often those of a thin tail. The limit is extrapolated from two refinements with order 2,

@@ -44,7 +44,7 @@ struct TETSKIN_ELASTIC_API VibrationModes {
   std::vector<double> frequencies(double youngsModulus, double density) const;
 
   /// Serialises the modes to bytes, identical on every machine: 24 bytes per node and mode, and 8 per node.
-  /// cage  the one that the modes were computed for: a hash of its tets, and of which are quadratic, is stored
+  /// cage  the one that the modes were computed for: a hash of its tets, and of the set of quadratic ones, is stored
   std::vector<unsigned char> save(const Cage& cage) const;
   /// Reads back what `save` wrote, bit-identical; iterations and time are 0. Safe for arbitrary bytes.
   /// bytes   `count` bytes; not kept

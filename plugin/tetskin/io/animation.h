@@ -73,7 +73,7 @@ class TETSKIN_IO_API GlbWriter {
   /// Adds a rigid object, which stays, or moves. Error: Empty for a mesh without triangles.
   Status addObject(const std::string& name, const TriangleMesh& mesh, bool moves);
 
-  /// About how many bytes the file will have with so many frames.
+  /// About how many bytes the file will have with this number of frames.
   double bytesFor(int frames) const;
 
   /// Adds the next frame.
@@ -100,7 +100,7 @@ class TETSKIN_IO_API Pc2Writer {
  public:
   /// Creates a writer.
   /// vertexCount  of the mesh
-  /// first, step  the number of the first frame, and from one frame to the next
+  /// first, step  the number of the first frame, and from one frame to the next; Blender ignores both
   /// Errors       FileNotWritable, also for what is no regular file; TooLarge: 2^31 vertices or more
   static Result<Pc2Writer> create(const std::string& path, std::size_t vertexCount, float first = 0.0f,
                                   float step = 1.0f);

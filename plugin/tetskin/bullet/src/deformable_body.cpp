@@ -165,7 +165,7 @@ struct DeformableBody::Impl final : BodyOwner {
   // The world that the body is in, or was in last.
   btDeformableMultiBodyDynamicsWorld* world;
   btDeformableBodySolver* solver;
-  bool hasOwnSolver;  ///< it is a DeformableSolver, of which it is known whether it still exists
+  bool hasOwnSolver;  ///< it is a DeformableSolver: the library knows whether it still exists
   ForceList* list;
   ObjectFilters filters;  ///< of the body, when it comes into a world
   std::unique_ptr<btSoftBody> body;

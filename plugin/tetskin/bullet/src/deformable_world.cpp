@@ -103,7 +103,7 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
 
 DeformableWorld::~DeformableWorld() = default;
 
-/// Between the steps of one call, a world is in no state of its own: Bullet knows how many steps are left, and clears
+/// Between the steps of one call, a world's state is incomplete: Bullet knows how many steps are left, and clears
 /// the application's forces after the last one.
 int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
   const Simulation simulation(*impl_->deformableSolver.impl_, getSoftBodyArray());

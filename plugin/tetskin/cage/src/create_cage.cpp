@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// From any triangle mesh to a cage for it: a body-centred cubic lattice of tets, of which those are kept that touch the
-// surface or lie inside. The mesh need not be watertight, welded, consistently oriented or free of intersections.
+// From any triangle mesh to a cage for it: the tets of a body-centred cubic lattice that touch the surface or lie
+// inside. The mesh need not be watertight, welded, consistently oriented or free of intersections.
 //
 //   prepareSurface   weld, orient                                      surface, orientation
 //   searchLattice    spacing and origin for the wanted number of tets  lattice_search

@@ -23,7 +23,7 @@ class WorldStream;
 
 using ForceList = btAlignedObjectArray<btDeformableLagrangianForce*>;
 
-/// A value that is none of Bullet's types: the largest number that their enumeration can hold.
+/// A value different from all of Bullet's types: the largest number that their enumeration can hold.
 constexpr auto kOwnForceType = static_cast<btDeformableLagrangianForceType>(7);
 
 /// Replaces `force` in the list by an anonymous force that does nothing: the other entries keep their indices, so that
@@ -58,7 +58,7 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
   OwnObject registered_{OwnObject::Kind::InactiveForce, static_cast<const btDeformableLagrangianForce*>(this)};
 };
 
-/// The force as one of these; null if it is none.
+/// The force as an InactiveForce; null if it is of another class.
 inline InactiveForce* inactiveForce(btDeformableLagrangianForce* force) {
   return asOwn<InactiveForce>(OwnObject::Kind::InactiveForce, force);
 }

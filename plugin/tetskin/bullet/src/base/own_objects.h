@@ -33,7 +33,7 @@ class TETSKIN_BULLET_API OwnObject {
   const void* object_;
 };
 
-/// The object as one of the library's own classes; null if it is none.
+/// The object as one of the library's own classes; null if it is of another class.
 template <class Own, class Bullets>
 Own* asOwn(OwnObject::Kind kind, Bullets* object) {
   return OwnObject::is(kind, object) ? static_cast<Own*>(object) : nullptr;

@@ -27,7 +27,7 @@ Gradients gradientsOf(const std::array<double, 9>& ofOthers) {
   return all;
 }
 
-/// The barycentric weights of a quadratic tet at one of its nodes; empty if it is none of them.
+/// The barycentric weights of a quadratic tet at one of its nodes; empty if the node is not one of them.
 std::optional<Eigen::Vector4d> weightsAt(const QuadraticTet& tet, int node) {
   constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   const auto at = std::find(tet.nodes.begin(), tet.nodes.end(), node) - tet.nodes.begin();
@@ -37,7 +37,7 @@ std::optional<Eigen::Vector4d> weightsAt(const QuadraticTet& tet, int node) {
   return Eigen::Vector4d(0.5 * (Eigen::Vector4d::Unit(edge[0]) + Eigen::Vector4d::Unit(edge[1])));
 }
 
-/// The gradients of the quadratic tet's weights by the rest shape of one of its parts; empty if it is none.
+/// The gradients of the quadratic tet's weights by the rest shape of one of its parts; empty if it is not its part.
 std::optional<Gradients> gradientsBy(const RestTets& linear, std::size_t part, const QuadraticTet& tet) {
   const Gradients own = gradientsOf(linear.gradients[part]);
   Gradients whole = Gradients::Zero();

@@ -59,7 +59,7 @@ struct RestingBody {
 class Sleepers {
  public:
   /// Call it when a step begins, before it is known which bodies are awake. It wakes bodies that were moved, or given a
-  /// velocity, other masses or another friction, and those of which a neighbour was moved, got another shape or size,
+  /// velocity, other masses or another friction, and those with a neighbour that was moved, got another shape or size,
   /// was removed, or may not collide any more, and those that an obstacle has reached; it keeps awake those that would
   /// fall asleep on a moving object. Cost O(bodies), and O(pairs of the broadphase) if one rests.
   void wake(const btAlignedObjectArray<btSoftBody*>& bodies);

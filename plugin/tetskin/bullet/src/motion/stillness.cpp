@@ -78,7 +78,7 @@ std::vector<btSoftBody*> Stillness::fallAsleep(const std::vector<btDiscreteDynam
 /// The islands are those of the step before. A soft body that has to wait for others must not be put to sleep by Bullet
 /// either, should the islands be others in this step.
 void Stillness::sleepByIslands(const btCollisionObjectArray& objects, std::vector<btSoftBody*>& asleep) {
-  std::unordered_map<int, bool> awake;  // by island of which a soft body has waited long enough
+  std::unordered_map<int, bool> awake;  // by island with a soft body that has waited long enough
   for (int k = 0; k < objects.size(); ++k) {
     const btSoftBody* body = btSoftBody::upcast(objects[k]);
     if (!body || body->getActivationState() != WANTS_DEACTIVATION) continue;

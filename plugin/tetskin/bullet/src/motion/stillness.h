@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to DeformableSolver: which bodies may fall asleep. Bullet puts a body to sleep that has been slower than a
-// speed in world units for two seconds, wherever it is. Here it must be what would stay where it is: slow for its size
-// and for gravity, about where it was when these two seconds began, and held by something.
+// speed in world units for two seconds, wherever it is. Here a body sleeps only if it would stay in place anyway: slow
+// relative to its size and gravity, about where it was when these two seconds began, and held by something.
 #pragma once
 
 #include <tetskin/bullet/src/rows/rigid_unknowns.h>
@@ -18,7 +18,7 @@ class Stillness {
  public:
   /// Call it when a step begins, before it is known which bodies are awake: puts the bodies to sleep that have waited
   /// long enough, with all others of their islands in the worlds, as Bullet does. But Bullet does so in the middle of a
-  /// step, of which it then solves a part: the forces on them are to be those of a whole step.
+  /// step, and then solves a part of it only; the forces on the bodies shall be those of a whole step.
   /// Returns  the soft bodies among them
   std::vector<btSoftBody*> fallAsleep(const std::vector<btDiscreteDynamicsWorld*>& worlds);
   /// Call it in each step when velocities and contacts are known, before Bullet judges by `m_maxSpeedSquared`: a body

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to Recorder: the file, as a sequence of chunks. Numbers in them have the machine's own byte order, of which
-// the snapshots tell.
+// Internal to Recorder: the file, as a sequence of chunks. Numbers in them have the machine's own byte order, which
+// the snapshots state.
 #pragma once
 
 #include <tetskin/bullet/src/record/state_patch.h>

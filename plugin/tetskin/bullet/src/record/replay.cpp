@@ -70,7 +70,7 @@ Status Replay::Impl::begin() {
   }
 }
 
-/// What stands before a step. A snapshot is that of the state after the last step, of which the change is told.
+/// Applies a chunk that precedes a step. A snapshot has the state after the last step, and the change is reported.
 Status Replay::Impl::obey(const Chunk& chunk) {
   const bool isState = chunk.kind == ChunkKind::Snapshot || chunk.kind == ChunkKind::Change;
   if (isState && !played) {

@@ -17,7 +17,7 @@ using Bytes = std::vector<unsigned char>;
 /// both begin and end with. Empty if they are equal. Cost O(length)
 Bytes differenceOf(const Bytes& from, const Bytes& to);
 
-/// `to`, of `from` and the difference; empty if the difference is none of these bytes.
+/// `to`, from `from` and the difference; empty if the difference does not belong to `from`.
 std::optional<Bytes> applied(const Bytes& difference, const Bytes& from);
 
 }  // namespace tetskin::bullet_detail

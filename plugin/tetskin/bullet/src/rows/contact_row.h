@@ -8,8 +8,8 @@
 //   normal      max(0, -D (n . u + max(g / dt, -pushingOut)))
 //   tangential  -T (u - n n.u + s / dt), no more than the friction coefficient times the normal impulse
 // A penalty so stiff that its violation is not visible, and no stiffer than the bodies themselves can be solved for:
-// D is 20 effective masses. It is solved for implicitly, at the end of the step, until it has converged; a fixed
-// number of passes would add energy.
+// D is 20 effective masses, and up to 100 times that for fast motion. It is solved for implicitly, at the end of the
+// step, until it has converged; a fixed number of passes would add energy.
 //
 // This work is based on:
 //   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821

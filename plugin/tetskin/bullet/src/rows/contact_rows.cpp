@@ -16,12 +16,12 @@ namespace {
 /// `tetskin_contact` (stop/equal steps/k50) stops 3 % too early.
 constexpr double kStiffness = 20.0;
 /// By how much of the body's size an impact may violate a gap: D is so much higher where a twentieth of the way towards
-/// the object in this step is more. Without, what is fast goes a twentieth of its way deep, and passes thin walls.
+/// the object in this step is more. Otherwise fast bodies sink in by 5 % of their way, and pass through thin walls.
 constexpr double kViolation = 1e-3;
-/// Most by which D is raised for this: in float, more is lost in rounding.
+/// Upper bound of the factor by which D is raised for this: beyond it, the rounding of float dominates.
 constexpr double kMostStiffening = 100.0;
-/// The way that gravity adds in a step is left out, so many times: a small body at rest falls by a visible part of its
-/// size in each step, and jumps on contacts that are stiff to that.
+/// The way that gravity adds in a step is left out, times this number: a small body at rest falls by a visible part of
+/// its size in each step, and jumps on contacts that are stiff to that.
 constexpr btScalar kFallsAtRest = 2;
 /// T over D. Slopes and stops keep their promises in `tetskin_contact` with 0.0003 and with 100, too, as the
 /// offset of what sticks grows until it suffices. But 100 takes 19 iterations per step in stop/equal steps/k50, where

@@ -56,7 +56,7 @@ class RigidUnknowns {
 
   /// The point of an object at a position. An object that is free to move becomes an unknown.
   RigidPoint at(const btCollisionObject& object, const btVector3& position);
-  /// Its index in `list`; below 0: it is none, or not yet.
+  /// Its index in `list`; negative if the object is not an unknown (yet).
   int find(const btCollisionObject& object) const;
   /// For a RigidPoint of a rigid body: a row of a joint, which has a velocity along x only.
   int addScalarJacobian(const btVector3& linear, const btVector3& angular);

@@ -107,7 +107,7 @@ class BodyContacts {
   MeshProbe mesh_;
   std::unordered_map<const btCollisionObject*, KnownObject> known_;
   std::size_t remembered_ = 0, maxRemembered_;  ///< numbers of shapes
-  ShapeMemory overflow_;                        ///< used for shapes beyond the limit, of which nothing is kept
+  ShapeMemory overflow_;                        ///< used for shapes beyond the limit: nothing about them is kept
 };
 
 /// What finds the contacts of the body's nodes. Its order of points is that of the positions with which the body was

@@ -17,8 +17,8 @@ namespace {
 constexpr int kMaxSteps = 64;
 /// By how much the number of steps may differ from an integer: Bullet's angular velocities have few digits.
 constexpr btScalar kWholeStep = btScalar(0.1);
-/// Radians per frame. Bullet takes an angle from the arc cosine of its half, of which too few digits are left below
-/// this one: its angular velocity does not tell then how many steps the frame has.
+/// Radians per frame. Bullet computes an angle from the cosine of its half; below this one too few digits are left,
+/// and the angular velocity no longer tells how many steps the frame has.
 constexpr btScalar kSeenTurn = btScalar(5e-3);
 
 /// The sine of the angle between two rotations: unlike its cosine, it has all digits of a small angle.

@@ -52,7 +52,7 @@ class MeshProbe : public ShapeProbe {
   OutwardSide outward_;
   btScalar thickness_ = 0, reach_ = 0;
   std::vector<ProbeTriangle> entered_, gathered_, narrowed_;
-  std::vector<ProbeTriangle> far_;  ///< beyond the reach, in front of which all points of the last ball are
+  std::vector<ProbeTriangle> far_;  ///< beyond the reach; all points of the last ball are in front of them
   ShapeBound bound_;
 };
 

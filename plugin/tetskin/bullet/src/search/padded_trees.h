@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to DeformableSolver: the trees of bodies' faces, which rays search. Bullet refits them twice per step; here
-// they are refitted only when they must be. The tree of nodes is left alone: PointCollider has a tree of its own.
+// they are refitted only when they must be. The tree of nodes is left alone: PointCollider has its own.
 #pragma once
 
 #include <tetskin/bullet/src/forces/forced_bodies.h>
@@ -26,7 +26,7 @@ class PaddedTrees {
   /// Fits the tree, unless its boxes still hold the nodes.
   /// step  distance that the fastest node moves in this step
   void fit(btSoftBody& body, Dynamics& dynamics, btScalar step);
-  /// Fits the tree again if its boxes do not hold the nodes at the end of the step, the velocities of which have
+  /// Fits the tree again if its boxes do not hold the nodes at the end of the step, as their velocities have
   /// changed since `fit`.
   void fitAgain(btSoftBody& body, Dynamics& dynamics, btScalar step);
   /// The tree is to be fitted in the next step, as it has been changed by others.

@@ -15,7 +15,7 @@ constexpr btScalar kSpacing = 4;
 /// Cosine between normals: a patch in one tet moves as a whole, so that on a plane a few points support it.
 constexpr btScalar kSamePlane = btScalar(0.9999);
 /// Largest motion towards the plane in a step, in units of the slack.
-constexpr btScalar kCalmFall = btScalar(0.25);
+constexpr btScalar kMaxApproach = btScalar(0.25);
 /// By how much the distance of another point from the chosen ones must be larger than that of a point that is deeper by
 /// one.
 constexpr btScalar kDepthsWorth = 3;
@@ -341,9 +341,9 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
   // The patch lies or slides on a plane. A patch that falls onto one does not qualify: points between the chosen ones
   // would penetrate. At rest, gravity alone moves a point by half of the speculation.
-  const btScalar calm = kCalmFall * slack_ + btScalar(0.5) * speculation_;
+  const btScalar approach = kMaxApproach * slack_ + btScalar(0.5) * speculation_;
   const bool flat = std::all_of(begin, touches_.end(), [&](const PointContact& touch) {
-    return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < calm;
+    return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < approach;
   });
   const std::size_t few = first < kManyTouches ? kMinTouches : 2;
   const std::size_t usual = flat ? few : (patch.isTriangle() ? kTriangleTouches : kMaxTouches);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Pairs, and the contact points that their algorithms keep from step to step. An algorithm makes its cache of points
-// when it is made, or when it first runs, as the bodies are then; here it is given one if it had one. Those of soft
-// bodies keep nothing, and are never asked for their caches: Bullet's reads members that it has not set.
+// Pairs, and the contact points that their algorithms keep from step to step. An algorithm creates its manifold on
+// construction or at its first run, as the bodies are then; here it is given one if the saved one had it. Algorithms of
+// soft bodies keep nothing, and are never asked for manifolds: Bullet's would read members that it has not set.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btBoxBoxCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>

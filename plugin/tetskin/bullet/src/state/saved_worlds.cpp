@@ -54,7 +54,7 @@ bool isSavedCache(const btOverlappingPairCache& cache) {
   return isOfSameClass(cache, *sample);
 }
 
-/// Of those of ours, one draws recorded forces, and remembers nothing.
+/// Our only action draws recorded forces, and has no state.
 bool isSavedAction(const btActionInterface& action) {
   static const btActionInterface* const drawing = new RecordDrawing;
   return isOfSameClass(action, *drawing);

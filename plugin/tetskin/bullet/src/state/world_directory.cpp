@@ -131,7 +131,7 @@ const char* kindOf(int type) {
   }
 }
 
-/// The items of a saved list in the list that there is now: each takes the first one like it.
+/// Matches each saved item with the first equal item of the current list that is not taken yet.
 /// Returns the index of the first saved one that is missing, or -1.
 template <class Keys>
 int findKeys(const Keys& saved, const Keys& now, std::vector<int>& at) {

@@ -33,7 +33,7 @@ class WorldDirectory {
     int id, type, userIndex;  ///< type: btCollisionObject::CollisionObjectTypes
     std::uint64_t fingerprint;
   };
-  /// A multibody, or a joint: of which kind, and which objects or multibodies, by their indices; -1: none.
+  /// A multibody, or a joint: its kind, and the indices of its objects or multibodies; -1: none.
   using Key = std::array<std::int64_t, 5>;
 
   bool findById(const WorldDirectory& now);

@@ -223,8 +223,8 @@ AppliedForces RecordedForces::on(const btCollisionObject& object, const btCollis
 AppliedForces RecordedForces::forcesOf(const Pair& pair, std::size_t side) const {
   const btScalar awake = seconds_ - pair.asleep;
   if (!(awake > 0)) return pair.before[side];
-  // The step in which bodies fall asleep has fewer substeps, of which single ones are not exact: what the solve leaves
-  // out is made up for in the next. As the bodies rest, those before count, too.
+  // The step in which bodies fall asleep has fewer substeps. A single substep is not exact: the next one makes up for
+  // what its solve leaves out. As the bodies rest, those of the step before count, too.
   const btScalar before = pair.sleeps && !isNothing(pair.before[side]) ? secondsBefore_ : btScalar(0);
   AppliedForces forces;
   addScaled(1 / (awake + before), pair.impulses[side], forces);

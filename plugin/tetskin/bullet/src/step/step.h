@@ -8,8 +8,8 @@
 //   number          first + node, in Bullet's vectors over all bodies: its forces and constraints name nodes so
 //   slot            in the body's matrix, sorted by colour, so that rows of one colour are swept side by side
 //   wide            where a slot's three numbers are, in groups of slots, one to each lane of a register
-// The first two differ by a sum. The last two are BlockMatrix's alone (`slotOf`, `wideOf`): nodes would have to be
-// renumbered in the application's body to be rid of them.
+// The last two are BlockMatrix's alone (`slotOf`, `wideOf`): they would be unnecessary only if the nodes of the
+// application's body were renumbered.
 #pragma once
 
 #include <tetskin/bullet/deformable_world.h>
@@ -48,7 +48,7 @@ struct DeformableSolver::Impl {
   void writeBack();
 
   // Steps of the integration of positions; implemented in step_positions.cpp.
-  /// Call it before Bullet moves the nodes, of which the application may have moved some within the step.
+  /// Call it before Bullet moves the nodes: the application may have moved some of them within the step.
   void listForeignNodes(SolvedBody& body) const;
   /// Call it after Bullet has moved the nodes in its own precision: gives them the positions that the dynamics have.
   void refinePositions(btScalar dt);

@@ -26,7 +26,7 @@ class StepObjects {
   /// True if its objects are not those that were kept. Cost O(objects)
   bool haveChanged() const;
   /// The objects that were kept and are no longer in the world. They may have been deleted, and another object may have
-  /// been created at the address of one: it is none of those that were detected.
+  /// been created at the address of one: it is not one of those that were detected.
   Gone gone() const;
 
  private:

@@ -30,7 +30,7 @@ struct ComponentUnknown {
   Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
   Vector6 began = Vector6::Zero();                                         ///< Z^T b
 
-  /// Those of a body's components, the first `most` of them, without components of which some node is pinned.
+  /// Those of a body's first `most` components, without components that have a pinned node.
   /// dynamics  whose matrix has no rows added yet
   static std::vector<ComponentUnknown> makeAll(const Dynamics& dynamics, std::size_t most, ParallelFor* threads);
 

@@ -14,7 +14,7 @@
 namespace tetskin::bullet_detail {
 
 /// Solves (M + K) x = b for groups of unknowns: those of a rigid body, or of a component. With M^-1 = F F^T for rigid
-/// bodies, which may be singular since axes may be locked, and F = 1 for the others, the mass of which K contains:
+/// bodies, which may be singular since axes may be locked, and F = 1 for the others, whose mass K contains:
 ///   x = F (E + F^T K F)^-1 F^T b,    E = 1 for rigid bodies, 0 for the others
 /// The matrix in the middle is symmetric and positive, so that Cholesky's method factors it.
 ///
@@ -30,7 +30,7 @@ class SchurComplement {
   /// Adds the unknowns of a rigid body; returns the index of the first of them.
   /// inverseMass  M^-1, positive or singular
   Eigen::Index addRigid(const Matrix& inverseMass);
-  /// Adds unknowns the mass of which is in K; returns the index of the first of them.
+  /// Adds unknowns whose mass is in K; returns the index of the first of them.
   Eigen::Index add(Eigen::Index size);
   /// Reserves blocks of K; the groups are named by their first unknowns.
   void couple(Eigen::Index a, Eigen::Index b);

@@ -30,8 +30,8 @@ constexpr double kAccepted = 3.0;
 /// Share of the squared residual that a pass may leave to the next one, in bodies that it does not move.
 constexpr double kLeftShare = 1e-3;
 /// Sum of the impulses' sizes on a body, over the size of their sum, from which on it counts as squeezed. The error
-/// that a solve leaves is a share of the impulses: given to a light body between heavy ones as a motion of its own, it
-/// shakes the body for ever, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold
+/// that a solve leaves is a share of the impulses: if a light body between heavy ones took it up, it would keep
+/// shaking, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold
 /// what spins around what it is joined to, as a tyre its hub, and impulses that were changed would turn the other body.
 constexpr double kSqueezed = 30.0;
 

@@ -41,8 +41,8 @@ LoosePatch patchOf(std::vector<Point> points) {
   return patch;
 }
 
-/// One patch for each tet with vertices inside, and one for each tet with vertices outside. What no triangle uses is no
-/// surface.
+/// One patch for each tet with vertices inside, and one for each tet with vertices outside. Vertices that no triangle
+/// uses are skipped.
 std::vector<LoosePatch> vertexPatches(const Embedding& embedding, const TriangleMesh& mesh) {
   std::vector<LoosePatch> patches;
   const std::vector<char> used = usedVertices(mesh);

@@ -14,8 +14,8 @@
 
 namespace tetskin::contact_detail {
 
-/// The plane of the surface in front of which a sample is, or through which it has entered, in the rest space of the
-/// body that it is in.
+/// The plane of the surface that a sample is in front of, or has entered through, in the rest space of the body that it
+/// is in.
 struct ContactSide {
   int sample = 0;
   btVector3 point{0, 0, 0};   ///< a point of the surface

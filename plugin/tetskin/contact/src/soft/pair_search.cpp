@@ -24,8 +24,8 @@ constexpr btScalar kBesideEdges = btScalar(0.1);
 /// Most contacts of a node beside the deepest one, in a direction. With 1, a light end in the heap of `tetskin_pile`
 /// swings at 1 m/s on four samples.
 constexpr std::size_t kMostBeside = 3;
-/// Depth, in cubes of the grid, from which on another one becomes a contact beside one of them: what others hold does
-/// not sink. With all of them, a bin of cubes comes to rest later.
+/// Depth, in cubes of the grid, beyond which a further sample becomes a contact: one that others support does not sink.
+/// With all of them, a bin of cubes comes to rest later.
 constexpr btScalar kSunkCubes = btScalar(0.05);
 /// Steps for which a sample is remembered that has touched: samples that take turns do so within fewer.
 constexpr int kRememberedSteps = 16;

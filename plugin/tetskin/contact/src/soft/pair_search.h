@@ -73,7 +73,7 @@ class PairSearch {
   /// apart    direction in which the first body is to leave the second, where it is deep in it, and the depth from
   ///          which on it applies; or 0
   /// touches  those of the step before, on return those of this step: for each node of the first body, the deepest of
-  ///          the samples of which it has the largest weight, and the deepest of those that are pushed in another
+  ///          the samples in which it has the largest weight, and the deepest of those that are pushed in another
   ///          direction; beside each, others that have touched in the last steps. While the bodies have hardly moved
   ///          relative to each other, they stay the same samples in the same tets
   Overlap find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,

@@ -35,7 +35,7 @@ btVector3 velocityOf(const PointContact& contact) {
   return object.isActive() ? v - contact.onObject.velocity(object) : v;
 }
 
-/// The same contact as one of the other body: a sleeping body has no rows of its own.
+/// The same contact as one of the other body: a sleeping body has no rows itself.
 PointContact swapRoles(const PointContact& from) {
   assert(btSoftBody::upcast(from.object));
   PointContact contact = from;
@@ -240,7 +240,7 @@ void SoftContactRows::forgetAllBut(const BodyPairs& near) {
   }
 }
 
-/// Each task searches in each n-th pair, for n tasks, with memory of its own.
+/// With n tasks, each one searches in every n-th pair, with its own memory.
 void SoftContactRows::findInPairs(const std::vector<SearchedPair>& pairs, btScalar seconds, ParallelFor* threads) {
   const std::size_t tasks = threads ? std::min(kMaxTasks, pairs.size()) : 1;
   if (searches_.size() < tasks) searches_.resize(tasks);

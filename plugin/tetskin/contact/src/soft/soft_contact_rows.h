@@ -84,7 +84,7 @@ class SoftContactRows : public RowSource {
   SoftContactOptions options_;
   std::vector<std::unique_ptr<ContactBody>> bodies_;
   std::vector<std::unique_ptr<ContactBody>> away_;  ///< out of the world; they may come back
-  std::vector<const btSoftBody*> gone_;             ///< the same of bodies of which it is not known whether they live
+  std::vector<const btSoftBody*> gone_;             ///< the same of bodies that may have been destroyed
   int nextId_ = 0;
   std::vector<PairSearch> searches_;                     ///< one for each task
   std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids

@@ -11,7 +11,7 @@
 namespace tetskin {
 
 /// Checks one value per element, or none at all. Returns Ok, or reports a wrong number of values, or the first value
-/// that is not above 0, or of which it or its inverse is out of the range of Scalar.
+/// that is not above 0, or is out of the range of Scalar, or whose inverse is.
 /// name, label  of the values, and of one of the elements: "stiffnessScale", "tet"
 /// times        a factor of the values; the product must be in range, too
 template <class Scalar>

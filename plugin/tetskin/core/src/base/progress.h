@@ -32,7 +32,7 @@ class TETSKIN_CORE_API Progress {
   static void goOn(std::size_t k) {
     if (k % kRoundsPerClock == 0) goOnWithRound();
   }
-  /// The same for rounds of milliseconds, of which each looks at the clock.
+  /// The same for rounds of milliseconds: each looks at the clock.
   static void goOnWithRound();
 
  private:

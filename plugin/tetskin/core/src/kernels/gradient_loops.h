@@ -9,7 +9,7 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// Columns of a gradient, P in a register, the last of which may be meaningless.
+/// Columns of a gradient, P in a register; the last one may be meaningless.
 template <class S, int P>
 struct Columns {
   /// Three columns, P in each register.

@@ -26,7 +26,7 @@ struct FilterWork {
   float normal[4][3] = {};
   float constant[4] = {};
 };
-/// Floats in the widest register, that of AVX-512: loops may read and write so many beyond the end.
+/// Floats in the widest register, that of AVX-512: loops may read and write this many beyond the end.
 constexpr std::size_t kMaxLanes = 16;
 
 /// Writes the entries for which no normal . point + constant + limit is below 0, in order, and returns their number.

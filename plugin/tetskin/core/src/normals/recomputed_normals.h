@@ -10,7 +10,7 @@
 
 namespace tetskin {
 
-/// Which vertices around make the normal of which vertices: vertices at one position share theirs, unless their rest
+/// The surrounding vertices that make each vertex' normal. Vertices at one position share theirs, unless their rest
 /// normals differ by more than an angle (a hard edge), whatever their lengths; one that is zero or not finite counts as
 /// absent, and makes no edge. A group of vertices that share a normal has a path: around them, from each of their
 /// triangles into the next. Immutable, shared like an Embedding.
@@ -39,7 +39,7 @@ class NormalTopology {
   std::vector<std::uint32_t> paths_;
 };
 
-/// Copies points to four scalars each, of which the last has no meaning.
+/// Copies points to four scalars each; the last has no meaning.
 /// points  vertexCount x 3, read
 /// padded  vertexCount x 4
 template <class Scalar>

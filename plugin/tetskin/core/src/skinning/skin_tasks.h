@@ -98,7 +98,7 @@ void placeTightly(const std::uint32_t* slots, const Scalar* sorted, std::size_t 
   std::memcpy(points + 3 * k, sorted + 3 * static_cast<std::size_t>(slots[k]), 3 * sizeof(Scalar));
 }
 
-/// Copies to points of four scalars, the last of which gets any value.
+/// Copies to points of four scalars; the last gets any value.
 template <class Scalar>
 void placePadded(const std::uint32_t* slots, const Scalar* sorted, std::size_t first, std::size_t last,
                  Scalar* padded) {

@@ -74,7 +74,7 @@ struct TetFindings {
   double energy = 0.0;
 };
 
-/// Rows of the matrix, of which no two are neighbours.
+/// Rows of the matrix; no two are neighbours.
 template <class S>
 struct RowWork {
   std::size_t firstChunk = 0, lastChunk = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The rigid motion of one component of a body over a step: nodes that tets connect, of which some may be pinned.
+// The rigid motion of one component of a body over a step: nodes that tets connect; some may be pinned.
 //
 // Positions are moved along straight lines, x + dt v. A body that rotates by dt omega x r thereby swells by
 // (dt omega)^2 / 2 in every step, which its stiffness must undo. Therefore the velocities of a rigid motion are taken

@@ -15,11 +15,11 @@ using kernels::kWideVector;
 
 /// Most by which one step may be longer or shorter than the one before.
 constexpr double kMostGrowth = 2.5;
-/// The change of dt^2 K y over the size of y, both with respect to the masses, up to which steps follow the motion: of
+/// The change of dt^2 K y over the size of y, both with respect to the masses, up to which steps resolve the motion: of
 /// a vibration by w radians per step it is w^3. With 2, undamped bars that are bent far gain energy without bound; with
 /// 0.3, those that are twisted far gain some. And the number of such steps after which steps are of second order.
 constexpr double kMostChange = 0.1;
-constexpr int kCalm = 4;
+constexpr int kResolved = 4;
 
 template <class S>
 void turnAll(S* wide, const std::vector<std::array<S, 9>>& turns, const std::vector<std::uint32_t>& partOf) {
@@ -40,7 +40,7 @@ void turnAll(S* wide, const std::vector<std::array<S, 9>>& turns, const std::vec
 
 template <class S>
 bool ImpulseHistory<S>::fits(double seconds) const {
-  return calm_ >= kCalm && seconds < kMostGrowth * seconds_ && seconds * kMostGrowth > seconds_;
+  return resolved_ >= kResolved && seconds < kMostGrowth * seconds_ && seconds * kMostGrowth > seconds_;
 }
 
 template <class S>
@@ -101,15 +101,15 @@ void ImpulseHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S
   }
   const S changed = std::accumulate(changes, changes + kGroup, S(0)),
           size = std::accumulate(sizes, sizes + kGroup, S(0));
-  const bool follows = isKnown() && changed <= static_cast<S>(kMostChange * kMostChange) * size;
-  calm_ = follows ? std::min(calm_ + 1, kCalm) : 0;
+  const bool resolves = isKnown() && changed <= static_cast<S>(kMostChange * kMostChange) * size;
+  resolved_ = resolves ? std::min(resolved_ + 1, kResolved) : 0;
   seconds_ = seconds;
 }
 
 template <class S>
 void ImpulseHistory<S>::visitState(StateStream& stream, const BlockMatrix<S>& matrix) {
   stream(seconds_);
-  stream(calm_);
+  stream(resolved_);
   for (AlignedVector<S>* v : {&mean_, &last_}) {
     if (stream.restoring()) v->resize(matrix.wideSize());
     assert(v->size() == matrix.wideSize());

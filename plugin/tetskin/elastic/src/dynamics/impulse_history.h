@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a body's step of second order takes from the steps before: H of time_scheme.h, and whether its motion is one of
-// which steps of this length follow. A deformed body may be stiffer than its matrix says; a step of second order then
+// What a body's step of second order takes from the steps before: H of time_scheme.h, and whether steps of this length
+// resolve its motion. A deformed body may be stiffer than its matrix says; a step of second order then
 // lets vibrations grow that are too fast for it, and that one of first order takes away. They show as a change of
 // dt^2 K y from step to step, y being the deviation from rigid motion, that is not small beside y itself.
 #pragma once
@@ -26,12 +26,12 @@ template <class S>
 class ImpulseHistory {
  public:
   bool isKnown() const { return seconds_ > 0.0; }
-  /// True if the next step may be of second order: the last one is known, about as long, and steps have followed the
-  /// motion for a while.
+  /// True if the next step may be of second order: the last one is known, about as long, and steps have resolved
+  /// the motion for a while.
   bool fits(double seconds) const;
   void forget() {
     seconds_ = 0.0;
-    calm_ = 0;
+    resolved_ = 0;
   }
 
   /// Turns what is known like its components, as the velocities that belong to it.
@@ -56,7 +56,7 @@ class ImpulseHistory {
   AlignedVector<S> mean_;  ///< H, in the wide layout
   AlignedVector<S> last_;  ///< dt^2 K y of the last step, in the wide layout
   double seconds_ = 0.0;   ///< for which forces acted in the last step; 0: it is not known
-  int calm_ = 0;           ///< number of steps that have followed the motion
+  int resolved_ = 0;       ///< number of steps that have resolved the motion
 };
 
 }  // namespace tetskin::elastic_detail

@@ -16,8 +16,8 @@ namespace {
 constexpr double kReduction = 0.1;
 /// Iterations of a solve from which on a guess is worth its cost.
 constexpr int kMany = 8;
-/// A guess that leaves more than this fraction of what acts is useless. After so many of them, one after the other,
-/// there are none for so many solves.
+/// A guess that leaves more than this fraction of what acts is useless. After kUselessGuesses of them in a row, kPause
+/// solves start without a guess.
 constexpr double kUseless = 0.25;
 constexpr int kUselessGuesses = 8, kPause = 64;
 /// Combinations of unit directions whose squared length is below this consist of rounding.

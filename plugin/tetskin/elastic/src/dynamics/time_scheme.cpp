@@ -12,7 +12,7 @@ namespace {
 /// 1 / this - 1; 1 leaves nothing of them, but makes an undamped beam's error larger by a quarter.
 constexpr double kLeast = 0.75;
 
-/// a / (1 - a), the mean lag of H in steps, for a damping of so many steps: such that the damping is centred, where
+/// a / (1 - a), the mean lag of H in steps, for a damping of `steps` steps: such that the damping is centred, where
 /// this is stable.
 double lagFor(double steps) {
   if (steps < 1.0) return std::max(kLeast - steps, 0.0);

@@ -33,7 +33,7 @@ constexpr double kStiff = 1e3;
 constexpr double kFeelsTurns = 1.0;
 
 /// alpha over dt^2 of flat and inverted tets of a pressed body, at least: their forces change faster with a node's
-/// position than the matrix knows. Without, nodes of a body that is squashed flat jump between two positions for ever,
+/// position than the matrix knows. Otherwise nodes of a squashed body jump endlessly between two positions,
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
 
@@ -147,7 +147,9 @@ void BodyDynamics<S>::setTouched(bool touched) {
 
 template <class S>
 void BodyDynamics<S>::beTouched(double seconds, ParallelFor* threads) {
+  assert(stage_ >= Stage::Started);
   if (!tets_ || untouched_ == 0) return;
+  stage_ = Stage::Started;
   untouched_ = 0;
   if (secondOrder_) history_.takeFrom(rightSide_);
   chooseScheme(seconds);
@@ -333,6 +335,7 @@ double BodyDynamics<S>::allowedTurn() const {
 template <class S>
 void BodyDynamics<S>::predict(double seconds, ParallelFor* threads) {
   assert(seconds > 0.0);
+  stage_ = Stage::Predicted;
   places_.take(points_);
   if (!tets_) {
     beginForces(seconds);
@@ -371,7 +374,8 @@ double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<doubl
 
 template <class S>
 void BodyDynamics<S>::startLater() {
-  assert(forceSeconds_ > 0.0);
+  assert(forceSeconds_ > 0.0 && stage_ == Stage::Predicted);
+  stage_ = Stage::Started;
   S* solution = matrix_.solution();
   if (!tets_) {
     std::fill_n(solution, matrix_.wideSize(), S(0));
@@ -409,6 +413,7 @@ void BodyDynamics<S>::startLater() {
 /// residual.
 template <class S>
 void BodyDynamics<S>::remember(double seconds) {
+  assert(stage_ >= Stage::Started);
   if (mayRemember()) keep(rightSide_, seconds);
 }
 
@@ -433,6 +438,7 @@ void BodyDynamics<S>::keep(const AlignedVector<S>& impulses, double seconds) {
 template <class S>
 void BodyDynamics<S>::start(ParallelFor* threads) {
   startLater();
+  stage_ = Stage::Solvable;
   S* residual = matrix_.residual();
   if (!tets_ || (stiff_ && pinned_ == 0)) {
     std::copy(rightSide_.begin(), rightSide_.end(), residual);
@@ -449,7 +455,7 @@ double BodyDynamics<S>::squaredActing(ParallelFor* threads) {
 
 template <class S>
 int BodyDynamics<S>::solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads) {
-  assert(tets_ && maximum >= 0);
+  assert(tets_ && maximum >= 0 && stage_ == Stage::Solvable);
   limits.acting = squaredActing(threads);
   const bool guesses = maximum > 0;
   if (guesses) guess_.improve(matrix_, limits, threads);
@@ -535,6 +541,8 @@ void BodyDynamics<S>::rightSide(std::size_t node, S out[3]) const {
 template <class S>
 void BodyDynamics<S>::restart(ParallelFor* threads) {
   assert(rightSide_.size() == matrix_.wideSize() && image_.size() == matrix_.wideSize());
+  assert(stage_ >= Stage::Started);
+  stage_ = Stage::Solvable;
   const S* solution = matrix_.solution();
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     for (std::size_t k = 0; k < 3; ++k) relative_[4 * slot + k] = solution[wide + k * kGroup];
@@ -745,6 +753,7 @@ bool BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
     changed_ = changed;
     remembered_ = known;
     history_.forget();
+    stage_ = Stage::Before;
   }
   if (!known) return false;
   stream(length_);

@@ -64,8 +64,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void setPressed(bool pressed) { pressed_ = pressed; }
   /// Whether the body had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
   void setTouched(bool touched);
-  /// Call it between `startLater` and `restart` where the body turns out to have contacts in this step, which becomes
-  /// one of a touched body.
+  /// Call it after `start` or `startLater` where the body turns out to have contacts in this step, which becomes one of
+  /// a touched body. `restart` must follow before `solve`.
   void beTouched(double seconds, ParallelFor* threads);
   /// The first step is half a step of velocities, as they are known at its beginning and belong to its middle from then
   /// on; each takes half of the lengths of the step before and of its own. Otherwise each takes its own length, as
@@ -138,9 +138,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// The solution is a velocity relative to the rigid motion; it begins with its last value for a soft body, and with 0
   /// for a stiff one.
   void start(ParallelFor* threads);
-  /// Like `start`, but without the residual: `restart` must follow.
+  /// Like `start`, but without the residual: `restart` must follow before `solve`.
   void startLater();
-  /// Call it after `start` or `restart`: solves for the body alone, by at most so many iterations. What acts are the
+  /// Call it after `start` or `restart`: solves for the body alone, in at most `iterations` rounds. What acts are the
   /// elastic impulses, and what has changed velocities since the last step: at rest, both are those of the weight.
   /// Where the conjugate gradient does not come to an end, it is solved in two levels, for some steps from then on.
   /// Returns the number of iterations.
@@ -217,6 +217,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void arrive(std::size_t node, const S* velocity);
 
  private:
+  /// How far a step is: calls in another order would use what the step before has left.
+  enum class Stage { Before, Predicted, Started, Solvable };
+
   bool mayRemember() const { return tets_ && !stiff_ && untouched_ >= kUntouched; }
   void keep(const AlignedVector<S>& impulses, double seconds);
   void beginForces(double seconds);
@@ -242,7 +245,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
   bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false, deterministic_ = false;
-  bool remembered_ = false;  ///< the last step
+  bool remembered_ = false;      ///< the last step
+  Stage stage_ = Stage::Before;  ///< Started: the residual is missing
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
   /// each time that it bounces.
   static constexpr int kUntouched = 8;

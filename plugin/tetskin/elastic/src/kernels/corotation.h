@@ -114,7 +114,7 @@ TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatr
 }
 
 /// 1 where the rotation is at a saddle point or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue
-/// below 0. An eigenvalue of 0, as of a mirrored tet, means many maxima, of which the present one is as good as any.
+/// below 0. An eigenvalue of 0, as of a mirrored tet, means many maxima; the present one is as good as any.
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> atNoMaximum(const WideMatrix<S, W>& s) {
   using V = Lanes<S, W>;
@@ -331,7 +331,7 @@ TETSKIN_INLINE WideFrames<S, W> framesAt(const Work& work, const Pack& pack, int
   return framesOf<S, W>({q.x, q.y, q.z, q.w});
 }
 
-/// F of a tet that has collapsed to a point, but for the rounding of G + Q: it has no rotation of its own.
+/// F of a tet that has collapsed to a point, but for the rounding of G + Q: its rotation is undefined.
 template <class S>
 constexpr S kCollapsed = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-13);
 

@@ -11,7 +11,7 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Share of the whole tet that is added to its material. Without it a tet of which a corner alone is filled would move
+/// Share of the whole tet that is added to its material. Without it a tet with material in one corner only would move
 /// freely; a tenth makes the bodies that the surface cuts a third too stiff, this much does not show.
 constexpr double kGhost = 1e-3;
 

@@ -47,7 +47,7 @@ struct RestTets {
 TETSKIN_ELASTIC_API RestTets restTets(const Cage& cage, const std::vector<QuadraticTet>& quadratic = {},
                                       const std::vector<double>& stiffnessScale = {});
 
-/// Finds nodes at rest by the shapes of linear tets, each component from a node of its own; nodes of no tet are at 0.
+/// Finds nodes at rest by the shapes of linear tets, each component from one of its nodes; nodes of no tet are at 0.
 /// Where the shapes do not fit together, `takeRestShapes` finds that out. Cost O(T)
 TETSKIN_ELASTIC_API void findRestNodes(RestTets& linear, std::size_t nodes);
 

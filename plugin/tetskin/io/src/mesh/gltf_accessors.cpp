@@ -174,7 +174,7 @@ Status GltfAccessors::read(int accessor, int arity, std::vector<double>& numbers
     status = readElements({stated.bufferView, stated.byteOffset, stated.componentType, width, stated.count, false},
                           [&](std::uint64_t, std::uint64_t, double number) { numbers.push_back(number); });
   } else {
-    // Zeros, of which a file can state any number: only so many are made as a sound model may have.
+    // A file can ask for any number of zeros: no more are made than a sound model may have.
     constexpr std::uint64_t kMaxZeros = std::uint64_t(1) << 24;
     if (stated.count > kMaxZeros) {
       return error(StatusCode::Malformed, "states " + std::to_string(stated.count) + " elements without data");

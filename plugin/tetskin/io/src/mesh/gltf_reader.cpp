@@ -222,7 +222,7 @@ Status GltfReader::addVertices(const Vertices& vertices, const Eigen::Affine3d& 
   return {};
 }
 
-/// Appends the triangles of a list, a strip, of which every second one is turned over, or a fan.
+/// Appends the triangles of a list, a strip (every second triangle is turned over) or a fan.
 Status GltfReader::addTriangles(const tinygltf::Primitive& primitive, bool mirrored, ScenePart& part) {
   const std::size_t vertexCount = part.positions.size();
   std::vector<int> corners;

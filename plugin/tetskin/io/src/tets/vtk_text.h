@@ -42,7 +42,7 @@ class VtkText {
   /// The word after that, which stays unread.
   std::string wordAhead() const { return lower(TextScanner(in_).word()); }
   std::string_view restOfLine() { return in_.restOfLine(); }
-  /// The next word of a text as an integer; false if it is none.
+  /// The next word of a text as an integer; false if it is not one.
   bool integer(std::int64_t& value) { return in_.integer(value); }
   /// Binary data begin on the next line; text may continue on the same one.
   void endHeader() {

@@ -32,8 +32,8 @@ struct Turning {
       p -= centroid;
       inertia += p.squaredNorm() * Matrix3d::Identity() - p * p.transpose();
     }
-    // Relative to the third power of the trace, of which a cube has 1/27: nodes on a line have no inertia about it, but
-    // for rounding.
+    // Relative to the third power of the trace (a cube has 1/27): nodes on a line have no inertia about it, but for
+    // rounding.
     constexpr double kLine = 1e-9;
     const double size = inertia.trace();
     possible = inertia.determinant() > kLine * size * size * size;

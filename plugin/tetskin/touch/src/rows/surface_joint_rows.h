@@ -26,7 +26,7 @@ class ActiveJoint {
   virtual btSoftBody* body() const = 0;
   /// True if its living body is in the world in which it was made.
   virtual bool isInWorld() const = 0;
-  /// Called when a body has left the world of which it is not known whether it will live.
+  /// Called when a body has left the world and may be destroyed without notice.
   virtual void drop() = 0;
   /// True if it will not act any more.
   virtual bool spent() const = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Functions of which each C library rounds the last bits in its own way, of arithmetic and square roots alone: steps
+// Functions whose last bits each C library rounds in its own way, here by arithmetic and square roots alone: steps
 // have the same bits everywhere. Errors are a few last digits of double.
 #pragma once
 
@@ -18,7 +18,7 @@ struct SineAndCosine {
 /// x  radians, below 1e6 in magnitude: the error grows with it
 inline SineAndCosine sineAndCosine(double x) {
   assert(std::abs(x) < 1e6);
-  // A quarter of a turn in two parts, of which whole multiples of the first are exact.
+  // A quarter of a turn in two parts; whole multiples of the first are exact.
   constexpr double kQuarter = 1.57079632673412561417, kQuarterRest = 6.07710050650619224932e-11;
   const double quarters = std::floor(x / kQuarter + 0.5);
   const double r = (x - quarters * kQuarter) - quarters * kQuarterRest, rr = r * r;

@@ -4,7 +4,7 @@
 // A bounding-volume hierarchy: a balanced binary tree of items that have a centroid. This is the tree alone; boxes, and
 // whatever else its nodes carry, are arrays beside it, so that several bodies may share one and each fit it to itself.
 //
-// Visitors are called with the index of an item in `items`, in the order of which their owners may keep what they need.
+// Visitors are called with the index of an item in `items`; owners may keep their data in this order.
 #pragma once
 
 #include <tetskin/core/src/base/bvh/bvh_box.h>

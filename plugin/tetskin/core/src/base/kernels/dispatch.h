@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Kernels stand once in the namespace of each instruction set, of which a build has some. Nothing but macros: what the
+// Each instruction set that a build supports has its own namespace, with a copy of every kernel. Only macros: what the
 // kernels' headers include is compiled for processors that not everyone has.
 #pragma once
 

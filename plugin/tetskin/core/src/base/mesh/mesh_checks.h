@@ -17,10 +17,10 @@ TETSKIN_CORE_API TetMeshReport inspectForUse(const TetMesh& mesh);
 /// `validate` by a report of either check.
 TETSKIN_CORE_API Status validate(const TetMesh& mesh, const TetMeshReport& report);
 
-/// Ok if a tet mesh may have so many. Error: TooLarge
+/// Ok if a tet mesh may have these numbers of nodes and tets. Error: TooLarge
 TETSKIN_CORE_API Status checkTetCounts(std::size_t nodes, std::size_t tets);
 
-/// Ok if a triangle mesh may have so many. Error: TooLarge
+/// Ok if a triangle mesh may have these numbers of vertices and triangles. Error: TooLarge
 TETSKIN_CORE_API Status checkTriangleCounts(std::size_t vertices, std::size_t triangles);
 
 /// `validate` of what a cage knows beside its tet mesh.

@@ -12,9 +12,9 @@ Refinement refineUniformly(const TetMesh& coarse) {
   Refinement result;
   result.edges = uniqueEdges(coarse);
   result.mesh.nodes = coarse.nodes;
-  std::map<std::array<int, 2>, int> centroidOf;
+  std::map<std::array<int, 2>, int> midpointOf;
   for (const auto& [a, b] : result.edges) {
-    centroidOf[{std::min(a, b), std::max(a, b)}] = static_cast<int>(result.mesh.nodeCount());
+    midpointOf[{std::min(a, b), std::max(a, b)}] = static_cast<int>(result.mesh.nodeCount());
     result.mesh.nodes.emplace_back(0.5 * (coarse.nodes[a] + coarse.nodes[b]));
   }
   result.mesh.tets.reserve(8 * coarse.tetCount());
@@ -23,7 +23,7 @@ Refinement refineUniformly(const TetMesh& coarse) {
     std::size_t next = 0;
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
-        midpoints[next++] = centroidOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
+        midpoints[next++] = midpointOf.at({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
       }
     }
     const std::array<Tet, 8> eight = refinedTet(tet, midpoints, result.mesh.nodes);

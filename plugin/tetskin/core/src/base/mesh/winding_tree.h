@@ -20,7 +20,7 @@ class TETSKIN_CORE_API WindingTree {
  public:
   using Triangles = std::vector<std::array<int, 3>>;
 
-  /// Uses the first `count` triangles, all of which have an area. They may be destroyed afterwards. Cost O(n log n)
+  /// Uses the first `count` triangles; all must have an area. They may be destroyed afterwards. Cost O(n log n)
   WindingTree(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::size_t count);
   /// Uses those triangles of a mesh that have an area.
   explicit WindingTree(const TriangleMesh& mesh);

@@ -15,7 +15,7 @@
 namespace tetskin {
 
 /// Counts, writes, or reads bytes. Numbers are written one by one, never structs, whose padding is not set; in the
-/// machine's own byte order, of which the snapshot's header tells.
+/// machine's own byte order, which the snapshot's header states.
 ///
 /// Reading never leaves the bytes: what is missing reads as 0, and `failed` is true from then on.
 class StateStream {
@@ -24,7 +24,7 @@ class StateStream {
 
   /// Counts bytes.
   StateStream() = default;
-  /// Writes up to so many bytes; beyond, it only counts.
+  /// Writes up to `capacity` bytes; beyond, it only counts.
   StateStream(unsigned char* to, std::size_t capacity) : way_(Way::Save), to_(to), size_(capacity) {}
   /// Reads.
   StateStream(const unsigned char* from, std::size_t size) : way_(Way::Restore), from_(from), size_(size) {}
@@ -76,7 +76,8 @@ class StateStream {
       bytes(&value, sizeof value);
     }
   }
-  /// The length of a list whose elements take at least so many bytes each: a damaged one is not believed.
+  /// The length of a list whose elements take at least `leastBytes` each: one that the remaining bytes cannot hold is
+  /// refused.
   std::size_t length(std::size_t now, std::size_t leastBytes = 1) {
     assert(now <= 0xFFFFFFFFu);
     auto n = static_cast<std::uint32_t>(now);
