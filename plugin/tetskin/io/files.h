@@ -32,20 +32,20 @@ struct TETSKIN_IO_API MeshFileReport {
 /// `.obj` files (in any case) are read as they are: vertices in the file's order, including unused ones; polygons split
 /// into triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has exactly one.
 ///
-/// `.ply` and `.off` files are read as they are, too: vertices in the file's order, polygons split into triangles, no
-/// groups, normals if the file has them, and texture coordinates of a `.ply` file.
+/// `.ply`, `.off` and `.stl` files are read as they are, too: vertices in the file's order (three per triangle of an
+/// `.stl` file), polygons split into triangles, no groups, normals if the file has them for vertices, and texture
+/// coordinates of a `.ply` file.
 ///
-/// `.gltf`, `.glb` and `.vrm` files of glTF 2.0 are read by tinygltf, everything else (STL, FBX, Collada, 3DS, 3MF,
-/// ...) by assimp, with the transforms of their scenes:
+/// `.gltf`, `.glb` and `.vrm` files of glTF 2.0 are read by tinygltf, everything else (FBX, Collada, 3DS, ...) by
+/// assimp, but for glTF 1.0 and 3MF, with the transforms of their scenes:
 /// - every mesh once for each node that shows it, transformed, as one group, or one for each primitive of a glTF mesh,
 ///   which share its vertices; in the file's own unit;
-/// - vertices are those of the file, for assimp those that it makes (three per triangle for STL), none merged; those of
-///   lines and points are left out, and so are bones, morph targets and animations;
+/// - vertices are those of the file, for assimp those that it makes, none merged; those of lines and points are left
+///   out, and so are bones, morph targets and animations;
 /// - if only some of the meshes have texture coordinates, the others get 0; if only some have normals, the others get
 ///   smooth ones, weighted by area. Normals have unit length, or are 0 where the file's are invalid.
 ///
-/// In a build with TETSKIN_ASSIMP=OFF, STL is read by the library itself, in the same way; what else assimp would read
-/// is an UnsupportedFormat, and so is a file of glTF 1.0.
+/// In a build with TETSKIN_ASSIMP=OFF, what assimp would read is an UnsupportedFormat.
 ///
 /// Of a glTF file, buffers are read from its own folder and those below it, images and whatever else tells of no shape
 /// from nowhere. An extension that it requires and that is not supported is named (KHR_mesh_quantization is supported,
