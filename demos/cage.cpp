@@ -148,8 +148,8 @@ int main(int argc, char** argv) {
   line.addFlag("--quadratic", command.quadratic,
                "With --filled: a quadratic tet, of eight tets, for each tet, unless the file has some");
   line.addOutput("-o,--output", command.output,
-                 ".vtk for the cage with all its data; .ele with .node for the tets alone",
-                 CommandLine::Need::Required, {".vtk", ".node", ".ele"});
+                 ".vtk for the cage with all its data; .ele with .node for the tets alone", CommandLine::Need::Required,
+                 {".vtk", ".node", ".ele"});
   line.addSummaryOption(command.json);
   line.addFlag("--no-fit", command.loose);
   line.addQuietOption(command.quiet);

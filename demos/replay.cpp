@@ -32,7 +32,8 @@ Call callOf(const std::string& file) {
   try {
     return Call{made.at("program"), made.at("tetskin"), made.at("arguments")};
   } catch (const nlohmann::json::exception&) {
-    throw InputError(file + ": was recorded by another program than a demo; build its world as that program does, and " +
+    throw InputError(file +
+                     ": was recorded by another program than a demo; build its world as that program does, and " +
                      "play the file by Replay::open(world, file)");
   }
 }
@@ -64,7 +65,8 @@ int main(int argc, char** argv) {
   std::string file;
   bool quiet = false;
   CommandLine line(
-      "Plays a run again that a demo has recorded by --record, and says the first step that differs, and in which body.",
+      "Plays a run again that a demo has recorded by --record, and says the first step that differs, and in which "
+      "body.",
       {{{"tetskin_drop --record drop.replay", "records"}, {"tetskin_replay drop.replay", "plays, in its folder"}},
        "a step differs from the recorded one, or the run failed"});
   line.addInput("file,--file", file, "The recorded run", CommandLine::Need::Required);

@@ -8,7 +8,34 @@ namespace tetskin::facade {
 namespace {
 
 /// By their codes; a test compares them with those of tetskin/core/types.h.
-constexpr const char* kCodes[] = {"Ok", "FileNotFound", "FileNotWritable", "UnsupportedFormat", "Malformed", "Empty", "IndexOutOfRange", "NonFinite", "Degenerate", "SizeMismatch", "InvalidOption", "OutsideCage", "CageMismatch", "TooLarge", "Asleep", "Hidden", "Unbound", "TopologyChanged", "NoHit", "BodyDeleted", "Released", "OtherBody", "NotInWorld", "NotAdded", "Enclosed", "NotSaved", "SnapshotMismatch", "Cancelled"};
+constexpr const char* kCodes[] = {"Ok",
+                                  "FileNotFound",
+                                  "FileNotWritable",
+                                  "UnsupportedFormat",
+                                  "Malformed",
+                                  "Empty",
+                                  "IndexOutOfRange",
+                                  "NonFinite",
+                                  "Degenerate",
+                                  "SizeMismatch",
+                                  "InvalidOption",
+                                  "OutsideCage",
+                                  "CageMismatch",
+                                  "TooLarge",
+                                  "Asleep",
+                                  "Hidden",
+                                  "Unbound",
+                                  "TopologyChanged",
+                                  "NoHit",
+                                  "BodyDeleted",
+                                  "Released",
+                                  "OtherBody",
+                                  "NotInWorld",
+                                  "NotAdded",
+                                  "Enclosed",
+                                  "NotSaved",
+                                  "SnapshotMismatch",
+                                  "Cancelled"};
 static_assert(sizeof(kCodes) / sizeof(kCodes[0]) == static_cast<std::size_t>(StatusCode::Cancelled) + 1);
 
 }  // namespace

@@ -150,10 +150,9 @@ TEST_F(CageCommand, TellsInOneLineOfCurvedEdges) {
                "9\nCELL_TYPES 1\n24\n");
   const CommandResult result = cage({"--filled", "f.vtk", "-o", "c.vtk", "--quiet"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(
-      result.err,
-      "f.vtk: 1 tets of second order became quadratic tets, each of eight tets, 1 nodes on curved edges "
-      "were moved to their middles, by up to 0.354\n");
+  EXPECT_EQ(result.err,
+            "f.vtk: 1 tets of second order became quadratic tets, each of eight tets, 1 nodes on curved edges "
+            "were moved to their middles, by up to 0.354\n");
   EXPECT_EQ(quadraticTets(loadCage(folder.path("c.vtk")).value()).value().size(), 1u);
 }
 

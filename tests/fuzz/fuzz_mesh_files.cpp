@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Damaged files of render meshes: whatever the bytes, the result is a sound mesh or a message. The first byte chooses
-// the format: o for OBJ, p for PLY, f for OFF, s for STL, g for glTF, b for GLB. Other formats are read by assimp, whose authors
-// test them.
+// the format: o for OBJ, p for PLY, f for OFF, s for STL, g for glTF, b for GLB. Other formats are read by assimp,
+// whose authors test them.
 #include "fuzz_files.h"
 
 #include <tetskin/io/files.h>

@@ -108,7 +108,8 @@ TEST(LoadVtk, NamesTheCellOfSecondOrderThatIsFaulty) {
               {"c.vtk:8:", "cell 0 has 9 nodes where a tet of second order has 10"});
   expectError(load("CELLS 1 5\n4 0 2 4 9\nCELL_TYPES 1\n24\n"), kMalformed, {"cell 0 has 4 nodes"});
   expectError(load("CELLS 1 12\n11 0 2 4 9 1 3 5 6 7 8 10\nCELL_TYPES 1\n24\n"), kMalformed, {"11 nodes"});
-  expectError(load("CELLS 1 8\n7 0 2 4 9 1 3 5\nCELL_TYPES 1\n71\n"), kMalformed, {"7 nodes where a tet of second order has 10"});
+  expectError(load("CELLS 1 8\n7 0 2 4 9 1 3 5\nCELL_TYPES 1\n71\n"), kMalformed,
+              {"7 nodes where a tet of second order has 10"});
   expectError(load("CELLS 1 12\n11 0 2 4 9 1 3 5 6 7 8 10\nCELL_TYPES 1\n71\n"), kUnsupportedFormat,
               {"c.vtk:8:", "cell 0 is a tet above second order", "save the mesh"});
   expectError(load("CELLS 1 11\n10 0 2 4 9 1 3 5 6 7 11\nCELL_TYPES 1\n24\n"), kIndexOutOfRange,
@@ -119,10 +120,12 @@ TEST(LoadVtk, NamesTheCellOfSecondOrderThatIsFaulty) {
 
 TEST(LoadVtk, ExpandsTheDataOfTetsOfSecondOrder) {
   const Result<Cage> cage = loadCageText(
-      "c.vtk", kVtkHead + "POINTS 14" + kQuadraticPoints.substr(9) + "8 7 7 7 8 7 7 7 8\n"
-                   "CELLS 3 21\n4 10 11 12 13\n3 0 2 4\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 3\n10\n5\n24\nCELL_DATA 3\n"
-                   "SCALARS fill float\nLOOKUP_TABLE default\n.25 9 .5\nSCALARS part int\nLOOKUP_TABLE default\n"
-                   "0 0 1\nPOINT_DATA 14\nSCALARS mass float\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8 9 10 11 12 13 14\n");
+      "c.vtk",
+      kVtkHead + "POINTS 14" + kQuadraticPoints.substr(9) +
+          "8 7 7 7 8 7 7 7 8\n"
+          "CELLS 3 21\n4 10 11 12 13\n3 0 2 4\n10 0 2 4 9 1 3 5 6 7 8\nCELL_TYPES 3\n10\n5\n24\nCELL_DATA 3\n"
+          "SCALARS fill float\nLOOKUP_TABLE default\n.25 9 .5\nSCALARS part int\nLOOKUP_TABLE default\n"
+          "0 0 1\nPOINT_DATA 14\nSCALARS mass float\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8 9 10 11 12 13 14\n");
   ASSERT_TRUE(cage.ok()) << cage.status().message;
   std::vector<double> fill(1, 0.25), masses(14);
   std::iota(masses.begin(), masses.end(), 1.0);

@@ -224,8 +224,7 @@ inline const std::vector<std::pair<std::string, Bytes>>& beginnings(bool plain) 
 /// A run with a call: its bits after each frame, and the state before and after the calls.
 class CalledRun {
  public:
-  CalledRun(const Call& call, bool plain, const Bytes& beginning)
-      : call_(call), plain_(plain), beginning_(beginning) {
+  CalledRun(const Call& call, bool plain, const Bytes& beginning) : call_(call), plain_(plain), beginning_(beginning) {
     const auto scene = begun();
     const auto recorder = Recorder::start(scene->world, path_).value();
     for (int frame = 0; frame < kRun; ++frame) {
@@ -252,8 +251,8 @@ class CalledRun {
       replay.value()->onChange([&](std::size_t step) { callBefore(*scene, static_cast<int>(step)); });
     }
     for (int frame = 0; frame < kRun; ++frame) {
-      ASSERT_TRUE(replay.value()->step()) << frame << ' ' << replay.value()->status().message
-                                          << replay.value()->report().object;
+      ASSERT_TRUE(replay.value()->step())
+          << frame << ' ' << replay.value()->status().message << replay.value()->report().object;
       ASSERT_EQ(stateHash(scene->world), hashes_[static_cast<std::size_t>(frame)]) << frame;
     }
     EXPECT_FALSE(replay.value()->report().differs) << replay.value()->report().object;

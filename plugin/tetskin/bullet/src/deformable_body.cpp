@@ -7,8 +7,8 @@
 #include <tetskin/bullet/src/base/body_elements.h>
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>

@@ -59,7 +59,8 @@ Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report) {
   if (extension == ".stl") return io::readStl(path);
   if (extension == ".gltf" || extension == ".glb" || extension == ".vrm") return io::readGltfIfPossible(path);
   if (extension == ".3mf") {  // of a package with images, assimp 5.2.5 frees some twice
-    return io::fileError(StatusCode::UnsupportedFormat, path, 0, "packages of 3MF are not read; save the model as STL or PLY");
+    return io::fileError(StatusCode::UnsupportedFormat, path, 0,
+                         "packages of 3MF are not read; save the model as STL or PLY");
   }
   return io::readWithAssimp(path);
 }

@@ -17,7 +17,7 @@ namespace {
 struct HalvedEdge {
   std::array<int, 2> ends;  ///< ascending
   int middle;
-  std::size_t line;         ///< of a tet that has it
+  std::size_t line;  ///< of a tet that has it
 };
 
 bool hasLowerEnds(const HalvedEdge& a, const HalvedEdge& b) {
@@ -134,9 +134,10 @@ Status Cutter::checkLinearTets() const {
     }
     for (std::size_t e = 0; e < 6; ++e) {
       if (!isHalved(edgeOf(mesh_.tets[t], e))) continue;
-      return fileError(StatusCode::UnsupportedFormat, file_.path, 0,
-                       "has tets of second order, and beside them tets of first order with the same edges, such as tet " +
-                           std::to_string(t) + ", counted from 0; save all of them at second order, or none");
+      return fileError(
+          StatusCode::UnsupportedFormat, file_.path, 0,
+          "has tets of second order, and beside them tets of first order with the same edges, such as tet " +
+              std::to_string(t) + ", counted from 0; save all of them at second order, or none");
     }
   }
   return {};

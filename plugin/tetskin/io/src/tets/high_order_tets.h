@@ -32,7 +32,8 @@ enum class CurvedEdges {
 };
 
 /// Cuts tets of second order into eight, which become quadratic tets unless they are flat.
-/// Errors  Malformed, with the line: nodes that cannot be on the edges; UnsupportedFormat: tets of first order that have
+/// Errors  Malformed, with the line: nodes that cannot be on the edges; UnsupportedFormat: tets of first order that
+/// have
 ///         such an edge, so that a node would be on the edge of a tet that does not have it; TooLarge
 Status cutHighOrderTets(CurvedEdges curved, FileCage& file, TetFileReport& report);
 

@@ -17,10 +17,11 @@ Result<io::FileCage> readByExtension(const std::string& path, io::VtkData data, 
   const std::string extension = io::lowerExtension(path);
   if (extension == ".vtk") return io::readVtkFile(path, data, report);
   if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path);
-  const std::string what = extension == ".vtu" || extension == ".pvtu"
-                               ? "is an XML file of VTK, which is not supported; save it as legacy VTK (.vtk)"
-                               : "unsupported input format; convert it to legacy VTK (.vtk), as by 'meshio convert in.msh "
-                                 "out.vtk', or to TetGen (.node and .ele)";
+  const std::string what =
+      extension == ".vtu" || extension == ".pvtu"
+          ? "is an XML file of VTK, which is not supported; save it as legacy VTK (.vtk)"
+          : "unsupported input format; convert it to legacy VTK (.vtk), as by 'meshio convert in.msh "
+            "out.vtk', or to TetGen (.node and .ele)";
   return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
 }
 

@@ -76,8 +76,9 @@ Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, st
   for (std::size_t i = 0; i < 4; ++i) {
     std::int64_t node = 0;
     if (!record.integer(node)) {
-      return malformed(path, record,
-                       "has no index and four nodes for tet " + std::to_string(t) + "; is it complete? Correct the line");
+      return malformed(
+          path, record,
+          "has no index and four nodes for tet " + std::to_string(t) + "; is it complete? Correct the line");
     }
     if (node < base || node - base >= static_cast<std::int64_t>(nodeCount)) {
       return fileError(StatusCode::IndexOutOfRange, path, record.line(),

@@ -312,8 +312,9 @@ Status VtkReader::checkSize(std::size_t cell) const {
   const bool secondOrder = isHighOrderTet(cell);
   if (size == (secondOrder ? 10 : 4)) return {};
   if (secondOrder && cellTypes_[cell] != kVtkQuadraticTet && size > 10) {
-    return errorAt(lineOf(cellFirst_[cell]), StatusCode::UnsupportedFormat,
-                   "cell " + std::to_string(cell) + " is a tet above second order; save the mesh at second or first order");
+    return errorAt(
+        lineOf(cellFirst_[cell]), StatusCode::UnsupportedFormat,
+        "cell " + std::to_string(cell) + " is a tet above second order; save the mesh at second or first order");
   }
   return errorAt(lineOf(cellFirst_[cell]), StatusCode::Malformed,
                  "cell " + std::to_string(cell) + " has " + std::to_string(size) + " nodes where a tet " +
