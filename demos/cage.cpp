@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
                    {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "a cage of about 3,000 tets around your mesh"},
                      {"tetskin_cage --mesh yours.obj --tets 300 --calibrate -o yours_cage.vtk --json cage.json",
                       "about 300 tets, calibrated to the stiffness of the mesh, and a JSON file of their quality"},
-                     {"tetskin_cage --filled yours.msh --quadratic -o yours_cage.vtk",
+                     {"tetskin_cage --filled yours.vtk --quadratic -o yours_cage.vtk",
                       "a cage of quadratic tets, one for each tet of a mesh that fills the body"}},
                     "a vertex lies outside the cage"});
   line.addMeshOptions(command.model);
@@ -148,8 +148,8 @@ int main(int argc, char** argv) {
   line.addFlag("--quadratic", command.quadratic,
                "With --filled: a quadratic tet, of eight tets, for each tet, unless the file has some");
   line.addOutput("-o,--output", command.output,
-                 ".vtk for the cage with all its data; .msh, or .ele with .node, for the tets alone",
-                 CommandLine::Need::Required, {".vtk", ".node", ".ele", ".msh"});
+                 ".vtk for the cage with all its data; .ele with .node for the tets alone", CommandLine::Need::Required,
+                 {".vtk", ".node", ".ele"});
   line.addSummaryOption(command.json);
   line.addFlag("--no-fit", command.loose);
   line.addQuietOption(command.quiet);

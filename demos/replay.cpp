@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Plays a recorded run. Of one that a demo has recorded by --record, it calls that demo with its arguments, and with
-// --replay. Of others, it builds the world from the file.
+// Plays a run that a demo has recorded by --record: it calls that demo with its arguments, and with --replay.
 #include <tetskin/bullet/recorder.h>
-#include <tetskin/contact/soft_contacts.h>
 #include <tetskin/tetskin.h>
-#include <tetskin/touch/surface_joint.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenes/command_line.h"
 #include "scenes/input_error.h"
-#include "scenes/stepping.h"
 #include "scenes/system.h"
 
 namespace {
@@ -30,25 +25,17 @@ struct Call {
   std::vector<std::string> arguments;
 };
 
-/// Empty: it was recorded by another program than a demo.
-std::optional<Call> callOf(const std::string& description) {
-  const nlohmann::json made = nlohmann::json::parse(description, nullptr, false);
+Call callOf(const std::string& file) {
+  const Result<std::string> description = Replay::descriptionOf(file);
+  require(description.status());
+  const nlohmann::json made = nlohmann::json::parse(description.value(), nullptr, false);
   try {
     return Call{made.at("program"), made.at("tetskin"), made.at("arguments")};
   } catch (const nlohmann::json::exception&) {
-    return {};
+    throw InputError(file +
+                     ": was recorded by another program than a demo; build its world as that program does, and " +
+                     "play the file by Replay::open(world, file)");
   }
-}
-
-int playFile(const std::string& file, const std::string& description, bool quiet) {
-  Result<std::unique_ptr<Replay>> opened = Replay::open(file, {builderOfSoftContacts(), builderOfJoints()});
-  require(opened.status());
-  Replay& replay = *opened.value();
-  if (!quiet && !description.empty()) std::printf("%s\n", description.c_str());
-  while (replay.step()) {
-  }
-  std::printf("%s\n", findingOf(replay).c_str());
-  return replay.status().ok() && !replay.report().differs ? 0 : 1;
 }
 
 int callDemo(const std::string& folder, const std::string& file, const Call& call, bool quiet) {
@@ -72,25 +59,19 @@ int callDemo(const std::string& folder, const std::string& file, const Call& cal
   return status;
 }
 
-int replay(const std::string& folder, const std::string& file, bool quiet) {
-  const Result<std::string> description = Replay::descriptionOf(file);
-  require(description.status());
-  const std::optional<Call> call = callOf(description.value());
-  return call ? callDemo(folder, file, *call, quiet) : playFile(file, description.value(), quiet);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   std::string file;
   bool quiet = false;
   CommandLine line(
-      "Plays a run again that a demo has recorded by --record, or any program by tetskin::Recorder, and says the first "
-      "step that differs, and in which body.",
+      "Plays a run again that a demo has recorded by --record, and says the first step that differs, and in which "
+      "body.",
       {{{"tetskin_drop --record drop.replay", "records"}, {"tetskin_replay drop.replay", "plays, in its folder"}},
        "a step differs from the recorded one, or the run failed"});
   line.addInput("file,--file", file, "The recorded run", CommandLine::Need::Required);
   line.addQuietOption(quiet);
-  return line.run(argc, argv,
-                  [&] { return replay(std::filesystem::absolute(argv[0]).parent_path().string(), file, quiet); });
+  return line.run(argc, argv, [&] {
+    return callDemo(std::filesystem::absolute(argv[0]).parent_path().string(), file, callOf(file), quiet);
+  });
 }

@@ -69,8 +69,8 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
                      std::to_string(scenes::SceneOptions().substeps));
   line.addCount("--reference-substeps", o.referenceSubsteps, "Steps of the reference per frame", kMaxReferenceSubsteps);
   line.addInput("--reference", o.reference,
-                "Tet mesh to use as the reference, in which no components of the mesh are fused: .vtk, .ele/.node or "
-                ".msh, in the mesh's coordinates",
+                "Tet mesh to use as the reference, in which no components of the mesh are fused: .vtk, or .ele "
+                "with .node, in the mesh's coordinates",
                 scenes::CommandLine::Need::Optional, "by formula for a built-in model that has one, else a built cage");
   line.addFlag("--full", full_, "Use a reference of 300,000 tets");
   line.addFlag("--quick", quick_, "a small report, in half a minute");

@@ -87,7 +87,7 @@ Cage loadCage(const std::string& path) {
   Result<Cage> loaded = tetskin::loadCage(path, &report);
   require(loaded.status());
   // Most files hold surfaces, too, which need no word.
-  if (report.movedNodes + report.cutLinearTets + report.droppedNodes > 0) warn(path, report.describe());
+  if (report.movedNodes > 0) warn(path, report.describe());
   Cage cage = std::move(loaded).value();
   if (const Status status = validate(cage.mesh); !status.ok()) {
     throw InputError(path + ": " + status.message);

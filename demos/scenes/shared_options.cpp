@@ -12,7 +12,7 @@ const std::vector<SharedOption>& sharedOptions() {
       {"--mesh", "Model", "Render mesh, as OBJ, PLY, STL, OFF, glTF, or in any format that assimp reads"},
       {"--model", "Model", "Built-in model"},
       {"--triangles", "Model", "Triangles of a built-in model"},
-      {"--cage", "Model", "Tet mesh to use as the cage: .vtk, .ele/.node or .msh"},
+      {"--cage", "Model", "Tet mesh to use as the cage: .vtk, or .ele with .node"},
       {"--deformed", "Model", "The same tet mesh, deformed, with its nodes in the same order"},
       {"--tets", "Model", "Approximate number of tets of a built cage"},
       {"--no-duplicate-elements", "Model",

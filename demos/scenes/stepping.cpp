@@ -63,7 +63,6 @@ class IntoAFile : public Stepping {
     const nlohmann::ordered_json made = {
         {"program", output.program}, {"arguments", output.arguments}, {"tetskin", TETSKIN_VERSION}};
     options.description = made.dump();
-    options.buildUp = false;  // the demo builds its world
     Result<std::unique_ptr<Recorder>> started = Recorder::start(world, path_, options);
     require(started.status());
     recorder_ = std::move(started).value();

@@ -5,6 +5,44 @@
 #include <cmath>
 
 namespace tetskin::facade {
+namespace {
+
+/// By their codes; a test compares them with those of tetskin/core/types.h.
+constexpr const char* kCodes[] = {"Ok",
+                                  "FileNotFound",
+                                  "FileNotWritable",
+                                  "UnsupportedFormat",
+                                  "Malformed",
+                                  "Empty",
+                                  "IndexOutOfRange",
+                                  "NonFinite",
+                                  "Degenerate",
+                                  "SizeMismatch",
+                                  "InvalidOption",
+                                  "OutsideCage",
+                                  "CageMismatch",
+                                  "TooLarge",
+                                  "Asleep",
+                                  "Hidden",
+                                  "Unbound",
+                                  "TopologyChanged",
+                                  "NoHit",
+                                  "BodyDeleted",
+                                  "Released",
+                                  "OtherBody",
+                                  "NotInWorld",
+                                  "NotAdded",
+                                  "Enclosed",
+                                  "NotSaved",
+                                  "SnapshotMismatch",
+                                  "Cancelled"};
+static_assert(sizeof(kCodes) / sizeof(kCodes[0]) == static_cast<std::size_t>(StatusCode::Cancelled) + 1);
+
+}  // namespace
+
+const char* nameOf(StatusCode code) {
+  return kCodes[static_cast<std::size_t>(code)];
+}
 
 const Vec3& finite(const Vec3& vector, const char* name) {
   for (const double number : vector) {

@@ -162,11 +162,19 @@ void World::updateTeleported() {
   updateSkins();
 }
 
+namespace {
+
+void checkFriction(double friction) {
+  if (!(friction >= 0.0 && friction < 1e6)) throw std::invalid_argument("friction: must be 0 or more, and finite");
+}
+
+}  // namespace
+
 std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass, const btTransform& pose,
                                             double friction, bool kinematic) {
   if (!(mass >= 0.0 && mass < Limits::kMaxCoordinate))
     throw std::invalid_argument("mass: must be 0 or more, and finite");
-  if (!(friction >= 0.0 && friction < 1e6)) throw std::invalid_argument("friction: must be 0 or more, and finite");
+  checkFriction(friction);
   if (shape.concave && mass > 0.0)
     throw std::invalid_argument("mass: a plane or a mesh does not move by itself; its mass is 0");
   if (kinematic && mass > 0.0) throw std::invalid_argument("mass: that of a kinematic body is 0");
@@ -192,6 +200,29 @@ std::shared_ptr<RigidState> World::addRigid(const ShapeModel& shape, double mass
     throw;
   }
   return rigid;
+}
+
+namespace {
+
+/// Where it is, or where it will be in the next step.
+btTransform poseOf(const RigidState& rigid) {
+  btTransform pose = alive(rigid).getWorldTransform();
+  rigid.motion->getWorldTransform(pose);
+  return pose;
+}
+
+}  // namespace
+
+void World::setPosition(RigidState& rigid, const Vec3& position) {
+  btTransform pose = poseOf(rigid);
+  pose.setOrigin(toBullet(position, "position"));
+  place(rigid, pose);
+}
+
+void World::setRotation(RigidState& rigid, const Quaternion& rotation) {
+  btTransform pose = poseOf(rigid);
+  pose.setRotation(toBullet(Vec3{}, rotation).getRotation());
+  place(rigid, pose);
 }
 
 void World::place(RigidState& rigid, const btTransform& pose) {
@@ -280,6 +311,8 @@ void World::bindSurface(BodyState& body, const BodyOptions& options) {
 
 std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel& mesh,
                                           const Eigen::Affine3d& placement, const BodyOptions& options) {
+  if (!mesh.mesh && (options.softContact || options.selfContact))
+    fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
   auto body = std::make_shared<BodyState>();
   body->cage = cage;
   body->mesh = mesh;
@@ -291,6 +324,8 @@ std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel
   body->body = take(DeformableBody::add(*world_, placed, options.material));
   try {
     if (mesh.mesh) bindSurface(*body, options);
+    setPinned(*body, options.pinned, true);
+    if (mesh.mesh && !options.visible) body->skin.setVisible(false);
     bodies_.push_back(body);
   } catch (...) {  // as if nothing had been added
     if (soft_ && body->softContact) soft_->remove(body->body->body());
@@ -385,6 +420,85 @@ DeformableBody& alive(const BodyState& body) {
 
 void checkSurface(const BodyState& body) {
   if (!body.binding) fail(StatusCode::Unbound, "the body has no surface: it was added without a mesh");
+}
+
+SoftBodySkin& surfaceOf(BodyState& body) {
+  (void)alive(body);
+  checkSurface(body);
+  return body.skin;
+}
+
+namespace {
+
+std::size_t nodeCount(const BodyState& body) {
+  return body.cage.cage->mesh.nodeCount();
+}
+
+PointView<const double> pointsOf(const double* numbers, std::size_t count, std::size_t nodes, const char* name) {
+  if (count != 3 * nodes)
+    fail(StatusCode::SizeMismatch,
+         std::string(name) + ": " + std::to_string(count) + " numbers for " + std::to_string(nodes) + " nodes");
+  const PointView<const double> points(numbers, nodes);
+  if (firstUnusable(points) != nodes)
+    fail(StatusCode::NonFinite, std::string(name) + ": a number is not finite, or larger than 1e18");
+  return points;
+}
+
+btVector3 vectorAt(const PointView<const double>& points, std::size_t i) {
+  return {static_cast<btScalar>(points[i][0]), static_cast<btScalar>(points[i][1]),
+          static_cast<btScalar>(points[i][2])};
+}
+
+void checkNodes(const BodyState& body, const std::vector<int>& nodes) {
+  for (const int node : nodes) {
+    if (node < 0 || static_cast<std::size_t>(node) >= nodeCount(body))
+      fail(StatusCode::IndexOutOfRange, "nodes: there is no node " + std::to_string(node));
+  }
+}
+
+}  // namespace
+
+void setVelocities(BodyState& body, const double* velocities, std::size_t numbers) {
+  btSoftBody& soft = alive(body).body();
+  const PointView<const double> points = pointsOf(velocities, numbers, nodeCount(body), "velocities");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    btSoftBody::Node& node = soft.m_nodes[static_cast<int>(i)];
+    if (node.m_im > 0) node.m_v = vectorAt(points, i);
+  }
+  soft.activate(true);
+}
+
+void setPinned(BodyState& body, const std::vector<int>& nodes, bool pinned) {
+  DeformableBody& soft = alive(body);
+  checkNodes(body, nodes);
+  for (const int node : nodes) check(soft.setPinned(node, pinned));
+}
+
+void setPinnedPositions(BodyState& body, const std::vector<int>& nodes, const double* positions, std::size_t numbers) {
+  DeformableBody& soft = alive(body);
+  checkNodes(body, nodes);
+  const PointView<const double> points = pointsOf(positions, numbers, nodes.size(), "positions");
+  for (const int node : nodes) {
+    if (!soft.isPinned(node)) fail(StatusCode::InvalidOption, "nodes: node " + std::to_string(node) + " is not pinned");
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) check(soft.setPinnedPosition(nodes[i], vectorAt(points, i)));
+}
+
+std::vector<unsigned char> pinnedOf(const BodyState& body) {
+  const DeformableBody& soft = alive(body);
+  std::vector<unsigned char> mask(nodeCount(body));
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = soft.isPinned(static_cast<int>(i));
+  return mask;
+}
+
+void setFriction(BodyState& body, double friction) {
+  if (!(friction >= 0.0 && friction <= 1.0)) fail(StatusCode::InvalidOption, "friction: must be from 0 to 1");
+  alive(body).body().m_cfg.kDF = static_cast<btScalar>(friction);
+}
+
+void setFriction(RigidState& rigid, double friction) {
+  checkFriction(friction);
+  alive(rigid).setFriction(static_cast<btScalar>(friction));
 }
 
 }  // namespace tetskin::facade

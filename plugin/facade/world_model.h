@@ -78,7 +78,8 @@ struct RayHit {
 struct BodyOptions {
   SoftBodyOptions material;
   BindingOptions binding;
-  bool surfaceContact = true, softContact = false, selfContact = false;
+  std::vector<int> pinned;
+  bool visible = true, surfaceContact = true, softContact = false, selfContact = false;
   std::optional<double> contactMargin, sampleSpacing;
 };
 
@@ -121,8 +122,9 @@ class World : public std::enable_shared_from_this<World> {
   std::shared_ptr<RigidState> addRigid(const ShapeModel& shape, double mass, const btTransform& pose, double friction,
                                        bool kinematic);
   void remove(RigidState& rigid);
-  /// Puts a body somewhere: a kinematic one by its motion state, which gives it the velocity of the motion.
-  void place(RigidState& rigid, const btTransform& pose);
+  /// Put a body somewhere: a kinematic one by its motion state, which gives it the velocity of the motion.
+  void setPosition(RigidState& rigid, const Vec3& position);
+  void setRotation(RigidState& rigid, const Quaternion& rotation);
   std::shared_ptr<JointState> addJoint(std::shared_ptr<RigidState> first, std::shared_ptr<RigidState> second,
                                        std::unique_ptr<btTypedConstraint> joint, bool collide);
   void remove(JointState& joint);
@@ -182,6 +184,7 @@ class World : public std::enable_shared_from_this<World> {
 
   void updateSkins();
   void updateTeleported();
+  void place(RigidState& rigid, const btTransform& pose);
   static void checkStep(double dt, int substeps);
   static btScalar substepOf(double dt, int substeps);
   Shared& sharedOf(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options);
@@ -212,5 +215,16 @@ class World : public std::enable_shared_from_this<World> {
 btRigidBody& alive(const RigidState& rigid);
 DeformableBody& alive(const BodyState& body);
 void checkSurface(const BodyState& body);
+/// The surface of a body that has one; throws otherwise.
+SoftBodySkin& surfaceOf(BodyState& body);
+
+/// By node. Throw, and change nothing, for another count, a number that is not finite, a node that is not there.
+/// velocities, positions  three numbers for each; velocities of pinned nodes stay
+void setVelocities(BodyState& body, const double* velocities, std::size_t numbers);
+void setPinned(BodyState& body, const std::vector<int>& nodes, bool pinned);
+void setPinnedPositions(BodyState& body, const std::vector<int>& nodes, const double* positions, std::size_t numbers);
+std::vector<unsigned char> pinnedOf(const BodyState& body);
+void setFriction(BodyState& body, double friction);
+void setFriction(RigidState& rigid, double friction);
 
 }  // namespace tetskin::facade

@@ -91,7 +91,7 @@ TEST_F(CageCommand, TellsInOneLineWhatOfAMeshWasNotRead) {
 }
 
 TEST_F(CageCommand, CopiesNeedAFormatThatKeepsTheirMap) {
-  const CommandResult refused = cage({"--model", "slotted_beam", "--tets", "1500", "-o", "c.msh", "--quiet"});
+  const CommandResult refused = cage({"--model", "slotted_beam", "--tets", "1500", "-o", "c.ele", "--quiet"});
   test::expectRefused(refused, ".vtk");
 }
 
@@ -120,9 +120,9 @@ TEST_F(CageCommand, TellsOfVerticesThatNoTriangleUses) {
 
 TEST_F(CageCommand, MakesQuadraticTetsOfAFilledMesh) {
   const TetMesh filled = test::latticeCage(3, 1, 1);
-  ASSERT_TRUE(saveTetMesh(filled, folder.path("f.msh")).ok());
+  ASSERT_TRUE(saveTetMesh(filled, folder.path("f.vtk")).ok());
   const auto made = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"--filled", "f.msh", "-o", "c.vtk", "--json", "c.json"};
+    std::vector<std::string> arguments{"--filled", "f.vtk", "-o", "c.vtk", "--json", "c.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const CommandResult result = cage(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -138,7 +138,7 @@ TEST_F(CageCommand, MakesQuadraticTetsOfAFilledMesh) {
   EXPECT_EQ(each.quadraticTet, expected.quadraticTet);
   EXPECT_EQ(folder.json("c.json")["quadratic_tets"], filled.tetCount());
   // Those that were refined before are found, with or without.
-  ASSERT_TRUE(saveTetMesh(expected.mesh, folder.path("f.msh")).ok());
+  ASSERT_TRUE(saveTetMesh(expected.mesh, folder.path("f.vtk")).ok());
   EXPECT_EQ(quadraticTets(made({})).value().size(), filled.tetCount());
   EXPECT_EQ(made({"--quadratic"}).mesh.tetCount(), expected.mesh.tetCount());
 }
@@ -150,10 +150,9 @@ TEST_F(CageCommand, TellsInOneLineOfCurvedEdges) {
                "9\nCELL_TYPES 1\n24\n");
   const CommandResult result = cage({"--filled", "f.vtk", "-o", "c.vtk", "--quiet"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(
-      result.err,
-      "f.vtk: 1 tets of second or higher order became quadratic tets, each of eight tets, 1 nodes on curved edges "
-      "were moved to their middles, by up to 0.354\n");
+  EXPECT_EQ(result.err,
+            "f.vtk: 1 tets of second order became quadratic tets, each of eight tets, 1 nodes on curved edges "
+            "were moved to their middles, by up to 0.354\n");
   EXPECT_EQ(quadraticTets(loadCage(folder.path("c.vtk")).value()).value().size(), 1u);
 }
 
@@ -176,7 +175,7 @@ TEST_F(CageCommand, RefusesBadInput) {
   expectRefused({"--mesh", "ok.obj", "-o", "no/such/c.vtk"}, "no/such/c.vtk");
   expectRefused({"--mesh", "ok.obj"}, "--output");
   ASSERT_TRUE(saveTetMesh(test::singleTet(), folder.path("f.vtk")).ok());
-  expectRefused({"--filled", "nowhere.msh", "-o", "c.vtk"}, "nowhere.msh");
+  expectRefused({"--filled", "nowhere.vtk", "-o", "c.vtk"}, "nowhere.vtk");
   expectRefused({"--filled", "f.vtk", "--tets", "100", "-o", "c.vtk"}, "takes no --tets");
   expectRefused({"--mesh", "ok.obj", "--quadratic", "-o", "c.vtk"}, "--filled");
 }

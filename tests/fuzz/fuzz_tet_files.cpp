@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Damaged files of tet meshes: whatever the bytes, the result is a sound mesh or a message. The first byte chooses the
-// format: v for VTK, m for Gmsh, t for TetGen, whose two files are separated by a form feed. VTK files are also read as
-// cages.
+// format: v for VTK, t for TetGen, whose two files are separated by a form feed. VTK files are also read as cages.
 #include "fuzz_files.h"
 
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
@@ -22,8 +21,6 @@ using test::write;
 /// Writes the files of a format, and returns the path to be read.
 std::string writeAll(char format, const std::string& bytes) {
   if (format == 'v') return write("c.vtk", bytes);
-  if (format == 'm') return write("c.msh", bytes);
-  if (format == 'd') return write("c.mesh", bytes);
   const std::size_t split = bytes.find('\f');
   write("c.node", bytes.substr(0, split));
   return write("c.ele", split == std::string::npos ? "" : bytes.substr(split + 1));
@@ -66,7 +63,7 @@ void checkCage(const std::string& path, const TetMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto format = static_cast<char>(data[0]);
-  if (format != 'v' && format != 'm' && format != 'd' && format != 't') return 0;
+  if (format != 'v' && format != 't') return 0;
   const std::string path = writeAll(format, std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
   Result<TetMesh> mesh = loadTetMesh(path);
   if (!mesh.ok()) {

@@ -114,7 +114,7 @@ TEST(CageFiles, QuadraticTetsReadBackExactlyAndAreTetsToOthers) {
             std::string::npos)
       << text;
   const TempFolder folder;
-  for (const char* name : {"c.msh", "c.ele"}) {
+  for (const char* name : {"c.ele", "c.node"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
     Cage read = loadCage(folder.path(name)).value();
     EXPECT_EQ(read.mesh.tets, cage.mesh.tets);
@@ -126,7 +126,7 @@ TEST(CageFiles, QuadraticTetsReadBackExactlyAndAreTetsToOthers) {
 TEST(CageFiles, ABareCageMakesTheFileOfItsTets) {
   const TempFolder folder;
   const Cage cage(latticeCage(2, 1, 1));
-  for (const char* name : {"c.vtk", "c.msh", "c.ele"}) {
+  for (const char* name : {"c.vtk", "c.ele"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
     const std::string text = TempFolder::read(folder.path(name));
     ASSERT_TRUE(saveTetMesh(cage.mesh, folder.path(name)).ok());
@@ -152,7 +152,7 @@ TEST(CageFiles, OtherFormatsKeepTheTetsAlone) {
   const TempFolder folder;
   Cage cage = smallCage();
   cage.sourceTet = {7, 8};  // no duplicates: the map can be computed again
-  for (const char* name : {"c.msh", "c.ele", "c.node"}) {
+  for (const char* name : {"c.ele", "c.node"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
     const Result<Cage> loaded = loadCage(folder.path(name));
     ASSERT_TRUE(loaded.ok()) << loaded.status().message;
@@ -163,11 +163,11 @@ TEST(CageFiles, OtherFormatsKeepTheTetsAlone) {
 TEST(CageFiles, OnlyVtkKeepsTheMapOfCopies) {
   const TempFolder folder;
   const Cage cage = platesOfCopies().cage;
-  for (const char* name : {"c.msh", "c.ele", "c.node"}) {
+  for (const char* name : {"c.ele", "c.node"}) {
     expectError(saveCage(cage, folder.path(name)), kUnsupportedFormat,
                 {folder.path(name), "which duplicate of a tet carries which vertex", "use .vtk"});
   }
-  expectError(saveCage(cage, folder.path("c.xyz")), kUnsupportedFormat, {"use .vtk, .node, .ele or .msh"});
+  expectError(saveCage(cage, folder.path("c.xyz")), kUnsupportedFormat, {"use .vtk, .node or .ele"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 

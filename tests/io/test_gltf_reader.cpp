@@ -377,6 +377,8 @@ TEST(LoadGltf, NamesWhatIsNoGltf) {
   expectError(loadMeshText("m.glb", glb(5)), kMalformed, {"m.glb: states a chunk of 5 bytes"});
   expectError(loadMeshText("m.glb", glb(4)), StatusCode::Empty, {"m.glb: has no triangles"});
   expectError(loadMeshText("m.glb", "glTF"), kMalformed, {"m.glb: ends within the header"});
+  expectError(loadMeshText("m.gltf", R"({"asset": {"version": "1.0"}, "meshes": {}})"), kUnsupportedFormat,
+              {"m.gltf: is of glTF 1.0", "save it as glTF 2.0"});
 }
 
 TEST(LoadGltf, SurvivesDamage) {

@@ -39,10 +39,6 @@ TEST(SaveTetMesh, VtkReadsBackExactly) {
   expectAwkwardMeshReadsBack("c.vtk", "c.vtk");
 }
 
-TEST(SaveTetMesh, GmshReadsBackExactly) {
-  expectAwkwardMeshReadsBack("c.msh", "c.msh");
-}
-
 TEST(SaveTetMesh, TetgenReadsBackExactlyWhicheverFileIsNamed) {
   expectAwkwardMeshReadsBack("c.node", "c.ele");
   expectAwkwardMeshReadsBack("c.1.ele", "c.1.node");
@@ -86,7 +82,7 @@ TEST(SaveTetMesh, RefusesMeshesThatCouldNotBeRead) {
 
 TEST(SaveTetMesh, NamesAFolderThatDoesNotExist) {
   const TempFolder folder;
-  for (const char* name : {"none/c.vtk", "none/c.msh", "none/c.ele"}) {
+  for (const char* name : {"none/c.vtk", "none/c.ele"}) {
     expectError(saveTetMesh(awkwardMesh(), folder.path(name)), StatusCode::FileNotWritable,
                 {folder.path("none/c."), "check that its folder exists"});
   }

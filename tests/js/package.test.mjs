@@ -76,7 +76,8 @@ test("codes of errors are those of the library, in its order and in the types", 
   const [, list] = /enum class \[\[nodiscard\]\] StatusCode\{([\s\S]*?)\};/.exec(header);
   const codes = list.replace(/\/\/.*/g, "").match(/\w+/g);
   const source = readFileSync(join(repository, "plugin/js/src/guarded.cpp"), "utf8");
-  const [, ours] = /kCodes\[\] = \{([\s\S]*?)\};/.exec(source);
+  const facade = readFileSync(join(repository, "plugin/facade/models.cpp"), "utf8");
+  const [, ours] = /kCodes\[\] = \{([\s\S]*?)\};/.exec(facade);
   assert.deepEqual(ours.match(/\w+/g), codes);
   const [, types] = /export type ErrorCode =([\s\S]*?);\n/.exec(read("tetskin.d.ts"));
   const typed = types.match(/"\w+"/g).map(word => word.slice(1, -1));

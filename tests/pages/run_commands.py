@@ -59,7 +59,7 @@ def make_inputs(folder, environment):
                    env=environment, check=True)
     shutil.copy(folder / "rest.vtk", folder / "yours_cage.vtk")
     subprocess.run(["tetskin_cage", "--mesh", "dragon.obj", "--tets", "200", "--no-duplicate-elements", "--quiet", "-o",
-                    "yours.msh"], cwd=folder, env=environment, check=True)
+                    "yours.vtk"], cwd=folder, env=environment, check=True)
     write_twisted(folder / "rest.vtk", folder / "now.vtk")
 
 

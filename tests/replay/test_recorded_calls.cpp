@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // A table of what an application may call between steps to change a world, of this library's and of Bullet's. Each run
-// is recorded, and played again to the last bit: in a world that the program builds, and in one that the file does. And
-// a snapshot from before the call, restored, with the call once more, and one from after it go on to the same bits.
+// is recorded, and played again to the last bit. And a snapshot from before the call, restored, with the call once
+// more, and one from after it go on to the same bits.
 #include "replay/recorded_calls.h"
 
 namespace tetskin::test {

@@ -5,7 +5,7 @@ set(core_stages base base/arithmetic base/state base/bvh base/mesh base/kernels 
 set(cage_stages surface lattice material split fit fill)
 set(io_stages text mesh tets animation)
 set(elastic_stages base kernels tets matrix modes calibration dynamics exported)
-set(bullet_stages base bodies skins forces search rows motion system step state exported build record)
+set(bullet_stages base bodies skins forces search rows motion system step state exported record)
 set(contact_stages rigid soft)
 set(touch_stages points rows joints tree)
 set(reduced_stages modes bodies)

@@ -31,6 +31,7 @@ BodyOptions optionsOf(const SoftOptions& soft) {
   material.maxIterations = soft.maxIterations;
   material.faceTree = false;
   options.binding = bindingOptions(soft.interpolation, soft.normals, "nearest", {});
+  options.visible = soft.visible;
   options.surfaceContact = soft.surfaceContact;
   options.softContact = soft.softContact;
   options.selfContact = soft.selfContact;
@@ -39,34 +40,14 @@ BodyOptions optionsOf(const SoftOptions& soft) {
   return options;
 }
 
-void checkNodes(const Indices& nodes, std::size_t count) {
-  for (const std::int32_t node : nodes) {
-    if (node < 0 || static_cast<std::size_t>(node) >= count)
-      fail(StatusCode::IndexOutOfRange, "nodes: there is no node " + std::to_string(node));
-  }
-}
-std::size_t nodeCount(BodyHandle& body) {
-  return body.state->cage.cage->mesh.nodeCount();
-}
-
 /// mesh  null: none
 BodyHandle* addBody(WorldHandle& handle, const CageModel& cage, const MeshModel* mesh, SoftOptions soft,
                     Indices pinned) {
-  const BodyOptions options = optionsOf(soft);
-  checkNodes(pinned, cage.cage->mesh.nodeCount());
-  if (!mesh && (soft.softContact || soft.selfContact))
-    fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
+  BodyOptions options = optionsOf(soft);
+  options.pinned.assign(pinned.begin(), pinned.end());
   auto body = std::make_unique<BodyHandle>(BodyHandle{handle.world, {}, {}, {}});
   body->state =
       handle.world->addBody(cage, mesh ? *mesh : MeshModel(), placementOf(soft.position, soft.rotation), options);
-  BodyState& state = *body->state;
-  try {
-    for (const std::int32_t node : pinned) check(state.body->setPinned(node));
-    if (state.binding && !soft.visible) state.skin.setVisible(false);
-  } catch (...) {  // as if nothing had been added
-    handle.world->remove(state);
-    throw;
-  }
   return body.release();
 }
 void remove(BodyHandle& body) {
@@ -95,66 +76,29 @@ View velocities(BodyHandle& body) {
       alive(*body.state).body(), body.velocities, [](const btSoftBody::Node& n) -> auto& { return n.m_v; });
 }
 
-/// Checks that there are three numbers for each of `count` nodes.
-PointView<const double> checked(const Doubles& numbers, std::size_t count, const char* name) {
-  if (numbers.count != 3 * count)
-    fail(StatusCode::SizeMismatch,
-         std::string(name) + ": " + std::to_string(numbers.count) + " numbers for " + std::to_string(count) + " nodes");
-  const PointView<const double> points(numbers.begin(), count);
-  if (firstUnusable(points) != count)
-    fail(StatusCode::NonFinite, std::string(name) + ": a number is not finite, or larger than 1e18");
-  return points;
-}
-btVector3 vectorAt(const PointView<const double>& points, std::size_t i) {
-  return {static_cast<btScalar>(points[i][0]), static_cast<btScalar>(points[i][1]),
-          static_cast<btScalar>(points[i][2])};
-}
-
 void setVelocities(BodyHandle& body, Doubles numbers) {
-  btSoftBody& soft = alive(*body.state).body();
-  const PointView<const double> points = checked(numbers, nodeCount(body), "velocities");
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    btSoftBody::Node& node = soft.m_nodes[static_cast<int>(i)];
-    if (node.m_im > 0) node.m_v = vectorAt(points, i);
-  }
-  soft.activate(true);
+  setVelocities(*body.state, numbers.begin(), numbers.count);
 }
-
 void setPinned(BodyHandle& body, Indices nodes, bool pinned) {
-  DeformableBody& soft = alive(*body.state);
-  checkNodes(nodes, nodeCount(body));
-  for (const std::int32_t node : nodes) check(soft.setPinned(node, pinned));
+  setPinned(*body.state, {nodes.begin(), nodes.end()}, pinned);
 }
 void setPinnedPositions(BodyHandle& body, Indices nodes, Doubles positions) {
-  DeformableBody& soft = alive(*body.state);
-  checkNodes(nodes, nodeCount(body));
-  const PointView<const double> points = checked(positions, nodes.count, "positions");
-  for (const std::int32_t node : nodes) {
-    if (!soft.isPinned(node)) fail(StatusCode::InvalidOption, "nodes: node " + std::to_string(node) + " is not pinned");
-  }
-  for (std::size_t i = 0; i < nodes.count; ++i) check(soft.setPinnedPosition(nodes.begin()[i], vectorAt(points, i)));
+  setPinnedPositions(*body.state, {nodes.begin(), nodes.end()}, positions.begin(), positions.count);
 }
 View pinned(BodyHandle& body) {
-  const DeformableBody& soft = alive(*body.state);
-  std::vector<unsigned char> mask(nodeCount(body));
-  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = soft.isPinned(static_cast<int>(i));
-  return lent(std::move(mask));
+  return lent(pinnedOf(*body.state));
 }
 
 View positions(BodyHandle& body) {
-  (void)alive(*body.state);
-  checkSurface(*body.state);
+  (void)surfaceOf(*body.state);
   return viewNumbers(body.state->positions.data(), body.state->positions.size());
 }
 View normals(BodyHandle& body) {
-  (void)alive(*body.state);
-  checkSurface(*body.state);
+  (void)surfaceOf(*body.state);
   return viewNumbers(body.state->normals.data(), body.state->normals.size());
 }
 View bounds(BodyHandle& body) {
-  (void)alive(*body.state);
-  checkSurface(*body.state);
-  const Box3& box = body.state->skin.bounds();
+  const Box3& box = surfaceOf(*body.state).bounds();
   return lent(
       std::vector<double>{box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()});
 }
@@ -162,9 +106,7 @@ bool visible(BodyHandle& body) {
   return body.state->skin.visible();
 }
 void setVisible(BodyHandle& body, bool visible) {
-  (void)alive(*body.state);
-  checkSurface(*body.state);
-  body.state->skin.setVisible(visible);
+  surfaceOf(*body.state).setVisible(visible);
 }
 
 bool asleep(BodyHandle& body) {
@@ -198,8 +140,7 @@ double friction(BodyHandle& body) {
   return static_cast<double>(alive(*body.state).body().m_cfg.kDF);
 }
 void setFriction(BodyHandle& body, double friction) {
-  if (!(friction >= 0.0 && friction <= 1.0)) fail(StatusCode::InvalidOption, "friction: must be from 0 to 1");
-  alive(*body.state).body().m_cfg.kDF = static_cast<btScalar>(friction);
+  setFriction(*body.state, friction);
 }
 void setGravity(BodyHandle& body, Vec3 gravity) {
   check(alive(*body.state).setGravity(toBullet(gravity, "gravity")));

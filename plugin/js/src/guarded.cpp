@@ -10,37 +10,6 @@
 namespace tetskin::js {
 namespace {
 
-/// By their codes; a test compares them with those of tetskin/core/types.h.
-constexpr const char* kCodes[] = {"Ok",
-                                  "FileNotFound",
-                                  "FileNotWritable",
-                                  "UnsupportedFormat",
-                                  "Malformed",
-                                  "Empty",
-                                  "IndexOutOfRange",
-                                  "NonFinite",
-                                  "Degenerate",
-                                  "SizeMismatch",
-                                  "InvalidOption",
-                                  "OutsideCage",
-                                  "CageMismatch",
-                                  "TooLarge",
-                                  "Asleep",
-                                  "Hidden",
-                                  "Unbound",
-                                  "TopologyChanged",
-                                  "NoHit",
-                                  "BodyDeleted",
-                                  "Released",
-                                  "OtherBody",
-                                  "NotInWorld",
-                                  "NotAdded",
-                                  "Enclosed",
-                                  "NotSaved",
-                                  "SnapshotMismatch",
-                                  "Cancelled"};
-static_assert(sizeof(kCodes) / sizeof(kCodes[0]) == static_cast<std::size_t>(StatusCode::Cancelled) + 1);
-
 // NOLINTNEXTLINE: the macro's own
 EM_JS(void, throwInJavaScript, (const char* code, const char* message),
       { throw Module["makeError"](UTF8ToString(code), UTF8ToString(message)); });
@@ -52,7 +21,7 @@ Fault wordedFault() {
   try {
     throw;
   } catch (const Failure& failure) {
-    return {kCodes[static_cast<std::size_t>(failure.code)], failure.what()};
+    return {facade::nameOf(failure.code), failure.what()};
   } catch (const std::bad_alloc&) {
     return {"OutOfMemory", {}};
   } catch (const std::length_error&) {

@@ -63,21 +63,11 @@ Quaternion rotation(RigidHandle& rigid) {
   const btQuaternion q = alive(*rigid.state).getWorldTransform().getRotation();
   return {q.x(), q.y(), q.z(), q.w()};
 }
-/// Where it is, or where it will be in the next step.
-btTransform poseOf(RigidHandle& rigid) {
-  btTransform pose = alive(*rigid.state).getWorldTransform();
-  rigid.state->motion->getWorldTransform(pose);
-  return pose;
-}
 void setPosition(RigidHandle& rigid, Vec3 at) {
-  btTransform pose = poseOf(rigid);
-  pose.setOrigin(toBullet(at, "position"));
-  rigid.world->place(*rigid.state, pose);
+  rigid.world->setPosition(*rigid.state, at);
 }
 void setRotation(RigidHandle& rigid, Quaternion q) {
-  btTransform pose = poseOf(rigid);
-  pose.setRotation(toBullet(Vec3{}, q).getRotation());
-  rigid.world->place(*rigid.state, pose);
+  rigid.world->setRotation(*rigid.state, q);
 }
 Vec3 velocity(RigidHandle& rigid) {
   return vectorOf(alive(*rigid.state).getLinearVelocity());
@@ -99,8 +89,7 @@ double friction(RigidHandle& rigid) {
   return static_cast<double>(alive(*rigid.state).getFriction());
 }
 void setFriction(RigidHandle& rigid, double friction) {
-  if (!(friction >= 0.0 && friction < 1e6)) throw std::invalid_argument("friction: must be 0 or more, and finite");
-  alive(*rigid.state).setFriction(static_cast<btScalar>(friction));
+  setFriction(*rigid.state, friction);
 }
 double mass(RigidHandle& rigid) {
   return static_cast<double>(alive(*rigid.state).getMass());

@@ -172,8 +172,8 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-Column<bool> newMask(const std::vector<char>& mask) {
-  const auto owner = std::make_shared<std::vector<char>>(mask);
+Column<bool> newMask(const std::vector<unsigned char>& mask) {
+  const auto owner = std::make_shared<std::vector<unsigned char>>(mask);
   return view1<bool>(reinterpret_cast<const bool*>(owner->data()), owner->size(), owner);
 }
 

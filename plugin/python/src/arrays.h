@@ -154,7 +154,7 @@ Column<Number> newColumn(std::vector<Number>&& numbers) {
   const auto owner = std::make_shared<std::vector<Number>>(std::move(numbers));
   return view1<Number>(owner->data(), owner->size(), owner);
 }
-Column<bool> newMask(const std::vector<char>& mask);
+Column<bool> newMask(const std::vector<unsigned char>& mask);
 Vector3 newVector(const Vec3& vector);
 Vector4 newQuaternion(const Quaternion& quaternion);
 template <class V>

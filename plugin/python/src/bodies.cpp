@@ -20,27 +20,14 @@ View velocitiesOf(const BodyHandle& body) {
   });
 }
 View surfaceOf(const BodyHandle& body, const std::vector<float>& numbers, const Kept<Row3<float>>& array) {
-  (void)alive(body);
-  checkSurface(body);
+  (void)surfaceOf(*body.state);
   return array.view([&] { return view3<float>(numbers.data(), numbers.size() / 3, body.state); });
 }
 
 void setVelocities(BodyHandle& body, const ArrayLike& array) {
   const Numbers<double> numbers(array, "velocities", 3);
   const Locked lock(*body.world);
-  btSoftBody& soft = alive(body).body();
-  const auto count = static_cast<std::size_t>(soft.m_nodes.size());
-  if (numbers.rows() != count)
-    fail(StatusCode::SizeMismatch,
-         "velocities: " + std::to_string(numbers.rows()) + " for " + std::to_string(count) + " nodes");
-  const PointView<const double> points(numbers.data(), count);
-  if (firstUnusable(points) != count)
-    fail(StatusCode::NonFinite, "velocities: a number is not finite, or larger than 1e18");
-  for (std::size_t i = 0; i < count; ++i) {
-    btSoftBody::Node& node = soft.m_nodes[static_cast<int>(i)];
-    if (node.m_im > 0) node.m_v = toBullet(Vec3{points[i][0], points[i][1], points[i][2]}, "velocities");
-  }
-  soft.activate(true);
+  setVelocities(*body.state, numbers.data(), 3 * numbers.rows());
 }
 
 std::size_t nodeCount(const BodyHandle& body) {
@@ -50,35 +37,19 @@ std::size_t nodeCount(const BodyHandle& body) {
 void setPinned(BodyHandle& body, const ArrayLike& nodes, bool pinned) {
   const std::vector<int> indices = indicesOf(nodes, "nodes", nodeCount(body));
   const Locked lock(*body.world);
-  DeformableBody& soft = alive(body);
-  for (const int node : indices) check(soft.setPinned(node, pinned));
+  setPinned(*body.state, indices, pinned);
 }
 
 void setPinnedPositions(BodyHandle& body, const ArrayLike& nodes, const ArrayLike& positions) {
   const std::vector<int> indices = indicesOf(nodes, "nodes", nodeCount(body));
   const Numbers<double> numbers(positions, "positions", 3);
   const Locked lock(*body.world);
-  DeformableBody& soft = alive(body);
-  if (numbers.rows() != indices.size())
-    fail(StatusCode::SizeMismatch,
-         "positions: " + std::to_string(numbers.rows()) + " for " + std::to_string(indices.size()) + " nodes");
-  for (const int node : indices) {
-    if (!soft.isPinned(node)) fail(StatusCode::InvalidOption, "nodes: node " + std::to_string(node) + " is not pinned");
-  }
-  const PointView<const double> points(numbers.data(), numbers.rows());
-  if (firstUnusable(points) != points.size())
-    fail(StatusCode::NonFinite, "positions: a number is not finite, or larger than 1e18");
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    check(soft.setPinnedPosition(indices[i], toBullet(Vec3{points[i][0], points[i][1], points[i][2]}, "positions")));
-  }
+  setPinnedPositions(*body.state, indices, numbers.data(), 3 * numbers.rows());
 }
 
 Column<bool> pinnedOf(const BodyHandle& body) {
   const Locked lock(*body.world);
-  const DeformableBody& soft = alive(body);
-  std::vector<char> mask(nodeCount(body));
-  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = soft.isPinned(static_cast<int>(i));
-  return newMask(mask);
+  return newMask(pinnedOf(*body.state));
 }
 
 void transform(BodyHandle& body, const Vec3& position, const Quaternion& rotation) {
@@ -148,16 +119,10 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, c
   options.contactMargin = contactMargin;
   options.sampleSpacing = sampleSpacing;
   const Eigen::Affine3d placement = placementOf(position, rotation);
-  const std::vector<int> pins = pinned ? indicesOf(*pinned, "pinned", cage.cage->mesh.nodeCount()) : std::vector<int>();
+  if (pinned) options.pinned = indicesOf(*pinned, "pinned", cage.cage->mesh.nodeCount());
   const bool bare = !mesh || mesh->object.is_none();
   const MeshModel model = bare ? MeshModel() : meshOf(*mesh);
-  if (bare && (softContact || selfContact))
-    fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
-  return unlocked(*world, [&] {
-    BodyHandle body{world, world->addBody(cage, model, placement, options)};
-    for (const int node : pins) check(body.state->body->setPinned(node));
-    return body;
-  });
+  return unlocked(*world, [&] { return BodyHandle{world, world->addBody(cage, model, placement, options)}; });
 }
 
 }  // namespace
@@ -203,18 +168,15 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
           "bounds",
           [](const BodyHandle& b) {
             const Locked lock(*b.world);
-            (void)alive(b);
-            checkSurface(b);
-            return nb::make_tuple(vectorOf(b.state->skin.bounds().min()), vectorOf(b.state->skin.bounds().max()));
+            const Box3& box = surfaceOf(*b.state).bounds();
+            return nb::make_tuple(vectorOf(box.min()), vectorOf(box.max()));
           },
           kBoundsType, "The box of the surface: two corners, world space.")
       .def_prop_rw(
           "visible", [](const BodyHandle& b) { return b.state->skin.visible(); },
           [](BodyHandle& b, bool visible) {
             const Locked lock(*b.world);
-            (void)alive(b);
-            checkSurface(b);
-            b.state->skin.setVisible(visible);
+            surfaceOf(*b.state).setVisible(visible);
           },
           "Whether steps update the surface. When shown again, it is updated at once.")
       .def_prop_ro("asleep", number([](DeformableBody& b) { return !b.body().isActive(); }),
@@ -232,14 +194,13 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("stiffness_damping", number([](DeformableBody& b) { return b.stiffnessDamping(); }),
                    setter([](DeformableBody& b, double v) { return b.setStiffnessDamping(v); }),
                    "Seconds: Rayleigh damping, 0 or more.")
-      .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
-                   setter([](DeformableBody& b, double v) {
-                     if (!(v >= 0.0 && v <= 1.0))
-                       return Status{StatusCode::InvalidOption, "friction: must be from 0 to 1"};
-                     b.body().m_cfg.kDF = static_cast<btScalar>(v);
-                     return Status{};
-                   }),
-                   "0 to 1; multiplied by that of rigid bodies.")
+      .def_prop_rw(
+          "friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
+          [](BodyHandle& b, double friction) {
+            const Locked lock(*b.world);
+            setFriction(*b.state, friction);
+          },
+          "0 to 1; multiplied by that of rigid bodies.")
       .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
                    "Total, without pinned nodes.")
       .def(

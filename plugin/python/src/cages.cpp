@@ -147,7 +147,7 @@ void bindCages(nb::module_& module) {
           [](const CageModel& m, const PathLike& path) {
             released([&, name = path.text()] { check(saveCage(*m.cage, name)); });
           },
-          "path"_a, "Writes a .vtk file, with all data of the cage, or the tets alone as .node and .ele, or .msh.")
+          "path"_a, "Writes a .vtk file, with all data of the cage, or the tets alone as .node and .ele.")
       .def(
           "scaled",
           [](const CageModel& m, double scale) {
@@ -184,7 +184,7 @@ void bindCages(nb::module_& module) {
       [](const PathLike& path) {
         return CageModel{sharedOf(released([name = path.text()] { return take(loadCage(name)); })), {}};
       },
-      "path"_a, "Reads what Cage.save writes; tets of .vtk, .node and .ele, .msh (Gmsh) and .mesh (Medit) files.");
+      "path"_a, "Reads what Cage.save writes; tets of .vtk, and .node and .ele files.");
 }
 
 }  // namespace tetskin::python

@@ -12,38 +12,16 @@
 namespace tetskin::python {
 namespace {
 
-constexpr StatusCode kLastCode = StatusCode::Cancelled;
-
-/// The names of the codes, in their order, as Python writes constants.
-constexpr const char* kCodes[] = {"OK",
-                                  "FILE_NOT_FOUND",
-                                  "FILE_NOT_WRITABLE",
-                                  "UNSUPPORTED_FORMAT",
-                                  "MALFORMED",
-                                  "EMPTY",
-                                  "INDEX_OUT_OF_RANGE",
-                                  "NON_FINITE",
-                                  "DEGENERATE",
-                                  "SIZE_MISMATCH",
-                                  "INVALID_OPTION",
-                                  "OUTSIDE_CAGE",
-                                  "CAGE_MISMATCH",
-                                  "TOO_LARGE",
-                                  "ASLEEP",
-                                  "HIDDEN",
-                                  "UNBOUND",
-                                  "TOPOLOGY_CHANGED",
-                                  "NO_HIT",
-                                  "BODY_DELETED",
-                                  "RELEASED",
-                                  "OTHER_BODY",
-                                  "NOT_IN_WORLD",
-                                  "NOT_ADDED",
-                                  "ENCLOSED",
-                                  "NOT_SAVED",
-                                  "SNAPSHOT_MISMATCH",
-                                  "CANCELLED"};
-static_assert(sizeof kCodes / sizeof *kCodes == static_cast<std::size_t>(kLastCode) + 1);
+/// As Python writes constants.
+std::string constantOf(StatusCode code) {
+  std::string constant;
+  for (const char* letter = nameOf(code); *letter; ++letter) {
+    const bool isCapital = std::isupper(static_cast<unsigned char>(*letter));
+    if (isCapital && !constant.empty() && code != StatusCode::Ok) constant += '_';
+    constant += static_cast<char>(std::toupper(static_cast<unsigned char>(*letter)));
+  }
+  return constant;
+}
 
 PyObject* errorType = nullptr;  // owned by the module, which is never unloaded
 
@@ -59,9 +37,9 @@ void translate(const std::exception_ptr& thrown, void*) {
 
 void bindErrors(nb::module_& module) {
   nb::enum_<StatusCode> codes(module, "StatusCode", "What has failed, for programs: the code of an Error.");
-  for (std::size_t i = 0; i < std::size(kCodes); ++i) {
+  for (int i = 0; i <= static_cast<int>(StatusCode::Cancelled); ++i) {
     const auto code = static_cast<StatusCode>(i);
-    codes.value(kCodes[i], code, toString(code));
+    codes.value(constantOf(code).c_str(), code, toString(code));
   }
   errorType = PyErr_NewExceptionWithDoc("tetskin.Error", "What the library refuses, and why. code: a StatusCode.",
                                         PyExc_RuntimeError, nullptr);

@@ -95,20 +95,14 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
           "position", locked([](btRigidBody& b) { return vectorOf(b.getWorldTransform().getOrigin()); }),
           [](RigidHandle& r, const Vec3& at) {
             const Locked lock(*r.world);
-            btTransform pose = alive(r).getWorldTransform();
-            r.state->motion->getWorldTransform(pose);
-            pose.setOrigin(toBullet(at, "position"));
-            r.world->place(*r.state, pose);
+            r.world->setPosition(*r.state, at);
           },
           "(3,) float64, world space. Assigned to a kinematic body, it moves there in the next step.")
       .def_prop_rw(
           "rotation", locked([](btRigidBody& b) { return newQuaternion(rotationOf(b.getWorldTransform())); }),
           [](RigidHandle& r, const Quaternion& q) {
             const Locked lock(*r.world);
-            btTransform pose = alive(r).getWorldTransform();
-            r.state->motion->getWorldTransform(pose);
-            pose.setRotation(toBullet(Vec3{}, q).getRotation());
-            r.world->place(*r.state, pose);
+            r.world->setRotation(*r.state, q);
           },
           "(4,) float64: a quaternion x, y, z, w.")
       .def_prop_rw(
@@ -138,8 +132,7 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
           "friction", locked([](btRigidBody& b) { return static_cast<double>(b.getFriction()); }),
           [](RigidHandle& r, double friction) {
             const Locked lock(*r.world);
-            if (!(friction >= 0.0 && friction < 1e6)) throw nb::value_error("friction: must be 0 or more, and finite");
-            alive(r).setFriction(static_cast<btScalar>(friction));
+            setFriction(*r.state, friction);
           },
           "Coulomb's coefficient, which is multiplied by that of what is touched.")
       .def_prop_ro("kinematic", locked([](btRigidBody& b) { return b.isKinematicObject(); }))

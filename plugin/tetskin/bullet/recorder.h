@@ -17,19 +17,12 @@
 
 namespace tetskin {
 
-namespace bullet_detail {
-struct SourceBuilder;
-}
-
 /// Options of a Recorder.
 struct RecorderOptions {
   /// For whoever plays the file: how the world is built. Not interpreted.
   std::string description;
   /// Steps from one snapshot in the file to the next, at least 1.
   int snapshotEvery = 240;
-  /// Whether the file also says how the world is built, so that `Replay::open(path, ...)` needs no program that builds
-  /// it. Takes 2.5 MB for a body of 1,000 tets whose surface of 60,000 triangles collides; once for equal bodies.
-  bool buildUp = true;
 };
 
 /// Writes a run to a file: before each step what has changed since the last one, whoever has changed it (pins and
@@ -100,23 +93,6 @@ class TETSKIN_BULLET_API Replay {
   /// path    in UTF-8
   /// Errors  FileNotFound; Malformed: it is not a recorded run, or damaged; those of `restoreSnapshot`
   static Result<std::unique_ptr<Replay>> open(btDeformableMultiBodyDynamicsWorld& world, const std::string& path);
-  /// Opens a file, and builds its world, in the state in which recording began: it owns the world and all that is in
-  /// it. Where bodies, objects or joints came or went in the middle of a run, it builds a new world in place of the
-  /// old.
-  ///
-  ///     auto replay = tetskin::Replay::open("run.replay", {builderOfSoftContacts(), builderOfJoints()}).value();
-  ///     while (replay->step()) draw(replay->world());
-  ///
-  /// It builds bodies of `DeformableBody` with their contact at surfaces, rigid bodies and joints between them. Of
-  /// shapes: planes, boxes, spheres, capsules, cylinders, cones, convex hulls, triangle meshes and compounds. What it
-  /// does not is multibodies, Bullet's anchors, height fields, and soft bodies and forces of the application's own.
-  /// path      in UTF-8
-  /// builders  of what else there is: `builderOfSoftContacts()` of tetskin::contact, `builderOfJoints()` of
-  ///           tetskin::touch
-  /// Errors    FileNotFound; Malformed; NotSaved: the world has something that it does not build, or was recorded
-  ///           without `RecorderOptions::buildUp`; InvalidOption: a builder is missing; those of `restoreSnapshot`
-  static Result<std::unique_ptr<Replay>> open(const std::string& path,
-                                              std::vector<const bullet_detail::SourceBuilder*> builders);
   /// `RecorderOptions::description` of a file. Errors: FileNotFound, Malformed.
   static Result<std::string> descriptionOf(const std::string& path);
   ~Replay();
@@ -133,13 +109,10 @@ class TETSKIN_BULLET_API Replay {
   bool step();
   const ReplayReport& report() const;  ///< of the steps so far
   const Status& status() const;        ///< Ok, or why the file cannot be played any further
-  /// The world that is played: of one that was built from the file, until the next call of `step`.
-  btDeformableMultiBodyDynamicsWorld& world();
 
  private:
   struct Impl;
   explicit Replay(std::unique_ptr<Impl> impl);
-  static Result<std::unique_ptr<Replay>> start(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -17,10 +17,6 @@ class btDeformableMultiBodyDynamicsWorld;
 
 namespace tetskin {
 
-namespace bullet_detail {
-struct SourceBuilder;
-}
-
 /// Resolution of a contact shape.
 struct ContactShapeOptions {
   /// Surface points that are tested against other bodies; met within a third. Coarse meshes get extra points on their
@@ -129,12 +125,8 @@ class TETSKIN_CONTACT_API SoftContacts {
 
  private:
   struct Impl;
-  friend struct Access<SoftContacts>;
   explicit SoftContacts(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// For `Replay::open`: builds the contacts between soft bodies of a recorded run.
-TETSKIN_CONTACT_API const bullet_detail::SourceBuilder* builderOfSoftContacts();
 
 }  // namespace tetskin

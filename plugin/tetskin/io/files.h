@@ -32,20 +32,20 @@ struct TETSKIN_IO_API MeshFileReport {
 /// `.obj` files (in any case) are read as they are: vertices in the file's order, including unused ones; polygons split
 /// into triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has exactly one.
 ///
-/// `.ply` and `.off` files are read as they are, too: vertices in the file's order, polygons split into triangles, no
-/// groups, normals if the file has them, and texture coordinates of a `.ply` file.
+/// `.ply`, `.off` and `.stl` files are read as they are, too: vertices in the file's order (three per triangle of an
+/// `.stl` file), polygons split into triangles, no groups, normals if the file has them for vertices, and texture
+/// coordinates of a `.ply` file.
 ///
-/// `.gltf`, `.glb` and `.vrm` files of glTF 2.0 are read by tinygltf, everything else (STL, FBX, Collada, 3DS, 3MF,
-/// ...) by assimp, with the transforms of their scenes:
+/// `.gltf`, `.glb` and `.vrm` files of glTF 2.0 are read by tinygltf, everything else (FBX, Collada, 3DS, ...) by
+/// assimp, but for glTF 1.0 and 3MF, with the transforms of their scenes:
 /// - every mesh once for each node that shows it, transformed, as one group, or one for each primitive of a glTF mesh,
 ///   which share its vertices; in the file's own unit;
-/// - vertices are those of the file, for assimp those that it makes (three per triangle for STL), none merged; those of
-///   lines and points are left out, and so are bones, morph targets and animations;
+/// - vertices are those of the file, for assimp those that it makes, none merged; those of lines and points are left
+///   out, and so are bones, morph targets and animations;
 /// - if only some of the meshes have texture coordinates, the others get 0; if only some have normals, the others get
 ///   smooth ones, weighted by area. Normals have unit length, or are 0 where the file's are invalid.
 ///
-/// In a build with TETSKIN_ASSIMP=OFF, STL is read by the library itself, in the same way; what else assimp would read
-/// is an UnsupportedFormat, and so is a file of glTF 1.0.
+/// In a build with TETSKIN_ASSIMP=OFF, what assimp would read is an UnsupportedFormat.
 ///
 /// Of a glTF file, buffers are read from its own folder and those below it, images and whatever else tells of no shape
 /// from nowhere. An extension that it requires and that is not supported is named (KHR_mesh_quantization is supported,
@@ -61,11 +61,9 @@ TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileRe
 /// What was not read of a file of tets as it stands there. Also written if reading fails, up to the point of failure.
 struct TETSKIN_IO_API TetFileReport {
   std::size_t skippedCells = 0;   ///< cells that are no tets: surfaces, lines, hexahedra, ...
-  std::size_t quadraticTets = 0;  ///< tets of second or higher order that became quadratic ones, of eight tets each
-  std::size_t cutLinearTets = 0;  ///< tets of first order that became eight, beside tets that have nodes on their edges
+  std::size_t quadraticTets = 0;  ///< tets of second order that became quadratic ones, of eight tets each
   std::size_t movedNodes = 0;     ///< nodes on curved edges that were moved to the middle, so that the edge is straight
   double farthestMove = 0.0;      ///< the largest distance by which one was, in the file's unit
-  std::size_t droppedNodes = 0;   ///< nodes of tets above second order that no tet has any more
 
   /// Readable summary in one line; empty if everything was read.
   std::string describe() const;
@@ -75,13 +73,12 @@ struct TETSKIN_IO_API TetFileReport {
 /// - `.vtk`          legacy VTK, ASCII or binary, versions 1.0 to 5.1, of an unstructured grid; deviations from the
 ///                   standard as in Bullet's own files are accepted
 /// - `.node`, `.ele` TetGen: given either, the other is found beside it; numbered from 0 or 1
-/// - `.msh`          Gmsh, ASCII or binary, versions 2.x, 4.0 and 4.1
-/// - `.mesh`         Medit, ASCII
 ///
-/// Nodes and tets are in the file's order and unit. Cells that are no tets are skipped. Tets of second order (VTK types
-/// 24, 71 and 79, Gmsh type 11, 10 nodes of TetGen, TetrahedraP2 of Medit) become eight tets each, with the nodes on
-/// their edges, wherever these are. So do tets of higher order, of which the corners are read, and nodes made at the
-/// middles of the edges; and tets of first order, if one of them shares an edge with those. All is counted in `report`.
+/// Others, such as Gmsh's `.msh`, are converted by `meshio convert in.msh out.vtk`.
+///
+/// Nodes and tets are in the file's order and unit. Cells that are no tets are skipped. Tets of second order (VTK type
+/// 24, and 71 and 79 with 10 nodes) become eight tets each, with the nodes on their edges, wherever these are. All is
+/// counted in `report`. Refused are tets of higher order, and tets of first order that share an edge with those.
 /// In the result, every index names a node and no coordinate is beyond Limits::kMaxCoordinate; for other faults see
 /// `checkTetMesh`.
 ///
@@ -93,7 +90,6 @@ TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileRepor
 /// Writes a tet mesh, complete or not at all; the extension, in any case, selects the format:
 /// - `.vtk`          legacy VTK 2.0, ASCII, one point per line and tets only, so that Bullet's reader accepts it
 /// - `.node`, `.ele` both TetGen files, given either; numbered from 0, as Bullet's reader expects
-/// - `.msh`          Gmsh 2.2, ASCII: the version that most programs read
 ///
 /// Coordinates are the shortest numbers that read back as the same doubles: `loadTetMesh` gives the same mesh.
 /// Errors: UnsupportedFormat; Empty without tets; IndexOutOfRange and NonFinite, as no reader would accept the file;
@@ -101,7 +97,7 @@ TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileRepor
 TETSKIN_IO_API Status saveTetMesh(const TetMesh& mesh, const std::string& path);
 
 /// Reads a cage: what `loadTetMesh` reads, and from a `.vtk` file also the data that `saveCage` writes. The eight tets
-/// of one of second or higher order become a quadratic tet (see `quadraticTets`), unless it is flat; so that its edges
+/// of one of second order become a quadratic tet (see `quadraticTets`), unless it is flat; so that its edges
 /// are straight, nodes on them are moved to their middles. Data that is absent stays empty; arrays of other names are
 /// skipped, and so are values of cells that are not tets. If the file stores which mesh the cage belongs to,
 /// `Cage::checkMesh` compares it.

@@ -14,10 +14,6 @@ class btMultiBodyLinkCollider;
 
 namespace tetskin {
 
-namespace bullet_detail {
-struct SourceBuilder;
-}
-
 /// Options of a spring.
 struct SurfaceSpringOptions {
   /// Stiffness divided by a point's mass, in units of 1 / (1/240 s)^2, so that a spring is the same in steps of any
@@ -136,8 +132,5 @@ class TETSKIN_TOUCH_API SurfaceWeld {
   explicit SurfaceWeld(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// For `Replay::open`: builds the springs and welds of a recorded run.
-TETSKIN_TOUCH_API const bullet_detail::SourceBuilder* builderOfJoints();
 
 }  // namespace tetskin

@@ -7,10 +7,8 @@
 #include <tetskin/bullet/src/base/body_elements.h>
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
-#include <tetskin/bullet/src/build/rigid_objects.h>
-#include <tetskin/bullet/src/build/soft_bodies.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/forces/elastic_force.h>
 #include <tetskin/bullet/src/search/contact_algorithm.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
@@ -36,6 +34,8 @@ namespace {
 /// and above 4 it is the implicit damping alone that keeps them stable. In free motion it does, at any stiffness; in a
 /// hard landing of thin parts it fails between 15 and 30 (measured with cages of 300 to 30,000 tets).
 constexpr double kStableFrequency = 8.0;
+/// A collision filter of a body that was in no world before.
+constexpr int kAnyFilter = -1;
 
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
 /// with its neighbours pinned, over its mass.
@@ -167,7 +167,7 @@ struct DeformableBody::Impl final : BodyOwner {
   btDeformableBodySolver* solver;
   bool hasOwnSolver;  ///< it is a DeformableSolver: the library knows whether it still exists
   ForceList* list;
-  ObjectFilters filters;  ///< of the body, when it comes into a world
+  int group = kAnyFilter, mask = kAnyFilter;  ///< collision filters of the body, when it comes into a world
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
   ElasticMaterial material;
@@ -208,7 +208,6 @@ struct DeformableBody::Impl final : BodyOwner {
   void enter();
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void visitState(WorldStream& stream) override;
-  void describe(BuildStream& stream) override;
   btSoftBody& ownedBody() override { return *body; }
   btDeformableLagrangianForce& elasticForce() override { return *elasticity; }
   void leaveWithoutSolver();
@@ -291,7 +290,7 @@ void DeformableBody::Impl::enter() {
   if (forceModel == ForceModel::Corotated && !isKnownNotToBe<btCollisionDispatcher>(dispatcher)) {
     registerContactAlgorithms(static_cast<btCollisionDispatcher&>(dispatcher));
   }
-  if (!isInAWorld()) world->addSoftBody(body.get(), filters.group, filters.mask);
+  if (!isInAWorld()) world->addSoftBody(body.get(), group, mask);
   for (btDeformableLagrangianForce* force : {static_cast<btDeformableLagrangianForce*>(&gravity), elasticity.get()}) {
     force->setIndices(solver->getIndices());
   }
@@ -331,52 +330,6 @@ void DeformableBody::Impl::visitState(WorldStream& stream) {
   if (now == material) return;
   material = now;
   applyMaterial(now);
-}
-
-void DeformableBody::Impl::describe(BuildStream& stream) {
-  BodyParts parts;
-  parts.readFrom(stream, *body);
-  parts.masses.assign(masses.begin(), masses.end());
-  parts.material = material;
-  parts.weightPressure = weightPressure;
-  parts.forceModel = static_cast<int>(forceModel);
-  if (forceModel == ForceModel::Corotated) {
-    auto& force = static_cast<ElasticForce&>(*elasticity);
-    parts.settings = force.settings();
-    parts.stiffnessScale = force.body().stiffnessScale;
-    parts.quadratic = force.body().quadratic;
-    for (const Eigen::Vector3d& p : force.body().dynamics->tets()->rest().nodes) {
-      parts.restNodes.insert(parts.restNodes.end(), p.data(), p.data() + 3);
-    }
-  }
-  parts.visit(stream);
-}
-
-std::unique_ptr<DeformableBody> Access<DeformableBody>::build(BuildStream& stream) {
-  btDeformableMultiBodyDynamicsWorld& world = stream.world();
-  BodyParts parts;
-  parts.visit(stream);
-  const SoftBodyOptions options = parts.options();
-  std::unique_ptr<btSoftBody> body = parts.build(stream, options);
-  if (!body) return nullptr;
-  const bool corotated = options.forceModel == ForceModel::Corotated;
-  Result<elastic_detail::RestTets> rest = corotated ? restTetsOf(*body) : elastic_detail::RestTets();
-  for (const Status& status : {rest.status(), checkMaterial(parts.material), checkStiffness(*body, parts.material)}) {
-    if (!status.ok()) stream.refuse(status.message);
-  }
-  if (stream.failed()) return nullptr;
-  for (std::size_t k = 0; k < parts.restNodes.size(); k += 3) {
-    rest.value().nodes.emplace_back(parts.restNodes[k], parts.restNodes[k + 1], parts.restNodes[k + 2]);
-  }
-  auto impl = std::make_unique<DeformableBody::Impl>(world, solverOf(world), std::move(body));
-  impl->masses = std::move(parts.masses);
-  impl->material = parts.material;
-  impl->weightPressure = parts.weightPressure;
-  std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
-  made->impl_->makeElasticity(options, rest.value(), std::move(parts.quadratic));
-  made->impl_->filters = parts.filters;
-  made->impl_->enter();
-  return made;
 }
 
 ForceModel DeformableBody::forceModel() const {
@@ -438,7 +391,8 @@ void DeformableBody::removeFromWorld() {
   if (!impl_->isInItsWorld()) return;
   assert(impl_->solverLives());
   impl_->wakeNeighbours();
-  impl_->filters.readFrom(body());
+  impl_->group = body().getBroadphaseHandle()->m_collisionFilterGroup;
+  impl_->mask = body().getBroadphaseHandle()->m_collisionFilterMask;
   impl_->world->removeSoftBody(impl_->body.get());
 }
 
@@ -453,7 +407,7 @@ Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
   if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
   impl_->moveTo(world);
   impl_->enter();
-  impl_->filters = {};
+  impl_->group = impl_->mask = kAnyFilter;
   body().activate();
   return {};
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_forces.h>
-#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/contact/soft_contacts.h>
-#include <tetskin/contact/src/soft/shape_build.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
 #include <cassert>
@@ -124,39 +122,6 @@ const std::vector<SoftContact>& SoftContacts::contacts() const {
     }
   }
   return contacts;
-}
-
-template <>
-struct Access<SoftContacts> {
-  static BuiltSource build(BuildStream& stream);
-};
-
-BuiltSource Access<SoftContacts>::build(BuildStream& stream) {
-  double friction = 0.0;
-  stream(friction);
-  SoftContactOptions options;
-  if (friction >= 0.0) options.friction = friction;
-  Result<std::unique_ptr<SoftContacts>> made = SoftContacts::add(stream.world(), options);
-  const std::size_t count = stream.length(0);
-  Status status = made.status();
-  for (std::size_t k = 0; k < count && status.ok() && !stream.failed(); ++k) {
-    btSoftBody* body = nullptr;
-    bool self = false;
-    stream.object(body);
-    stream(self);
-    std::shared_ptr<const ContactShape> shape = contact_detail::buildContactShape(stream, nullptr);
-    stream.require(body, "contact of a soft body that is not there");
-    if (!stream.failed()) status = made.value()->add(*body, std::move(shape), self);
-  }
-  if (!status.ok()) stream.refuse(status.message);
-  if (stream.failed()) return {};
-  std::shared_ptr<SoftContacts> contacts = std::move(made).value();
-  return {contacts, &contacts->impl_->force};
-}
-
-const SourceBuilder* builderOfSoftContacts() {
-  static constexpr SourceBuilder builder{SoftContactRows::kBuilderName, Access<SoftContacts>::build};
-  return &builder;
 }
 
 }  // namespace tetskin

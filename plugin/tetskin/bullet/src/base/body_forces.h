@@ -18,7 +18,6 @@
 
 namespace tetskin::bullet_detail {
 
-class BuildStream;
 class WorldStream;
 
 using ForceList = btAlignedObjectArray<btDeformableLagrangianForce*>;
@@ -50,9 +49,6 @@ class TETSKIN_BULLET_API InactiveForce : public btDeformableLagrangianForce {
   virtual void forget(const btSoftBody& /*body*/) {}
   /// Moves what it remembers in world space, together with everything else in the world, which has been moved already.
   virtual void shift(const btVector3& /*by*/) {}
-  /// Which SourceBuilder makes such an entry from what `describe` writes; null: none.
-  virtual const char* builderName() const { return nullptr; }
-  virtual void describe(BuildStream& /*stream*/) {}
 
  private:
   OwnObject registered_{OwnObject::Kind::InactiveForce, static_cast<const btDeformableLagrangianForce*>(this)};
@@ -98,8 +94,6 @@ class BodyOwner {
  public:
   /// Writes or reads what it has of the body beside Bullet's state.
   virtual void visitState(WorldStream& stream) = 0;
-  /// Describes the body, so that it can be built again.
-  virtual void describe(BuildStream& stream) = 0;
   virtual btSoftBody& ownedBody() = 0;
   virtual btDeformableLagrangianForce& elasticForce() = 0;
 

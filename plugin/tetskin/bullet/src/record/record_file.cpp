@@ -13,7 +13,7 @@ namespace tetskin::bullet_detail {
 namespace {
 
 /// The first bytes of a file; the digits are those of the format's version.
-constexpr char kMagic[] = "tetskin replay 02\n";
+constexpr char kMagic[] = "tetskin replay 03\n";
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 
 struct ChunkHead {
@@ -60,17 +60,6 @@ Bytes StepChunk::toBytes() {
 }
 std::optional<StepChunk> StepChunk::fromBytes(const Bytes& bytes) {
   return contentOf<StepChunk>(bytes);
-}
-
-void WorldBuildUp::visit(StateStream& stream) {
-  stream.array(described);
-  stream.array(reason);
-}
-Bytes WorldBuildUp::toBytes() {
-  return bytesOf(*this);
-}
-std::optional<WorldBuildUp> WorldBuildUp::fromBytes(const Bytes& bytes) {
-  return contentOf<WorldBuildUp>(bytes);
 }
 
 Status RecordWriter::open(const std::string& path) {

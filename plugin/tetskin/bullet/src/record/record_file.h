@@ -25,8 +25,6 @@ enum class ChunkKind : std::uint32_t {
   Snapshot = 2,     ///< the state before the next step
   Change = 3,       ///< the same, after objects were added or removed
   Step = 4,         ///< see StepChunk
-  BuildUp = 5,      ///< of the world in the snapshot that follows: see WorldBuildUp
-  Copy = 6,         ///< a large value of build-ups: see CopyStore
 };
 
 struct Chunk {
@@ -47,16 +45,6 @@ struct StepChunk {
   Bytes toBytes();
   /// Empty for bytes that are no such chunk.
   static std::optional<StepChunk> fromBytes(const Bytes& bytes);
-};
-
-/// How a world is built, or why this cannot be said.
-struct WorldBuildUp {
-  Bytes described;     ///< see `describeWorld`
-  std::string reason;  ///< empty: it could be described
-
-  void visit(StateStream& stream);
-  Bytes toBytes();
-  static std::optional<WorldBuildUp> fromBytes(const Bytes& bytes);
 };
 
 /// Lengths in files have 32 bits: the difference of two states, with its heads, is less than twice as long as one.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/recorder.h>
-#include <tetskin/bullet/src/build/recorded_world.h>
 #include <tetskin/bullet/src/record/object_motion.h>
 #include <tetskin/bullet/src/record/record_file.h>
 #include <tetskin/bullet/src/state/snapshot_bytes.h>
@@ -12,21 +11,16 @@ using namespace bullet_detail;
 
 struct Recorder::Impl {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, const RecorderOptions& options)
-      : world(ofWorld),
-        snapshotEvery(static_cast<std::size_t>(options.snapshotEvery)),
-        writesBuildUp(options.buildUp) {}
+      : world(ofWorld), snapshotEvery(static_cast<std::size_t>(options.snapshotEvery)) {}
 
   void save(Bytes& state);
-  void writeBuildUp();
   void before(StepChunk& step);
   void after(StepChunk& step);
   void write(ChunkKind kind, const Bytes& bytes) { status = file.write(kind, bytes); }
 
   btDeformableMultiBodyDynamicsWorld& world;
   std::size_t snapshotEvery;
-  bool writesBuildUp;
   RecordWriter file;
-  CopyStore store;
   Bytes ended, now;  ///< the states after the last step, and at present
   Status status;
   std::size_t steps = 0;
@@ -38,32 +32,11 @@ void Recorder::Impl::save(Bytes& state) {
   status = {StatusCode::NotSaved, "the state of this world takes more than 2 GB, which no file of a run can hold"};
 }
 
-/// Where it cannot be said, the application builds the world that plays the file.
-void Recorder::Impl::writeBuildUp() {
-  WorldBuildUp buildUp;
-  Result<Bytes> described = describeWorld(world, store);
-  if (described.ok() && !isRecordable(described.value().size())) {
-    buildUp.reason = "more than 2 GB to describe";
-  } else if (described.ok()) {
-    buildUp.described = std::move(described).value();
-  } else {
-    buildUp.reason = described.status().message;
-  }
-  for (const Bytes& copy : store.unsaved) {
-    if (status.ok()) write(ChunkKind::Copy, copy);
-  }
-  store.unsaved.clear();
-  if (status.ok()) write(ChunkKind::BuildUp, buildUp.toBytes());
-}
-
 /// Writes what has changed since the last step, or a full snapshot when one is due.
 void Recorder::Impl::before(StepChunk& step) {
   save(now);
   if (!status.ok()) return;
-  const bool changed = !areOfOneWorld(ended, now);
-  if (writesBuildUp && (changed || steps == 0)) writeBuildUp();
-  if (!status.ok()) return;
-  if (changed) {
+  if (!areOfOneWorld(ended, now)) {
     write(ChunkKind::Change, now);
   } else {
     step.change = differenceOf(ended, now);

@@ -2,13 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/recorder.h>
-#include <tetskin/bullet/src/build/recorded_world.h>
 #include <tetskin/bullet/src/record/object_motion.h>
 #include <tetskin/bullet/src/record/record_file.h>
 #include <tetskin/bullet/src/state/snapshot_bytes.h>
 
 #include <algorithm>
-#include <cassert>
 
 namespace tetskin {
 
@@ -23,32 +21,20 @@ Status malformed(const std::string& path, const std::string& fault) {
 }  // namespace
 
 struct Replay::Impl {
-  /// ofWorld  null: it is built from the file
-  Impl(btDeformableMultiBodyDynamicsWorld* ofWorld, std::vector<const SourceBuilder*> given, const std::string& ofPath)
-      : path(ofPath), builds(!ofWorld), builders(std::move(given)), played(ofWorld) {}
-
-  btDeformableMultiBodyDynamicsWorld& world() const {
-    assert(played);
-    return *played;
-  }
+  Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, const std::string& ofPath) : world(ofWorld), path(ofPath) {}
 
   /// The next chunk of a step, after those before it have been obeyed; empty at the end, or on an error.
   std::optional<StepChunk> nextStep();
   Status begin();
   Status obey(const Chunk& chunk);
-  Status build(const Bytes& chunk);
   Status prepare(const StepChunk& step);
   Status make(const StepChunk& step);
   void compareState(const Bytes& recorded);
   void compare(const StepChunk& step);
 
+  btDeformableMultiBodyDynamicsWorld& world;
   std::string path;
   RecordReader file;
-  bool builds;  ///< the worlds, from the file
-  std::vector<const SourceBuilder*> builders;
-  CopyStore store;
-  std::unique_ptr<RecordedWorld> built;
-  btDeformableMultiBodyDynamicsWorld* played;  ///< null: not built yet
   std::function<void(std::size_t)> change;
   Bytes ended, now;      ///< the states after the last step, and at present
   bool changed = false;  ///< the world has been given the state before the next step
@@ -72,10 +58,6 @@ Status Replay::Impl::begin() {
 
 /// Applies a chunk that precedes a step. A snapshot has the state after the last step, and the change is reported.
 Status Replay::Impl::obey(const Chunk& chunk) {
-  const bool isState = chunk.kind == ChunkKind::Snapshot || chunk.kind == ChunkKind::Change;
-  if (isState && !played) {
-    return {StatusCode::NotSaved, path + ": does not say how its world is built; build it, and play the file in it"};
-  }
   switch (chunk.kind) {
     case ChunkKind::Description:
       return {};
@@ -85,35 +67,15 @@ Status Replay::Impl::obey(const Chunk& chunk) {
         return {};
       }
       ended = chunk.bytes;
-      return restoreSnapshot(world(), ended.data(), ended.size());
+      return restoreSnapshot(world, ended.data(), ended.size());
     case ChunkKind::Change:
       if (change && next > 0) change(next);
       changed = true;
-      return restoreSnapshot(world(), chunk.bytes.data(), chunk.bytes.size());
-    case ChunkKind::Copy:
-      if (builds) store.read.push_back(chunk.bytes);
-      return {};
-    case ChunkKind::BuildUp:
-      return builds ? build(chunk.bytes) : Status();
+      return restoreSnapshot(world, chunk.bytes.data(), chunk.bytes.size());
     case ChunkKind::Step:
       break;
   }
   return malformed(path, "holds something of another version");
-}
-
-/// The world of the next state takes the place of the last one.
-Status Replay::Impl::build(const Bytes& chunk) {
-  const std::optional<WorldBuildUp> buildUp = WorldBuildUp::fromBytes(chunk);
-  if (!buildUp) return malformed(path, "the build-up of its world is damaged");
-  if (!buildUp->reason.empty()) {
-    return {StatusCode::NotSaved, path + ": its world cannot be built from the file, as it has " + buildUp->reason +
-                                      "; build it, and play the file in it"};
-  }
-  Result<std::unique_ptr<RecordedWorld>> made = RecordedWorld::build(buildUp->described, store, builders);
-  if (!made.ok()) return {made.status().code, path + ": " + made.status().message};
-  built = std::move(made).value();
-  played = &built->world();
-  return {};
 }
 
 std::optional<StepChunk> Replay::Impl::nextStep() {
@@ -136,9 +98,9 @@ Status Replay::Impl::prepare(const StepChunk& step) {
   if (!changed) {
     const std::optional<Bytes> before = applied(step.change, ended);
     if (!before) return malformed(path, "the change before step " + std::to_string(next) + " is of another state");
-    if (Status saved = saveInto(world(), now); !saved.ok()) return saved;
+    if (Status saved = saveInto(world, now); !saved.ok()) return saved;
     if (now != *before) {
-      if (Status restored = restoreSnapshot(world(), before->data(), before->size()); !restored.ok()) return restored;
+      if (Status restored = restoreSnapshot(world, before->data(), before->size()); !restored.ok()) return restored;
     }
   }
   changed = false;
@@ -146,10 +108,10 @@ Status Replay::Impl::prepare(const StepChunk& step) {
 }
 
 Status Replay::Impl::make(const StepChunk& step) {
-  const LedToTargets led(world(), step.kinematic);
+  const LedToTargets led(world, step.kinematic);
   if (!led.fits()) return malformed(path, "other bodies are kinematic in step " + std::to_string(next));
   const auto seconds = static_cast<btScalar>(step.seconds), fixed = static_cast<btScalar>(step.fixedTimeStep);
-  world().stepSimulation(seconds, step.maxSubSteps, fixed);
+  world.stepSimulation(seconds, step.maxSubSteps, fixed);
   report.secondsPerStep = step.maxSubSteps > 0 ? fixed : seconds;
   ++next;
   return {};
@@ -162,35 +124,24 @@ void Replay::Impl::compareState(const Bytes& recorded) {
 }
 
 void Replay::Impl::compare(const StepChunk& step) {
-  const std::vector<std::uint32_t> motion = hashesOfMotion(world());
+  const std::vector<std::uint32_t> motion = hashesOfMotion(world);
   const auto other = std::mismatch(motion.begin(), motion.end(), step.motion.begin(), step.motion.end());
   report.steps = next;
   if (other.first == motion.end() && other.second == step.motion.end()) return;
   report.differs = true;
   const auto index = static_cast<int>(other.first - motion.begin());
-  const btCollisionObjectArray& objects = world().getCollisionObjectArray();
+  const btCollisionObjectArray& objects = world.getCollisionObjectArray();
   report.object = index < objects.size() ? nameOf(*objects[index]) : "an object that is not there any more";
 }
 
 Replay::Replay(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Replay::~Replay() = default;
 
-Result<std::unique_ptr<Replay>> Replay::start(std::unique_ptr<Impl> impl) {
-  if (Status opened = impl->file.open(impl->path); !opened.ok()) return opened;
+Result<std::unique_ptr<Replay>> Replay::open(btDeformableMultiBodyDynamicsWorld& world, const std::string& path) {
+  auto impl = std::make_unique<Impl>(world, path);
+  if (Status opened = impl->file.open(path); !opened.ok()) return opened;
   if (Status begun = impl->begin(); !begun.ok()) return begun;
   return std::unique_ptr<Replay>(new Replay(std::move(impl)));
-}
-
-Result<std::unique_ptr<Replay>> Replay::open(btDeformableMultiBodyDynamicsWorld& world, const std::string& path) {
-  return start(std::make_unique<Impl>(&world, std::vector<const SourceBuilder*>(), path));
-}
-
-Result<std::unique_ptr<Replay>> Replay::open(const std::string& path, std::vector<const SourceBuilder*> builders) {
-  return start(std::make_unique<Impl>(nullptr, std::move(builders), path));
-}
-
-btDeformableMultiBodyDynamicsWorld& Replay::world() {
-  return impl_->world();
 }
 
 Result<std::string> Replay::descriptionOf(const std::string& path) {
@@ -217,7 +168,7 @@ bool Replay::step() {
   if (impl.status.ok()) impl.status = impl.make(*step);
   if (!impl.status.ok()) return false;
   impl.compare(*step);
-  impl.status = saveInto(impl.world(), impl.ended);
+  impl.status = saveInto(impl.world, impl.ended);
   return true;
 }
 

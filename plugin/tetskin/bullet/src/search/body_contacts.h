@@ -69,7 +69,6 @@ class BodyContacts {
 
   BodyWithTrees& body() const { return body_; }
   const PointCollider& search() const { return search_; }
-  btScalar thickness() const { return thickness_; }
 
  private:
   /// An object that is met, and its shape and path at that moment.

@@ -79,7 +79,6 @@ class PointCollider {
   PointCollider(ContactPatches patches, btScalar slack);
 
   const ContactPatches& patches() const { return patches_; }
-  btScalar slack() const { return slack_; }
 
   /// Sets the nodes' paths in this step; they must stay valid until the next call.
   /// margin       kept from shapes

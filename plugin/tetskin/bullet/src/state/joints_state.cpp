@@ -212,55 +212,30 @@ const typename Classes::value_type* classOf(const Classes& classes, const Base& 
   return nullptr;
 }
 
-/// Of joints between rigid bodies, also how one is made; its settings are replaced.
-struct RigidJointClass : JointClass<btTypedConstraint> {
-  btTypedConstraint* (*make)(btRigidBody& a, btRigidBody& b);
-};
-using JointClasses = std::vector<RigidJointClass>;
-
-template <class Joint>
-btTypedConstraint* makeByFrames(btRigidBody& a, btRigidBody& b) {
-  const btTransform frame = btTransform::getIdentity();
-  if constexpr (std::is_constructible_v<Joint, btRigidBody&, btRigidBody&, const btTransform&, const btTransform&>) {
-    return new Joint(a, b, frame, frame);
-  } else {
-    return new Joint(a, b, frame, frame, false);
-  }
-}
-template <class Joint>
-btTypedConstraint* makeByAxes(btRigidBody& a, btRigidBody& b) {
-  btVector3 origin(0, 0, 0), x(1, 0, 0), y(0, 1, 0);
-  if constexpr (std::is_constructible_v<Joint, btRigidBody&, btRigidBody&, btVector3&, btVector3&, btVector3&>) {
-    return new Joint(a, b, origin, x, y);
-  } else {
-    return new Joint(a, b, origin, origin);
-  }
-}
-btTypedConstraint* makeGear(btRigidBody& a, btRigidBody& b) {
-  return new GearJoint(a, b, btVector3(1, 0, 0), btVector3(0, 1, 0));
-}
+using JointClasses = std::vector<JointClass<btTypedConstraint>>;
 
 const JointClasses& jointClasses() {
   static const JointClasses* const classes = [] {
     auto& body = *new btRigidBody(1, nullptr, nullptr);
+    const btTransform frame = btTransform::getIdentity();
+    btVector3 origin(0, 0, 0), x(1, 0, 0), y(0, 1, 0);
     auto* all = new JointClasses;
-    const auto add = [&](btTypedConstraint* (*make)(btRigidBody&, btRigidBody&),
-                         void (*visit)(WorldStream&, btTypedConstraint&)) {
-      all->push_back({{std::unique_ptr<btTypedConstraint>(make(body, body)), visit}, make});
+    const auto add = [all](btTypedConstraint* sample, void (*visit)(WorldStream&, btTypedConstraint&)) {
+      all->push_back({std::unique_ptr<btTypedConstraint>(sample), visit});
     };
-    add(makeByAxes<BallJoint>, visitAs<BallJoint, BallJoint>);
-    add(makeByFrames<HingeJoint>, visitAs<HingeJoint, HingeJoint>);
+    add(new BallJoint(body, body, origin, origin), visitAs<BallJoint, BallJoint>);
+    add(new HingeJoint(body, body, frame, frame), visitAs<HingeJoint, HingeJoint>);
     using Turns = btHingeAccumulatedAngleConstraint;
-    add(makeByFrames<Turns>, visitAs<Turns, HingeJoint, Turns>);
-    add(makeByFrames<ConeJoint>, visitAs<ConeJoint, ConeJoint>);
-    add(makeByFrames<SliderJoint>, visitAs<SliderJoint, SliderJoint>);
-    add(makeByFrames<SixDofJoint>, visitAs<SixDofJoint, SixDofJoint>);
-    add(makeByAxes<btUniversalConstraint>, visitAs<btUniversalConstraint, SixDofJoint>);
-    add(makeByFrames<SpringJoint>, visitAs<SpringJoint, SixDofJoint, SpringJoint>);
-    add(makeByFrames<SpringJoint2>, visitAs<SpringJoint2, SpringJoint2>);
-    add(makeByAxes<btHinge2Constraint>, visitAs<btHinge2Constraint, SpringJoint2>);
-    add(makeByFrames<btFixedConstraint>, visitAs<btFixedConstraint, SpringJoint2>);
-    add(makeGear, visitAs<GearJoint, GearJoint>);
+    add(new Turns(body, body, frame, frame), visitAs<Turns, HingeJoint, Turns>);
+    add(new ConeJoint(body, body, frame, frame), visitAs<ConeJoint, ConeJoint>);
+    add(new SliderJoint(body, body, frame, frame, false), visitAs<SliderJoint, SliderJoint>);
+    add(new SixDofJoint(body, body, frame, frame, false), visitAs<SixDofJoint, SixDofJoint>);
+    add(new btUniversalConstraint(body, body, origin, x, y), visitAs<btUniversalConstraint, SixDofJoint>);
+    add(new SpringJoint(body, body, frame, frame, false), visitAs<SpringJoint, SixDofJoint, SpringJoint>);
+    add(new SpringJoint2(body, body, frame, frame), visitAs<SpringJoint2, SpringJoint2>);
+    add(new btHinge2Constraint(body, body, origin, x, y), visitAs<btHinge2Constraint, SpringJoint2>);
+    add(new btFixedConstraint(body, body, frame, frame), visitAs<btFixedConstraint, SpringJoint2>);
+    add(new GearJoint(body, body, x, y), visitAs<GearJoint, GearJoint>);
     return all;
   }();
   return *classes;
@@ -326,11 +301,6 @@ int classOfJoint(const btTypedConstraint& joint) {
   const auto* found = classOf(jointClasses(), joint);
   assert(found);
   return static_cast<int>(found - jointClasses().data());
-}
-
-std::unique_ptr<btTypedConstraint> makeJoint(int ofClass, btRigidBody& a, btRigidBody& b) {
-  if (ofClass < 0 || static_cast<std::size_t>(ofClass) >= jointClasses().size()) return nullptr;
-  return std::unique_ptr<btTypedConstraint>(jointClasses()[static_cast<std::size_t>(ofClass)].make(a, b));
 }
 
 void visitJoints(WorldStream& stream) {

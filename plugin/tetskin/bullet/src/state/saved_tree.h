@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to snapshots and recorded worlds: a tree of Bullet's, node by node, because contacts come in the order in
-// which it is walked.
+// Internal to snapshots: a tree of Bullet's, node by node, because contacts come in the order in which it is walked.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>

@@ -8,8 +8,6 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 
-#include <memory>
-
 namespace tetskin::bullet_detail {
 
 /// Motion and settings of rigid bodies, links, multibodies and other objects; of soft bodies, what they have as a
@@ -22,10 +20,8 @@ void visitJoints(WorldStream& stream);
 /// False for classes other than Bullet's own.
 bool isSaved(const btTypedConstraint& joint);
 bool isSaved(const btMultiBodyConstraint& joint);
-/// Number of the joint's class, for `makeJoint`. `isSaved(joint)` must be true.
+/// Number of the joint's class. `isSaved(joint)` must be true.
 int classOfJoint(const btTypedConstraint& joint);
-/// A joint of a class, with settings that a snapshot replaces; null if no class has this number.
-std::unique_ptr<btTypedConstraint> makeJoint(int ofClass, btRigidBody& a, btRigidBody& b);
 /// Boxes, trees and ids of the broadphase. broadphase_state.cpp
 void visitBroadphase(WorldStream& stream);
 /// Overlapping pairs with what their algorithms remember: contact caches with impulses. pairs_state.cpp

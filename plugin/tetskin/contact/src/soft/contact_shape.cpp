@@ -346,17 +346,6 @@ int CarriedCells::cellOf(const btScalar weights[4]) {
 
 }  // namespace contact_detail
 
-void contact_detail::completeShape(ShapeData& data) {
-  assert(data.sampleNodes.size() == data.samples.size());
-  for (const Tet& n : data.tets) {
-    data.centroids.push_back((data.nodes[n[0]] + data.nodes[n[1]] + data.nodes[n[2]] + data.nodes[n[3]]) / 4);
-  }
-  makeGroups(data);
-  boundRuns(data);
-  data.otherComponents = tetsOfOtherComponents(data);
-  findNearGroups(data);
-}
-
 using contact_detail::ShapeData;
 
 ContactShape::ContactShape(std::unique_ptr<const ShapeData> data) : data_(std::move(data)) {}
@@ -397,11 +386,17 @@ Result<std::shared_ptr<const ContactShape>> ContactShape::create(const Cage& cag
   if (!status.ok()) return status;
   for (const Eigen::Vector3d& p : cage.mesh.nodes) data->nodes.push_back(toBullet(p));
   data->tets = cage.mesh.tets;
+  for (const Tet& n : data->tets) {
+    data->centroids.push_back((data->nodes[n[0]] + data->nodes[n[1]] + data->nodes[n[2]] + data->nodes[n[3]]) / 4);
+  }
   data->edge = static_cast<btScalar>(meanEdge(cage.mesh));
   makeRuns(cage.mesh, samples, sampleNormals(mesh, visible, samples, data->grid), tets, *data);
   makeTrees(cage.mesh, *data);
   findCopies(cage, mesh, surface, *data);
-  completeShape(*data);
+  makeGroups(*data);
+  boundRuns(*data);
+  data->otherComponents = tetsOfOtherComponents(*data);
+  findNearGroups(*data);
   return Access<ContactShape>::create(std::move(data));
 }
 

@@ -36,7 +36,8 @@ DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid,
   const double spacing = box.sizes().maxCoeff() / cells;
   const Eigen::Vector3d low = box.min() - Eigen::Vector3d::Constant(kGridBorder * spacing);
   for (int k = 0; k < 3; ++k) counts_[k] = cornersAlong(box.sizes()[k], spacing);
-  findStrides();
+  stride_ = {1, static_cast<std::size_t>(counts_[0]),
+             static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1])};
   low_ = toBullet(low);
   spacing_ = static_cast<btScalar>(spacing);
   inverseSpacing_ = 1 / spacing_;
@@ -47,19 +48,6 @@ DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid,
     }
   }
   findSteepness();
-}
-
-void DistanceGrid::findStrides() {
-  stride_ = {1, static_cast<std::size_t>(counts_[0]),
-             static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1])};
-}
-
-bool DistanceGrid::isValid() const {
-  constexpr int kMost = 1 << 20;  // so that their product is no other number
-  const bool counts = std::all_of(counts_.begin(), counts_.end(), [](int n) { return n > 1 && n < kMost; });
-  return counts && distances_.size() == stride_[2] * static_cast<std::size_t>(counts_[2]) && spacing_ > 0 &&
-         inverseSpacing_ > 0 && std::isfinite(spacing_ + inverseSpacing_ + steepness_ + low_.length()) &&
-         std::all_of(distances_.begin(), distances_.end(), [](float d) { return std::isfinite(d); });
 }
 
 /// Between corners, each slope is a mean of those along the edges around.

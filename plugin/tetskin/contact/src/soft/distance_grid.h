@@ -49,19 +49,6 @@ class DistanceGrid {
   /// True if any corner is inside.
   bool hasInside() const;
 
-  /// Writes or reads the grid. What was read is to be tested by `isValid`.
-  template <class Stream>
-  void visitState(Stream& stream) {
-    stream(low_);
-    stream(spacing_);
-    stream(inverseSpacing_);
-    stream(steepness_);
-    stream.plain(counts_.data(), counts_.size());
-    stream.array(distances_);
-    if (stream.restoring()) findStrides();
-  }
-  bool isValid() const;
-
  private:
   std::size_t indexOf(int x, int y, int z) const {
     return static_cast<std::size_t>(x) + stride_[1] * static_cast<std::size_t>(y) +
@@ -69,7 +56,6 @@ class DistanceGrid {
   }
   void fillRow(const TriangleBvh& outside, const WindingTree& solid, const Eigen::Vector3d& first, double spacing,
                float* row) const;
-  void findStrides();
   void findSteepness();
 
   btVector3 low_{0, 0, 0};

@@ -95,11 +95,10 @@ struct SearchTree {
   }
 };
 
-/// What follows from the rest of it is computed last, by `completeShape`: marked (c).
 struct ShapeData {
   std::vector<btVector3> nodes;
   std::vector<Tet> tets;
-  std::vector<btVector3> centroids;  ///< (c) centroids of the tets
+  std::vector<btVector3> centroids;  ///< centroids of the tets
   btScalar edge = 0;                 ///< mean edge length of the tets
   DistanceGrid grid;
   std::vector<SampleRun> runs;                   ///< ascending by tet
@@ -111,13 +110,13 @@ struct ShapeData {
   std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet; some more at the end
   std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
   std::vector<TetSubregion> filled;                ///< by tet
-  std::vector<TetSubregion> runRegions;            ///< (c) by run: the part of the tet that holds its samples
-  btScalar largestSpread = 1;                      ///< (c) of the runs' parts
-  std::vector<std::vector<int>> otherComponents;   ///< (c) by run: see tetsOfOtherComponents
+  std::vector<TetSubregion> runRegions;            ///< by run: the part of the tet that holds its samples
+  btScalar largestSpread = 1;                      ///< of the runs' parts
+  std::vector<std::vector<int>> otherComponents;   ///< by run: see tetsOfOtherComponents
   SearchTree runTree;                              ///< over all runs
   SearchTree tetTree;                              ///< over the tets that hold, or are near, something inside
-  std::vector<TetGroup> groups;                    ///< (c) by leaf of `tetTree`
-  std::vector<std::vector<NearGroup>> nearGroups;  ///< (c) by run, ascending
+  std::vector<TetGroup> groups;                    ///< by leaf of `tetTree`
+  std::vector<std::vector<NearGroup>> nearGroups;  ///< by run, ascending
 };
 
 }  // namespace tetskin::contact_detail
@@ -135,8 +134,6 @@ struct Access<ContactShape> {
 }  // namespace tetskin
 
 namespace tetskin::contact_detail {
-
-void completeShape(ShapeData& data);
 
 /// What a shape holds, valid as long as it.
 inline const ShapeData& dataOf(const ContactShape& shape) {

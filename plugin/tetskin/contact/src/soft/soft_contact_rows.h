@@ -44,10 +44,6 @@ class SoftContactRows : public RowSource {
   /// Of the contacts of the last step, those between bodies that sleep are kept; others are as before a step.
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
-  const char* builderName() const override { return kBuilderName; }
-  /// Its options, and its bodies with their shapes.
-  void describe(BuildStream& stream) override;
-  static constexpr const char* kBuilderName = "soft contacts";
 
  private:
   /// What two bodies, or one body with itself, store from step to step.

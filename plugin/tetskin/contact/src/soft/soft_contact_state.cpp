@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What contacts among soft bodies remember from step to step, in a snapshot.
-#include <tetskin/bullet/src/base/build_stream.h>
-#include <tetskin/contact/src/soft/shape_build.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
 #include <algorithm>
@@ -44,18 +43,6 @@ bool isBetweenSleepers(const PointContact& contact) {
 constexpr const char* kOtherBodies = "contacts among other soft bodies were there";
 
 }  // namespace
-
-void SoftContactRows::describe(BuildStream& stream) {
-  updateBodies();
-  double friction = options_.friction.value_or(-1.0);
-  stream(friction);
-  (void)stream.length(bodies_.size());
-  for (const auto& body : bodies_) {
-    stream.object(body->body);
-    stream(body->self);
-    (void)buildContactShape(stream, body->shape.get());
-  }
-}
 
 /// In the order of the world's objects: they may have been added in another one.
 void SoftContactRows::checkState(WorldStream& stream) {

@@ -8,66 +8,46 @@
 
 namespace tetskin {
 
+namespace {
+
+/// By their codes.
+constexpr const char* kWords[] = {
+    "ok",
+    "file not found",
+    "file not writable",
+    "unsupported format",
+    "malformed",
+    "empty",
+    "index out of range",
+    "not finite",
+    "degenerate",
+    "size mismatch",
+    "invalid option",
+    "outside the cage",
+    "cage mismatch",
+    "too large",
+    "asleep",
+    "hidden",
+    "unbound",
+    "topology changed",
+    "no hit",
+    "body deleted",
+    "released",
+    "other body",
+    "not in the world",
+    "not added",
+    "enclosed by another body",
+    "cannot be saved",
+    "snapshot of another world",
+    "cancelled",
+};
+static_assert(sizeof kWords / sizeof *kWords == static_cast<std::size_t>(StatusCode::Cancelled) + 1);
+
+}  // namespace
+
 const char* toString(StatusCode code) {
-  switch (code) {
-    case StatusCode::Ok:
-      return "ok";
-    case StatusCode::FileNotFound:
-      return "file not found";
-    case StatusCode::FileNotWritable:
-      return "file not writable";
-    case StatusCode::UnsupportedFormat:
-      return "unsupported format";
-    case StatusCode::Malformed:
-      return "malformed";
-    case StatusCode::Empty:
-      return "empty";
-    case StatusCode::IndexOutOfRange:
-      return "index out of range";
-    case StatusCode::NonFinite:
-      return "not finite";
-    case StatusCode::Degenerate:
-      return "degenerate";
-    case StatusCode::SizeMismatch:
-      return "size mismatch";
-    case StatusCode::InvalidOption:
-      return "invalid option";
-    case StatusCode::OutsideCage:
-      return "outside the cage";
-    case StatusCode::CageMismatch:
-      return "cage mismatch";
-    case StatusCode::TooLarge:
-      return "too large";
-    case StatusCode::Asleep:
-      return "asleep";
-    case StatusCode::Hidden:
-      return "hidden";
-    case StatusCode::Unbound:
-      return "unbound";
-    case StatusCode::TopologyChanged:
-      return "topology changed";
-    case StatusCode::NoHit:
-      return "no hit";
-    case StatusCode::BodyDeleted:
-      return "body deleted";
-    case StatusCode::Released:
-      return "released";
-    case StatusCode::OtherBody:
-      return "other body";
-    case StatusCode::NotInWorld:
-      return "not in the world";
-    case StatusCode::NotAdded:
-      return "not added";
-    case StatusCode::Enclosed:
-      return "enclosed by another body";
-    case StatusCode::NotSaved:
-      return "cannot be saved";
-    case StatusCode::SnapshotMismatch:
-      return "snapshot of another world";
-    case StatusCode::Cancelled:
-      return "cancelled";
-  }
-  return "unknown status";
+  const auto index = static_cast<std::size_t>(code);
+  return index < sizeof kWords / sizeof *kWords ? kWords[index] : "unknown status";
 }
 
 void failResult(const std::string& message) {

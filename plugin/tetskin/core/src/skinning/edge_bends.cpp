@@ -7,23 +7,6 @@
 #include <cassert>
 
 namespace tetskin {
-namespace {
-
-/// Barycentric coordinates of a node in its quadratic tet.
-std::array<double, 4> weightsOf(const QuadraticTet& tet, std::uint32_t node) {
-  const auto place = std::find(tet.nodes.begin(), tet.nodes.end(), static_cast<int>(node)) - tet.nodes.begin();
-  assert(place < static_cast<std::ptrdiff_t>(kQuadraticNodes));
-  std::array<double, 4> weights{};
-  if (place < 4) {
-    weights[static_cast<std::size_t>(place)] = 1.0;
-  } else {
-    for (const std::size_t corner : kTetEdges[static_cast<std::size_t>(place - 4)]) weights[corner] = 0.5;
-  }
-  return weights;
-}
-
-}  // namespace
-
 QuadraticEdges::QuadraticEdges(const TetMesh& mesh, const std::vector<QuadraticTet>& tets) : tets_(tets) {
   for (std::size_t k = 0; k < tets.size(); ++k) {
     for (const int t : tets[k].tets) {
@@ -54,8 +37,8 @@ bool QuadraticEdges::contains(const CageEdge& edge) const {
 EdgeBend QuadraticEdges::bendOf(const CageEdge& edge) const {
   assert(contains(edge));
   const QuadraticTet& tet = tets_[find(edge)->tet];
-  std::array<double, 4> d = weightsOf(tet, edge[1]);
-  const std::array<double, 4> first = weightsOf(tet, edge[0]);
+  std::array<double, 4> d = *weightsOf(tet, static_cast<int>(edge[1]));
+  const std::array<double, 4> first = *weightsOf(tet, static_cast<int>(edge[0]));
   for (std::size_t k = 0; k < 4; ++k) d[k] -= first[k];
   EdgeBend bend;
   const auto add = [&](std::size_t node, double factor) {

@@ -3,9 +3,7 @@
 #include <tetskin/io/src/mesh/assimp_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>
 #include <tetskin/io/src/mesh/scene_mesh.h>
-#include <tetskin/io/src/mesh/stated_sizes.h>
 #include <tetskin/io/src/mesh/unit_normal.h>
-#include <tetskin/io/src/mesh/zip_entries.h>
 #include <tetskin/io/src/text/file_text.h>
 
 #include <assimp/config.h>
@@ -174,32 +172,14 @@ Status checkPath(const std::string& path, const Assimp::Importer& importer) {
           "; convert it to OBJ, PLY, STL or glTF");
 }
 
-/// The package without its images. assimp reads one model of it.
-Result<Models3mf> readModels(const std::string& path) {
-  const Result<std::string> bytes = readFile(path);
-  if (!bytes.ok()) return bytes.status();
-  Result<Models3mf> models = modelsOf3mf(path, bytes.value());
-  if (!models.ok() || models.value().count < 2) return models;
-  return fileError(StatusCode::UnsupportedFormat, path, 0,
-                   "has " + std::to_string(models.value().count) +
-                       " models in one package (the production extension of 3MF), which is not supported; save it as "
-                       "STL, or as a plain 3MF");
-}
-
 Result<TriangleMesh> importFile(const std::string& path) {
   Assimp::Importer importer;
   Status status = checkPath(path, importer);
-  if (status.ok()) status = checkStatedSizes(path);
   if (!status.ok()) return status;
   // A file that contains only bones would otherwise appear as a mesh of its bones.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // None of assimp's post-processing is used: it trusts the scene, and aborts on damaged ones.
-  const bool is3mf = lowerExtension(path) == ".3mf";
-  const Result<Models3mf> models = is3mf ? readModels(path) : Models3mf();
-  if (!models.ok()) return models.status();
-  const std::string& bytes = models.value().bytes;
-  const aiScene* scene =
-      is3mf ? importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "3mf") : importer.ReadFile(path, 0);
+  const aiScene* scene = importer.ReadFile(path, 0);
   if (!scene) {
     return fileError(StatusCode::Malformed, path, 0,
                      "cannot be read: " + std::string(importer.GetErrorString()) + "; export the model again");

@@ -6,7 +6,6 @@
 //
 // This work is based on:
 //   "glTF 2.0 Specification", Khronos Group, 2021
-#include <tetskin/io/src/mesh/assimp_reader.h>
 #include <tetskin/io/src/mesh/gltf_accessors.h>
 #include <tetskin/io/src/mesh/gltf_reader.h>
 #include <tetskin/io/src/mesh/gltf_text.h>
@@ -262,7 +261,9 @@ Result<TriangleMesh> parse(const std::string& path) {
     return fileError(StatusCode::TooLarge, path, 0, "has 4 GB of text or more; save it as GLB");
   }
   if (Status status = keepShape(path, text); !status.ok()) return status;
-  if (text.firstVersion) return readWithAssimp(path);
+  if (text.firstVersion) {
+    return fileError(StatusCode::UnsupportedFormat, path, 0, "is of glTF 1.0, which is not read; save it as glTF 2.0");
+  }
   tinygltf::Model model;
   tinygltf::TinyGLTF parser;
   std::string errors, warnings;

@@ -6,6 +6,7 @@
 #include <tetskin/io/src/mesh/obj_reader.h>
 #include <tetskin/io/src/mesh/off_reader.h>
 #include <tetskin/io/src/mesh/ply_reader.h>
+#include <tetskin/io/src/mesh/stl_reader.h>
 #include <tetskin/io/src/text/file_text.h>
 
 namespace tetskin {
@@ -55,7 +56,12 @@ Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report) {
   if (extension == ".obj") return io::readObj(path, *report);
   if (extension == ".ply") return io::readPly(path);
   if (extension == ".off") return io::readOff(path);
+  if (extension == ".stl") return io::readStl(path);
   if (extension == ".gltf" || extension == ".glb" || extension == ".vrm") return io::readGltfIfPossible(path);
+  if (extension == ".3mf") {  // of a package with images, assimp 5.2.5 frees some twice
+    return io::fileError(StatusCode::UnsupportedFormat, path, 0,
+                         "packages of 3MF are not read; save the model as STL or PLY");
+  }
   return io::readWithAssimp(path);
 }
 

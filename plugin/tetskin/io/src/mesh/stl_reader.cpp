@@ -16,10 +16,12 @@ namespace {
 constexpr std::size_t kStlText = 80, kStlHeader = kStlText + 4, kStlTriangle = 50, kStlNormal = 12;
 constexpr NumberType kStlCount{4, false, false}, kStlReal{4, true};
 
-/// True for a binary file: of exactly the size that it states, or one that does not begin as text does.
+/// True for a binary file: of exactly the size that it states, or one that does not begin as text does, which begins
+/// with "solid", as some binary ones do, but contains no zeros.
 bool isBinaryStl(const std::string& bytes, std::size_t triangles) {
   if (bytes.size() < kStlHeader) return false;
   if (bytes.size() == kStlHeader + triangles * kStlTriangle) return true;
+  if (bytes.find('\0') < kStlHeader) return true;
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   return first == bytes.npos || bytes.compare(first, 5, "solid") != 0;
 }

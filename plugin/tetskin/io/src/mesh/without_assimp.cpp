@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/io/src/mesh/assimp_reader.h>
-#include <tetskin/io/src/mesh/stl_reader.h>
 #include <tetskin/io/src/text/file_text.h>
 
 namespace tetskin::io {
 
 Result<TriangleMesh> readWithAssimp(const std::string& path) {
   const std::string extension = lowerExtension(path);
-  if (extension == ".stl") return readStl(path);
   const Result<std::string> bytes = readFile(path);
   if (!bytes.ok()) return bytes.status();
   if (extension.empty()) {
     return fileError(StatusCode::UnsupportedFormat, path, 0,
                      "has no file name extension; convert it to OBJ, PLY or glTF");
   }
-  const bool oldGltf = extension == ".gltf" || extension == ".glb" || extension == ".vrm";
   return fileError(StatusCode::UnsupportedFormat, path, 0,
-                   (oldGltf ? "is of glTF 1.0" : "unsupported input format " + excerpt(extension)) +
+                   "unsupported input format " + excerpt(extension) +
                        ", as tetskin was built without assimp (TETSKIN_ASSIMP=OFF); build with it, or convert the "
                        "file to OBJ, PLY or glTF 2.0");
 }

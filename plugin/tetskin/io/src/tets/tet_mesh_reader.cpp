@@ -2,9 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
-#include <tetskin/io/src/tets/gmsh_file.h>
 #include <tetskin/io/src/tets/high_order_tets.h>
-#include <tetskin/io/src/tets/medit_file.h>
 #include <tetskin/io/src/tets/tetgen_file.h>
 #include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/text/file_text.h>
@@ -19,12 +17,11 @@ Result<io::FileCage> readByExtension(const std::string& path, io::VtkData data, 
   const std::string extension = io::lowerExtension(path);
   if (extension == ".vtk") return io::readVtkFile(path, data, report);
   if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path);
-  if (extension == ".msh") return io::readGmshFile(path, report);
-  if (extension == ".mesh") return io::readMeditFile(path, report);
-  const std::string what = extension == ".vtu" || extension == ".pvtu"
-                               ? "is an XML file of VTK, which is not supported; save it as legacy VTK (.vtk)"
-                               : "unsupported input format; convert it to legacy VTK (.vtk), TetGen (.node and "
-                                 ".ele), Gmsh (.msh) or Medit (.mesh)";
+  const std::string what =
+      extension == ".vtu" || extension == ".pvtu"
+          ? "is an XML file of VTK, which is not supported; save it as legacy VTK (.vtk)"
+          : "unsupported input format; convert it to legacy VTK (.vtk), as by 'meshio convert in.msh "
+            "out.vtk', or to TetGen (.node and .ele)";
   return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
 }
 
@@ -39,7 +36,6 @@ Result<Cage> load(const std::string& path, io::VtkData data, io::CurvedEdges cur
                          "has no tets" + (found.skippedCells > 0 ? ": " + found.describe() : std::string()) +
                              "; export a volume mesh of tets");
   }
-  if (file.value().path.empty()) file.value().path = path;
   if (Status status = io::cutHighOrderTets(curved, file.value(), found); !status.ok()) return status;
   return std::move(file.value().cage);
 }
@@ -52,12 +48,10 @@ std::string TetFileReport::describe() const {
     if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + what;
   };
   add(skippedCells, " cells that are no tets were skipped");
-  add(quadraticTets, " tets of second or higher order became quadratic tets, each of eight tets");
-  add(cutLinearTets, " tets of first order were cut into eight, to have the nodes of their neighbours");
+  add(quadraticTets, " tets of second order became quadratic tets, each of eight tets");
   char distance[32];
   std::snprintf(distance, sizeof distance, "%.3g", farthestMove);
   add(movedNodes, " nodes on curved edges were moved to their middles, by up to " + std::string(distance));
-  add(droppedNodes, " nodes above second order were left out");
   return words;
 }
 

@@ -22,11 +22,10 @@ void appendPoint(std::string& text, const Eigen::Vector3d& p) {
   }
 }
 
-/// The nodes of a tet, counted from `base`.
-void appendCorners(std::string& text, const Tet& tet, std::size_t base) {
-  assert(base <= 1 && *std::min_element(tet.begin(), tet.end()) >= 0);
+void appendCorners(std::string& text, const Tet& tet) {
+  assert(*std::min_element(tet.begin(), tet.end()) >= 0);
   for (int i = 0; i < 4; ++i) {
-    io::appendNumber(text, static_cast<std::size_t>(tet[i]) + base);
+    io::appendNumber(text, static_cast<std::size_t>(tet[i]));
     text += i < 3 ? ' ' : '\n';
   }
 }
@@ -39,27 +38,11 @@ std::string vtkText(const TetMesh& mesh) {
   text += "CELLS " + tetCount + " " + std::to_string(5 * mesh.tetCount()) + "\n";
   for (const Tet& tet : mesh.tets) {
     text += "4 ";
-    appendCorners(text, tet, 0);
+    appendCorners(text, tet);
   }
   text += "CELL_TYPES " + tetCount + "\n";
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) text += "10\n";
   return text;
-}
-
-std::string gmshText(const TetMesh& mesh) {
-  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.nodeCount()) + "\n";
-  for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
-    io::appendNumber(text, n + 1);
-    text += ' ';
-    appendPoint(text, mesh.nodes[n]);
-  }
-  text += "$EndNodes\n$Elements\n" + std::to_string(mesh.tetCount()) + "\n";
-  for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
-    io::appendNumber(text, t + 1);
-    text += " 4 2 0 1 ";
-    appendCorners(text, mesh.tets[t], 1);
-  }
-  return text + "$EndElements\n";
 }
 
 std::string nodeText(const TetMesh& mesh) {
@@ -77,18 +60,17 @@ std::string eleText(const TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tetCount(); ++t) {
     io::appendNumber(text, t);
     text += ' ';
-    appendCorners(text, mesh.tets[t], 0);
+    appendCorners(text, mesh.tets[t]);
   }
   return text;
 }
 
 Status checkExtension(const std::string& path) {
   const std::string extension = io::lowerExtension(path);
-  for (const char* known : {".vtk", ".node", ".ele", ".msh"}) {
+  for (const char* known : {".vtk", ".node", ".ele"}) {
     if (extension == known) return {};
   }
-  return io::fileError(StatusCode::UnsupportedFormat, path, 0,
-                       "unsupported output format; use .vtk, .node, .ele or .msh");
+  return io::fileError(StatusCode::UnsupportedFormat, path, 0, "unsupported output format; use .vtk, .node or .ele");
 }
 
 /// Ok if a reader would accept the mesh.
@@ -127,7 +109,6 @@ Status saveTetMesh(const TetMesh& mesh, const std::string& path) {
   if (status.ok()) status = checkWritable(mesh, path);
   if (!status.ok()) return status;
   if (extension == ".vtk") return io::writeFile(path, vtkText(mesh));
-  if (extension == ".msh") return io::writeFile(path, gmshText(mesh));
   status = io::writeFile(extension == ".node" ? path : withExtension(path, ".node"), nodeText(mesh));
   if (!status.ok()) return status;
   return io::writeFile(extension == ".ele" ? path : withExtension(path, ".ele"), eleText(mesh));

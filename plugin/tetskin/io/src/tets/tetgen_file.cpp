@@ -8,7 +8,6 @@
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_records.h>
 
-#include <array>
 #include <cassert>
 #include <cstdint>
 #include <filesystem>
@@ -70,17 +69,16 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
   return {};
 }
 
-/// The first `count` nodes are read.
 Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, std::size_t nodeCount, std::int64_t base,
-               std::size_t count, std::array<int, 10>& nodes) {
+               Tet& nodes) {
   assert(base == 0 || base == 1);
   record.word();  // its index, which nothing refers to
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     std::int64_t node = 0;
     if (!record.integer(node)) {
-      return malformed(path, record,
-                       "has no index and " + std::string(count == 4 ? "four" : "ten") + " nodes for tet " +
-                           std::to_string(t) + "; is it complete? Correct the line");
+      return malformed(
+          path, record,
+          "has no index and four nodes for tet " + std::to_string(t) + "; is it complete? Correct the line");
     }
     if (node < base || node - base >= static_cast<std::int64_t>(nodeCount)) {
       return fileError(StatusCode::IndexOutOfRange, path, record.line(),
@@ -92,32 +90,30 @@ Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, st
   return {};
 }
 
-/// Reads `.ele`: a header "count nodesPerTet attributes", then lines "index n1 n2 n3 n4 ...". With 10 nodes, those on
-/// the edges are in an order that changed from TetGen 1.4 to 1.5.
-Status readTets(const std::string& path, std::string_view text, std::int64_t base, FileCage& file) {
+/// Reads `.ele`: a header "count nodesPerTet attributes", then lines "index n1 n2 n3 n4 ...".
+Status readTets(const std::string& path, std::string_view text, std::int64_t base, TetMesh& mesh) {
   TextRecords records(text);
   TextScanner header = records.next();
   std::uint64_t count = 0, corners = 0;
   if (!header.integer(count) || !header.integer(corners)) {
     return malformed(path, header, "does not begin with the number of tets and of their nodes; is it a TetGen file?");
   }
-  if (corners != 4 && corners != 10) {
-    return malformed(path, header, "has tets of " + std::to_string(corners) + " nodes; only 4 and 10 are supported");
+  if (corners == 10) {
+    return fileError(StatusCode::UnsupportedFormat, path, header.line(),
+                     "has tets of second order; run TetGen without -o2: `refineQuadratic` makes the same tets of the "
+                     "result");
+  }
+  if (corners != 4) {
+    return malformed(path, header, "has tets of " + std::to_string(corners) + " nodes; only 4 are supported");
   }
   if (count > std::numeric_limits<std::uint32_t>::max() || !records.hasRoomFor((corners + 1) * count)) {
     return tooShort(path, header, count, "tets");
   }
-  TetMesh& mesh = file.cage.mesh;
   mesh.tets.reserve(static_cast<std::size_t>(count));
   for (std::uint64_t t = 0; t < count; ++t) {
     TextScanner record = records.next();
-    std::array<int, 10> nodes{};
-    Status status = readTet(path, record, t, mesh.nodeCount(), base, static_cast<std::size_t>(corners), nodes);
-    if (!status.ok()) return status;
-    if (corners == 4) {
-      mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
-    } else {
-      file.addQuadratic(nodes, kNoOrder, record.line());
+    if (Status status = readTet(path, record, t, mesh.nodeCount(), base, mesh.tets.emplace_back()); !status.ok()) {
+      return status;
     }
   }
   return {};
@@ -144,10 +140,9 @@ Result<FileCage> readTetgenFiles(const std::string& path) {
 
   FileCage file;
   file.path = elePath;
-  file.anyOrder = true;
   std::int64_t base = 0;
   Status status = readNodes(nodePath, nodeText.value(), file.cage.mesh.nodes, base);
-  if (status.ok()) status = readTets(elePath, eleText.value(), base, file);
+  if (status.ok()) status = readTets(elePath, eleText.value(), base, file.cage.mesh);
   if (!status.ok()) return status;
   return file;
 }

@@ -78,6 +78,7 @@ Result<FileCage> VtkReader::read() {
   if (status.ok()) status = readSections();
   if (status.ok()) status = collectTets();
   if (!status.ok()) return status;
+  result_.path = file_.path();
   return std::move(result_);
 }
 
@@ -297,25 +298,24 @@ Status VtkReader::addTet(std::size_t cell) {
     nodes[i] = static_cast<int>(node);
   }
   if (size == 10) {
-    result_.addQuadratic(nodes, kVtkOrder, lineOf(first));
-    return {};
-  }
-  if (size > 10) {
-    const auto all = entries_.begin() + static_cast<std::ptrdiff_t>(first);
-    result_.spareNodes.insert(result_.spareNodes.end(), all + 4, all + static_cast<std::ptrdiff_t>(size));
-    result_.highOrder.emplace_back();
-    result_.highOrder.back().tet = cage_.mesh.tetCount();
-    result_.highOrder.back().line = lineOf(first);
+    // VTK's order of edges is 01, 12, 02, 03, 13, 23.
+    result_.highOrder.push_back(
+        {cage_.mesh.tetCount(), {nodes[4], nodes[6], nodes[7], nodes[5], nodes[8], nodes[9]}, lineOf(first)});
   }
   cage_.mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
   return {};
 }
 
-/// Tets of first order have 4 nodes, of second 10, and those of Lagrange and Bezier may have more.
+/// Tets of first order have 4 nodes, of second 10; those of Lagrange and Bezier may have more, and are refused.
 Status VtkReader::checkSize(std::size_t cell) const {
   const std::size_t size = cellSize_[cell];
-  const bool secondOrder = hasTypes_ && cellTypes_[cell] == kVtkQuadraticTet;
-  if (size == (secondOrder ? 10 : 4) || (!secondOrder && isHighOrderTet(cell) && size >= 10)) return {};
+  const bool secondOrder = isHighOrderTet(cell);
+  if (size == (secondOrder ? 10 : 4)) return {};
+  if (secondOrder && cellTypes_[cell] != kVtkQuadraticTet && size > 10) {
+    return errorAt(
+        lineOf(cellFirst_[cell]), StatusCode::UnsupportedFormat,
+        "cell " + std::to_string(cell) + " is a tet above second order; save the mesh at second or first order");
+  }
   return errorAt(lineOf(cellFirst_[cell]), StatusCode::Malformed,
                  "cell " + std::to_string(cell) + " has " + std::to_string(size) + " nodes where a tet " +
                      (secondOrder ? "of second order has 10" : "has 4") +

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
-#include <tetskin/bullet/src/base/build_stream.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/joints/joint.h>
 #include <tetskin/touch/src/points/body_kind.h>
 #include <tetskin/touch/src/points/point_data.h>
@@ -231,88 +231,6 @@ void Joint::checkState(WorldStream& stream) {
     stream.same(carried_.nodes[k], kOthers);
     stream.same(carried_.weights[k], kOthers);
   }
-}
-
-namespace {
-
-void visitCarried(BuildStream& stream, CarriedPoint& point) {
-  stream(point.count);
-  stream.plain(point.nodes.data(), point.nodes.size());
-  stream.plain(point.weights.data(), point.weights.size());
-}
-
-bool isOf(const btSoftBody& body, const CarriedPoint& point) {
-  const auto isFinite = [](btScalar weight) { return std::isfinite(weight); };
-  return point.count > 0 && point.count <= kMaxPointNodes &&
-         areBelow(point.nodes, static_cast<std::size_t>(body.m_nodes.size())) &&
-         std::all_of(point.weights.begin(), point.weights.end(), isFinite);
-}
-
-void visitPoint(BuildStream& stream, PointData& data) {
-  for (EmbeddedPoint<btScalar>& corner : data.corners) visitEmbedded(stream, corner);
-  stream.plain(data.weights.data(), data.weights.size());
-  stream(data.restNormal);
-}
-
-bool isOf(const btSoftBody& body, const PointData& data) {
-  const auto nodes = static_cast<std::size_t>(body.m_nodes.size());
-  return std::all_of(data.corners.begin(), data.corners.end(), [&](const EmbeddedPoint<btScalar>& corner) {
-    return corner.tet >= 0 && corner.tet < body.m_tetras.size() && areBelow(corner.nodes, nodes);
-  });
-}
-
-void visitSettings(BuildStream& stream, JointSettings& settings) {
-  stream(settings.turns);
-  stream(settings.stiffness);
-  stream(settings.damping);
-  stream(settings.maxForce);
-  stream(settings.collide);
-}
-
-bool areValid(const JointSettings& settings) {
-  return settings.stiffness > 0.0 && settings.damping >= 0.0 && settings.maxForce > 0.0;
-}
-
-}  // namespace
-
-/// Where it holds the body: some of these were computed from where the nodes were when it was created.
-void Joint::visitPoints(BuildStream& stream) {
-  visitCarried(stream, carried_);
-  for (CarriedPoint& point : beside_) visitCarried(stream, point);
-  stream(arm_);
-}
-
-void Joint::describe(BuildStream& stream) {
-  btSoftBody* held = body();
-  PointData data = dataOf(point_);
-  stream.object(held);
-  stream.object(anchor_.object);
-  stream(anchor_.frame);
-  visitPoint(stream, data);
-  visitSettings(stream, settings_);
-  visitPoints(stream);
-}
-
-std::shared_ptr<Joint> Joint::build(BuildStream& stream) {
-  btSoftBody* held = nullptr;
-  PointData data;
-  JointAnchor anchor;
-  JointSettings settings;
-  stream.object(held);
-  stream.object(anchor.object);
-  stream(anchor.frame);
-  visitPoint(stream, data);
-  visitSettings(stream, settings);
-  stream.require(held && isOf(*held, data) && areValid(settings), "a spring or weld is damaged");
-  if (stream.failed()) return nullptr;
-  const SurfacePoint point = Access<SurfacePoint>::create(*held, data);
-  stream.require(point.status() == StatusCode::Ok, "a spring or weld is damaged");
-  if (stream.failed()) return nullptr;
-  auto joint = std::make_shared<Joint>(point, anchor, settings);
-  joint->visitPoints(stream);
-  const bool beside = !(joint->arm_ > 0) || (isOf(*held, joint->beside_[0]) && isOf(*held, joint->beside_[1]));
-  stream.require(isOf(*held, joint->carried_) && beside, "a spring or weld is damaged");
-  return stream.failed() ? nullptr : joint;
 }
 
 }  // namespace tetskin::touch_detail

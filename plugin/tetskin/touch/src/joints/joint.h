@@ -59,12 +59,8 @@ class Joint : public ActiveJoint {
   void shift(const btVector3& by) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
-  void describe(BuildStream& stream) override;
-  /// A joint that was described; null: it is damaged.
-  static std::shared_ptr<Joint> build(BuildStream& stream);
 
  private:
-  void visitPoints(BuildStream& stream);
   CarriedPoint carriedPoint() const;
   CarriedPoint pointBeside(const btVector3& at) const;
   void weld();

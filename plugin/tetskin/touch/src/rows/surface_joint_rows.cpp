@@ -3,8 +3,8 @@
 #include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/bullet/src/base/build_stream.h>
 #include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <algorithm>
@@ -98,14 +98,6 @@ void SurfaceJointRows::checkState(WorldStream& stream) {
   stream.same(count, "other springs or welds");
   for (const auto& joint : active_) {
     if (joint->isInWorld() && !stream.failed()) joint->checkState(stream);
-  }
-}
-
-void SurfaceJointRows::describe(BuildStream& stream) {
-  const auto isInWorld = [](const auto& joint) { return joint->isInWorld(); };
-  (void)stream.length(static_cast<std::size_t>(std::count_if(active_.begin(), active_.end(), isInWorld)));
-  for (const auto& joint : active_) {
-    if (isInWorld(joint)) joint->describe(stream);
   }
 }
 

@@ -41,8 +41,6 @@ class ActiveJoint {
   virtual void visitState(WorldStream& stream) = 0;
   /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
   virtual void checkState(WorldStream& stream) = 0;
-  /// Writes what it is made of, for recorded runs.
-  virtual void describe(BuildStream& stream) = 0;
 };
 
 class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<SurfaceJointRows> {
@@ -67,9 +65,6 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
   void shift(const btVector3& by) override;
   void visitState(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
-  const char* builderName() const override { return kBuilderName; }
-  void describe(BuildStream& stream) override;
-  static constexpr const char* kBuilderName = "springs and welds";
 
  private:
   void eraseSpent();

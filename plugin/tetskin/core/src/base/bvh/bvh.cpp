@@ -121,22 +121,6 @@ Bvh::Bvh(const std::vector<BvhBox<Scalar>>& boxes, const std::vector<int>& items
   Builder<Item>(std::move(boxed), leafSize, nodes_, items_);
 }
 
-bool Bvh::isValid() const {
-  // The nodes [at, end) are those of a subtree that holds the items of its root.
-  const auto isSubtree = [this](const auto& self, int at, int end, int depth) -> bool {
-    const Node& top = node(at);
-    if (depth > kMaxWaiting || top.first < 0 || top.last < top.first) return false;
-    if (top.isLeaf()) return end == at + 1;
-    if (top.right <= at + 1 || top.right >= end) return false;
-    const Node &left = node(at + 1), &right = node(top.right);
-    return left.first == top.first && left.last == right.first && right.last == top.last &&
-           self(self, at + 1, top.right, depth + 1) && self(self, top.right, end, depth + 1);
-  };
-  const int count = static_cast<int>(nodes_.size());
-  if (count == 0) return items_.empty();
-  return node(0).first == 0 && node(0).last == static_cast<int>(items_.size()) && isSubtree(isSubtree, 0, count, 0);
-}
-
 #define TETSKIN_INSTANTIATE(Scalar)                                                           \
   template TETSKIN_CORE_API Bvh::Bvh(const Centroids<Scalar>&, int);                          \
   template TETSKIN_CORE_API Bvh::Bvh(const Centroids<Scalar>&, const std::vector<int>&, int); \

@@ -46,15 +46,6 @@ class TETSKIN_CORE_API Bvh {
   template <class Scalar>
   Bvh(const std::vector<BvhBox<Scalar>>& boxes, const std::vector<int>& items, int leafSize);
 
-  /// Writes or reads the tree. What was read is to be tested by `isValid`.
-  template <class Stream>
-  void visitState(Stream& stream) {
-    stream.each(nodes_, [&](Node& node) { stream(node.first), stream(node.last), stream(node.right); });
-    stream.array(items_);
-  }
-  /// True if it is a tree whose leaves hold all items once, as a constructor makes it.
-  bool isValid() const;
-
   bool empty() const { return nodes_.empty(); }
   /// The nodes: the root first, parents before children.
   const std::vector<Node>& nodes() const { return nodes_; }

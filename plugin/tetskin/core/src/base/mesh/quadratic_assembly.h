@@ -5,6 +5,7 @@
 #include <tetskin/core/cage.h>
 #include <tetskin/core/mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -12,6 +13,16 @@ namespace tetskin {
 
 /// The edges of a tet, in the order of the midpoints of a QuadraticTet. Edges k and 5 - k have no corner in common.
 constexpr std::array<std::array<std::size_t, 2>, 6> kTetEdges = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+/// The barycentric weights of one of a quadratic tet's nodes; empty if it is none of them.
+inline std::optional<std::array<double, 4>> weightsOf(const QuadraticTet& tet, int node) {
+  const auto place = static_cast<std::size_t>(std::find(tet.nodes.begin(), tet.nodes.end(), node) - tet.nodes.begin());
+  if (place == kQuadraticNodes) return {};
+  std::array<double, 4> weights{};
+  if (place < 4) weights[place] = 1.0;
+  for (std::size_t k = 0; k < 2 && place >= 4; ++k) weights[kTetEdges[place - 4][k]] = 0.5;
+  return weights;
+}
 
 /// How far a node may be from the middle of its edge, as a share of the edge. What is left out of account then is of
 /// that size, too.
