@@ -3,8 +3,7 @@
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/high_order_tets.h>
-#include <tetskin/io/src/tets/tetgen_file.h>
-#include <tetskin/io/src/tets/vtk_file.h>
+#include <tetskin/io/src/tets/tet_readers.h>
 #include <tetskin/io/src/text/file_text.h>
 
 #include <cstdio>

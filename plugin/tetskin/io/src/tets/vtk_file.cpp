@@ -3,8 +3,8 @@
 //
 // This work is based on:
 //   "VTK File Formats", Kitware, chapter "Simple Legacy Formats" (versions 2.0 to 5.1)
+#include <tetskin/io/src/tets/tet_readers.h>
 #include <tetskin/io/src/tets/vtk_cage_data.h>
-#include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/tets/vtk_text.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 
