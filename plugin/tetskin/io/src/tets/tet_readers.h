@@ -10,11 +10,8 @@
 
 namespace tetskin::io {
 
-/// Which data of a file to read: its tets only, or also what `saveCage` writes with them.
-enum class VtkData { Skipped, OfCage };
-
 /// Reads a legacy VTK file as `loadTetMesh` and `loadCage` describe. If the file contains no tets, the cage has none.
-Result<FileCage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report);
+Result<FileCage> readVtkFile(const std::string& path, ReadAs as, TetFileReport& report);
 
 /// Reads a pair of TetGen files, given the path of either, as `loadTetMesh` describes. If they contain no tets, the
 /// mesh has none.
