@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
-#include <tetskin/io/src/mesh/obj_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 
 #include <cmath>
 #include <random>

@@ -123,3 +123,26 @@ function handleIn(instance, thing, Type, name) {
   }
   return handle;
 }
+
+/** Kinds of properties: what is made of the module's value, and how one that is given is checked. */
+const kNumber = {made: value => value, checked: numberOf}, kBoolean = {made: value => value, checked: booleanOf};
+const kVector = {made: numbers => Float64Array.from(numbers), checked: vectorOf};
+const kQuaternion = {made: kVector.made, checked: (value, name) => vectorOf(value, name, 4)};
+const kWords = {made: words => words};
+const viewOf = Type => ({made: (place, thing) => thing.view(Type, place)});
+const copyOf = Type => ({made: (place, thing) => thing.copy(Type, place)});
+
+/** Gives a class properties: by name, their kind, and the module's functions that read and set them. */
+function properties(Type, all) {
+  for (const [name, [kind, read, write]] of Object.entries(all)) {
+    Object.defineProperty(Type.prototype, name, {
+      configurable: true,
+      get() {
+        return kind.made(this.core[read](own(this)), this);
+      },
+      set: write && function(value) {
+        this.core[write](own(this), kind.checked(value, name));
+      },
+    });
+  }
+}

@@ -8,28 +8,20 @@ class Mesh extends Thing {
   get triangleCount() {
     return this.core.meshTriangles(own(this)).count / 3;
   }
-  get positions() {
-    return this.view(Float64Array, this.core.meshPositions(own(this)));
-  }
-  get triangles() {
-    return this.view(Int32Array, this.core.meshTriangles(own(this)));
-  }
-  get normals() {
-    return this.view(Float32Array, this.core.meshNormals(own(this)));
-  }
-  get texcoords() {
-    return this.view(Float32Array, this.core.meshTexcoords(own(this)));
-  }
   restNormals() {
     return this.copy(Float32Array, this.core.meshRestNormals(own(this)));
-  }
-  get bounds() {
-    return this.copy(Float64Array, this.core.meshBounds(own(this)));
   }
   toBytes() {
     return this.copy(Uint8Array, this.core.meshToBytes(own(this)));
   }
 }
+properties(Mesh, {
+  positions: [viewOf(Float64Array), "meshPositions"],
+  triangles: [viewOf(Int32Array), "meshTriangles"],
+  normals: [viewOf(Float32Array), "meshNormals"],
+  texcoords: [viewOf(Float32Array), "meshTexcoords"],
+  bounds: [copyOf(Float64Array), "meshBounds"],
+});
 
 class Cage extends Thing {
   get nodeCount() {
@@ -38,26 +30,11 @@ class Cage extends Thing {
   get tetCount() {
     return this.core.cageTets(own(this)).count / 4;
   }
-  get nodes() {
-    return this.view(Float64Array, this.core.cageNodes(own(this)));
-  }
-  get tets() {
-    return this.view(Int32Array, this.core.cageTets(own(this)));
-  }
-  get vertexTets() {
-    return this.view(Int32Array, this.core.cageVertexTets(own(this)));
-  }
-  get quadraticTet() {
-    return this.view(Int32Array, this.core.cageQuadraticTet(own(this)));
-  }
   edges() {
     return this.copy(Int32Array, this.core.cageEdges(own(this)));
   }
   boundaryFaces() {
     return this.copy(Int32Array, this.core.cageBoundaryFaces(own(this)));
-  }
-  get report() {
-    return this.core.cageReport(own(this));
   }
   scaled(scale) {
     return new Cage(this.hidden.instance, this.core.scaledCage(own(this), numberOf(scale, "scale")));
@@ -66,19 +43,20 @@ class Cage extends Thing {
     return this.copy(Uint8Array, this.core.cageToBytes(own(this)));
   }
 }
+properties(Cage, {
+  nodes: [viewOf(Float64Array), "cageNodes"],
+  tets: [viewOf(Int32Array), "cageTets"],
+  vertexTets: [viewOf(Int32Array), "cageVertexTets"],
+  quadraticTet: [viewOf(Int32Array), "cageQuadraticTet"],
+  report: [kWords, "cageReport"],
+});
 
 class Palette extends Thing {
-  get boneCount() {
-    return this.core.boneCount(own(this));
-  }
   vertexBones() {
     return this.copy(Uint16Array, this.core.vertexBones(own(this)));
   }
   vertexWeights() {
     return this.copy(Float32Array, this.core.vertexWeights(own(this)));
-  }
-  get bones() {
-    return this.view(Float32Array, this.core.bones(own(this)));
   }
   update(nodes) {
     if (nodes instanceof Body) {
@@ -90,6 +68,10 @@ class Palette extends Thing {
     });
   }
 }
+properties(Palette, {
+  boneCount: [kNumber, "boneCount"],
+  bones: [viewOf(Float32Array), "bones"],
+});
 
 const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
 const kCageOptions = {targetTets: 3000, duplicateElements: true, fit: true, progress: undefined};

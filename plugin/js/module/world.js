@@ -23,12 +23,6 @@ class World extends Thing {
     }
   }
 
-  get gravity() {
-    return Float64Array.from(this.core.gravity(own(this)));
-  }
-  set gravity(gravity) {
-    this.core.setGravity(own(this), vectorOf(gravity, "gravity"));
-  }
   step(dt = 1 / 60, substeps = 4) {
     try {
       const made = this.core.step(own(this), numberOf(dt, "dt"), wholeNumberOf(substeps, "substeps"));
@@ -116,9 +110,6 @@ class World extends Thing {
     return Object.fromEntries(kCauses.map((cause, i) => [cause, {force: at(6 * i), torque: at(6 * i + 3)}]));
   }
 
-  get snapshotSize() {
-    return this.core.snapshotSize(own(this));
-  }
   save(into) {
     const memory = into === undefined ? undefined : bytesOf(into, "into");
     const state = this.view(Uint8Array, this.core.save(own(this)));
@@ -134,9 +125,6 @@ class World extends Thing {
   }
   shiftOrigin(origin) {
     this.core.shiftOrigin(own(this), vectorOf(origin, "origin"));
-  }
-  get hash() {
-    return this.core.hash(own(this));
   }
 
   /** The handle of a soft body, then that of a rigid one: the one that it is not is null. */
@@ -165,6 +153,11 @@ class World extends Thing {
     return body;
   }
 }
+properties(World, {
+  gravity: [kVector, "gravity", "setGravity"],
+  snapshotSize: [kNumber, "snapshotSize"],
+  hash: [kWords, "hash"],
+});
 
 /** Something that a world keeps in a list. */
 class Member extends Thing {
@@ -195,57 +188,17 @@ class Spring extends Member {
   setMaxForce(force) {
     this.core.setMaxForce(own(this), numberOf(force, "force"));
   }
-  get position() {
-    return Float64Array.from(this.core.springPosition(own(this)));
-  }
-  get force() {
-    return Float64Array.from(this.core.springForce(own(this)));
-  }
-  get stretch() {
-    return this.core.springStretch(own(this));
-  }
 }
+properties(Spring, {
+  position: [kVector, "springPosition"],
+  force: [kVector, "springForce"],
+  stretch: [kNumber, "springStretch"],
+});
 
 class RigidBody extends Member {
   leave(handle) {
     this.core.removeRigidBody(handle);
     this.forget("rigidBodies");
-  }
-  get position() {
-    return Float64Array.from(this.core.rigidPosition(own(this)));
-  }
-  set position(at) {
-    this.core.setRigidPosition(own(this), vectorOf(at, "position"));
-  }
-  get rotation() {
-    return Float64Array.from(this.core.rigidRotation(own(this)));
-  }
-  set rotation(quaternion) {
-    this.core.setRigidRotation(own(this), vectorOf(quaternion, "rotation", 4));
-  }
-  get velocity() {
-    return Float64Array.from(this.core.rigidVelocity(own(this)));
-  }
-  set velocity(velocity) {
-    this.core.setRigidVelocity(own(this), vectorOf(velocity, "velocity"));
-  }
-  get angularVelocity() {
-    return Float64Array.from(this.core.rigidAngularVelocity(own(this)));
-  }
-  set angularVelocity(velocity) {
-    this.core.setRigidAngularVelocity(own(this), vectorOf(velocity, "angularVelocity"));
-  }
-  get friction() {
-    return this.core.rigidFriction(own(this));
-  }
-  set friction(friction) {
-    this.core.setRigidFriction(own(this), numberOf(friction, "friction"));
-  }
-  get mass() {
-    return this.core.rigidMass(own(this));
-  }
-  get kinematic() {
-    return this.core.rigidKinematic(own(this));
   }
   applyImpulse(impulse, at) {
     const push = vectorOf(impulse, "impulse");
@@ -253,6 +206,15 @@ class RigidBody extends Member {
     this.core.applyRigidImpulse(own(this), push, vectorOf(at ?? centre, "at").map((x, k) => x - centre[k]));
   }
 }
+properties(RigidBody, {
+  position: [kVector, "rigidPosition", "setRigidPosition"],
+  rotation: [kQuaternion, "rigidRotation", "setRigidRotation"],
+  velocity: [kVector, "rigidVelocity", "setRigidVelocity"],
+  angularVelocity: [kVector, "rigidAngularVelocity", "setRigidAngularVelocity"],
+  friction: [kNumber, "rigidFriction", "setRigidFriction"],
+  mass: [kNumber, "rigidMass"],
+  kinematic: [kBoolean, "rigidKinematic"],
+});
 
 class Body extends Member {
   leave(handle) {
@@ -271,63 +233,12 @@ class Body extends Member {
   get nodeCount() {
     return this.core.bodyNodes(own(this)).count / 3;
   }
-  get nodes() {
-    return this.view(Float32Array, this.core.bodyNodes(own(this)));
-  }
   get velocities() {
     return this.view(Float32Array, this.core.bodyVelocities(own(this)));
   }
   set velocities(velocities) {
     const arrays = [doubles(numbersOf(velocities, "velocities", 3))];
     this.withMemory(arrays, at => this.core.setBodyVelocities(own(this), at));
-  }
-  get positions() {
-    return this.view(Float32Array, this.core.bodyPositions(own(this)));
-  }
-  get normals() {
-    return this.view(Float32Array, this.core.bodyNormals(own(this)));
-  }
-  get bounds() {
-    return this.copy(Float64Array, this.core.bodyBounds(own(this)));
-  }
-  get visible() {
-    return this.core.visible(own(this));
-  }
-  set visible(visible) {
-    this.core.setVisible(own(this), booleanOf(visible, "visible"));
-  }
-  get asleep() {
-    return this.core.asleep(own(this));
-  }
-  get mass() {
-    return this.core.bodyMass(own(this));
-  }
-  get youngsModulus() {
-    return this.core.youngsModulus(own(this));
-  }
-  set youngsModulus(pressure) {
-    this.core.setYoungsModulus(own(this), numberOf(pressure, "youngsModulus"));
-  }
-  get relativeStiffness() {
-    return this.core.relativeStiffness(own(this));
-  }
-  get poissonRatio() {
-    return this.core.poissonRatio(own(this));
-  }
-  set poissonRatio(ratio) {
-    this.core.setPoissonRatio(own(this), numberOf(ratio, "poissonRatio"));
-  }
-  get stiffnessDamping() {
-    return this.core.stiffnessDamping(own(this));
-  }
-  set stiffnessDamping(seconds) {
-    this.core.setStiffnessDamping(own(this), numberOf(seconds, "stiffnessDamping"));
-  }
-  get friction() {
-    return this.core.bodyFriction(own(this));
-  }
-  set friction(friction) {
-    this.core.setBodyFriction(own(this), numberOf(friction, "friction"));
   }
   setGravity(gravity) {
     if (gravity === null) {
@@ -339,9 +250,6 @@ class Body extends Member {
   setPinned(nodes, pinned = true) {
     booleanOf(pinned, "pinned");
     this.withMemory([indices(numbersOf(nodes, "nodes"))], at => this.core.setPinned(own(this), at, pinned));
-  }
-  get pinned() {
-    return this.copy(Uint8Array, this.core.pinned(own(this)));
   }
   setPinnedPositions(nodes, positions) {
     numbersOf(nodes, "nodes");
@@ -361,3 +269,18 @@ class Body extends Member {
       numberOf(strength, "strength"));
   }
 }
+properties(Body, {
+  nodes: [viewOf(Float32Array), "bodyNodes"],
+  positions: [viewOf(Float32Array), "bodyPositions"],
+  normals: [viewOf(Float32Array), "bodyNormals"],
+  bounds: [copyOf(Float64Array), "bodyBounds"],
+  pinned: [copyOf(Uint8Array), "pinned"],
+  visible: [kBoolean, "visible", "setVisible"],
+  asleep: [kBoolean, "asleep"],
+  mass: [kNumber, "bodyMass"],
+  youngsModulus: [kNumber, "youngsModulus", "setYoungsModulus"],
+  relativeStiffness: [kNumber, "relativeStiffness"],
+  poissonRatio: [kNumber, "poissonRatio", "setPoissonRatio"],
+  stiffnessDamping: [kNumber, "stiffnessDamping", "setStiffnessDamping"],
+  friction: [kNumber, "bodyFriction", "setBodyFriction"],
+});

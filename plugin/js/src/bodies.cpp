@@ -115,26 +115,13 @@ bool asleep(BodyHandle& body) {
 double mass(BodyHandle& body) {
   return static_cast<double>(alive(*body.state).body().getTotalMass());
 }
-double youngsModulus(BodyHandle& body) {
-  return alive(*body.state).youngsModulus();
+template <auto Get>
+double read(BodyHandle& body) {
+  return (alive(*body.state).*Get)();
 }
-void setYoungsModulus(BodyHandle& body, double pressure) {
-  check(alive(*body.state).setYoungsModulus(pressure));
-}
-double relativeStiffness(BodyHandle& body) {
-  return alive(*body.state).relativeStiffness();
-}
-double poissonRatio(BodyHandle& body) {
-  return alive(*body.state).poissonRatio();
-}
-void setPoissonRatio(BodyHandle& body, double ratio) {
-  check(alive(*body.state).setPoissonRatio(ratio));
-}
-double stiffnessDamping(BodyHandle& body) {
-  return alive(*body.state).stiffnessDamping();
-}
-void setStiffnessDamping(BodyHandle& body, double seconds) {
-  check(alive(*body.state).setStiffnessDamping(seconds));
+template <auto Set>
+void write(BodyHandle& body, double value) {
+  check((alive(*body.state).*Set)(value));
 }
 double friction(BodyHandle& body) {
   return static_cast<double>(alive(*body.state).body().m_cfg.kDF);
@@ -201,13 +188,13 @@ EMSCRIPTEN_BINDINGS(bodies) {
   expose<&setVisible>("setVisible");
   expose<&asleep>("asleep");
   expose<&mass>("bodyMass");
-  expose<&youngsModulus>("youngsModulus");
-  expose<&setYoungsModulus>("setYoungsModulus");
-  expose<&relativeStiffness>("relativeStiffness");
-  expose<&poissonRatio>("poissonRatio");
-  expose<&setPoissonRatio>("setPoissonRatio");
-  expose<&stiffnessDamping>("stiffnessDamping");
-  expose<&setStiffnessDamping>("setStiffnessDamping");
+  expose<&read<&DeformableBody::youngsModulus>>("youngsModulus");
+  expose<&write<&DeformableBody::setYoungsModulus>>("setYoungsModulus");
+  expose<&read<&DeformableBody::relativeStiffness>>("relativeStiffness");
+  expose<&read<&DeformableBody::poissonRatio>>("poissonRatio");
+  expose<&write<&DeformableBody::setPoissonRatio>>("setPoissonRatio");
+  expose<&read<&DeformableBody::stiffnessDamping>>("stiffnessDamping");
+  expose<&write<&DeformableBody::setStiffnessDamping>>("setStiffnessDamping");
   expose<&friction>("bodyFriction");
   expose<&setFriction>("setBodyFriction");
   expose<&setGravity>("setBodyGravity");

@@ -164,20 +164,14 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_ro("mesh",
                    [](const BodyHandle& b) { return b.state->mesh.mesh ? std::optional(b.state->mesh) : std::nullopt; })
       .def_prop_ro("node_count", nodeCount, "Number of nodes.")
-      .def_prop_ro(
-          "bounds",
-          [](const BodyHandle& b) {
-            const Locked lock(*b.world);
-            const Box3& box = surfaceOf(*b.state).bounds();
-            return nb::make_tuple(vectorOf(box.min()), vectorOf(box.max()));
-          },
-          kBoundsType, "The box of the surface: two corners, world space.")
+      .def_prop_ro("bounds", locked(+[](const BodyHandle& b) {
+                     const Box3& box = surfaceOf(*b.state).bounds();
+                     return nb::make_tuple(vectorOf(box.min()), vectorOf(box.max()));
+                   }),
+                   kBoundsType, "The box of the surface: two corners, world space.")
       .def_prop_rw(
           "visible", [](const BodyHandle& b) { return b.state->skin.visible(); },
-          [](BodyHandle& b, bool visible) {
-            const Locked lock(*b.world);
-            surfaceOf(*b.state).setVisible(visible);
-          },
+          locked(+[](BodyHandle& b, bool visible) { surfaceOf(*b.state).setVisible(visible); }),
           "Whether steps update the surface. When shown again, it is updated at once.")
       .def_prop_ro("asleep", number([](DeformableBody& b) { return !b.body().isActive(); }),
                    "Whether it is at rest, and costs next to nothing.")
@@ -194,26 +188,19 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("stiffness_damping", number([](DeformableBody& b) { return b.stiffnessDamping(); }),
                    setter([](DeformableBody& b, double v) { return b.setStiffnessDamping(v); }),
                    "Seconds: Rayleigh damping, 0 or more.")
-      .def_prop_rw(
-          "friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
-          [](BodyHandle& b, double friction) {
-            const Locked lock(*b.world);
-            setFriction(*b.state, friction);
-          },
-          "0 to 1; multiplied by that of rigid bodies.")
+      .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
+                   locked(+[](BodyHandle& b, double friction) { setFriction(*b.state, friction); }),
+                   "0 to 1; multiplied by that of rigid bodies.")
       .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
                    "Total, without pinned nodes.")
-      .def(
-          "set_gravity",
-          [](BodyHandle& b, const std::optional<Vec3>& gravity) {
-            const Locked lock(*b.world);
-            if (gravity) {
-              check(alive(b).setGravity(toBullet(*gravity, "gravity")));
-            } else {
-              alive(b).followWorldGravity();
-            }
-          },
-          "gravity"_a.none(), "Its own gravity, world length / s^2; None: that of the world.")
+      .def("set_gravity", locked(+[](BodyHandle& b, const std::optional<Vec3>& gravity) {
+             if (gravity) {
+               check(alive(b).setGravity(toBullet(*gravity, "gravity")));
+             } else {
+               alive(b).followWorldGravity();
+             }
+           }),
+           "gravity"_a.none(), "Its own gravity, world length / s^2; None: that of the world.")
       .def_prop_ro("pinned", pinnedOf, "(nodes,) bool: which nodes are pinned. A new array.")
       .def("set_pinned", setPinned, "nodes"_a, "pinned"_a = true,
            "Pins nodes where they are, or releases them: a mask of booleans, or indices.")
@@ -223,25 +210,15 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def("transform", transform, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
            "Moves the whole body from where it is, at once, in its motion: rotated about the world's origin (x, y, z, "
            "w), then by position. Velocities and pinned nodes go along; what it has touched is forgotten.")
-      .def(
-          "reset",
-          [](BodyHandle& b) {
-            const Locked lock(*b.world);
-            b.world->reset(*b.state);
-          },
-          "Puts it back into the state in which it was added: where it was, at rest, with nothing remembered, so that "
-          "its steps are those of a new body. What has been set stays: pinned nodes, material, gravity, springs.")
+      .def("reset", locked(+[](BodyHandle& b) { b.world->reset(*b.state); }),
+           "Puts it back into the state in which it was added: where it was, at rest, with nothing remembered, so that "
+           "its steps are those of a new body. What has been set stays: pinned nodes, material, gravity, springs.")
       .def("apply_radial_impulse", radialImpulse, "centre"_a, "radius"_a, "strength"_a,
            "Pushes all of the surface in a ball away from its centre: an explosion. strength: sum of the magnitudes at "
            "all vertices.")
-      .def(
-          "remove",
-          [](BodyHandle& b) {
-            const Locked lock(*b.world);
-            b.world->remove(*b.state);
-          },
-          "Removes it from its world, with its contacts, springs and welds. Views of it stay valid. Removing it again "
-          "changes nothing.");
+      .def("remove", locked(+[](BodyHandle& b) { b.world->remove(*b.state); }),
+           "Removes it from its world, with its contacts, springs and welds. Views of it stay valid. Removing it again "
+           "changes nothing.");
 
   world
       .def("add_body", addBody, "cage"_a, "mesh"_a.none() = nb::none(), nb::kw_only(), "position"_a = Vec3{},
@@ -266,15 +243,12 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "bodies that have it; self_contact: with "
            "others and itself. Both make a distance grid of the surface once, which takes a second for 20,000 "
            "triangles.")
-      .def_prop_ro(
-          "bodies",
-          [](const std::shared_ptr<World>& w) {
-            const Locked lock(*w);
-            std::vector<BodyHandle> all;
-            for (const auto& state : w->bodies()) all.push_back({w, state});
-            return all;
-          },
-          "The soft bodies, in the order in which they were added.");
+      .def_prop_ro("bodies", locked(+[](const std::shared_ptr<World>& w) {
+                     std::vector<BodyHandle> all;
+                     for (const auto& state : w->bodies()) all.push_back({w, state});
+                     return all;
+                   }),
+                   "The soft bodies, in the order in which they were added.");
   return body;
 }
 

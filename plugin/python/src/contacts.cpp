@@ -116,17 +116,15 @@ void bindContacts(nb::module_& module, Class<World>& world) {
           },
           "body"_a,
           "Contacts of a soft body with rigid bodies at its surface, in the last substep in which it was awake.")
-      .def(
-          "forces_on",
-          [](const std::shared_ptr<World>& w, const Either& body, const std::optional<Either>& other) {
-            const Locked lock(*w);
-            const btCollisionObject& object = objectOf(body);
-            if (!other) return w->forces().forcesOn(object);
-            return w->forces().forcesBetween(object, objectOf(*other));
-          },
-          "body"_a, "other"_a = nb::none(),
-          "Forces on a soft body from all that it touches or is attached to, or on a rigid body from all soft bodies; "
-          "with other, from this alone.");
+      .def("forces_on",
+           locked(+[](const std::shared_ptr<World>& w, const Either& body, const std::optional<Either>& other) {
+             const btCollisionObject& object = objectOf(body);
+             if (!other) return w->forces().forcesOn(object);
+             return w->forces().forcesBetween(object, objectOf(*other));
+           }),
+           "body"_a, "other"_a = nb::none(),
+           "Forces on a soft body from all that it touches or is attached to, or on a rigid body from all soft bodies; "
+           "with other, from this alone.");
 }
 
 }  // namespace tetskin::python

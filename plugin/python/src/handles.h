@@ -29,6 +29,22 @@ auto unlocked(World& world, Work&& work) {
   return work();
 }
 
+inline World& worldOf(const std::shared_ptr<World>& world) {
+  return *world;
+}
+template <class Of>
+World& worldOf(const Of& handle) {
+  return *handle.world;
+}
+/// A call with the lock of the world that its first argument is of.
+template <class Return, class Of, class... Arguments>
+auto locked(Return (*call)(Of&, Arguments...)) {
+  return [call](Of& of, Arguments... arguments) -> Return {
+    const Locked lock(worldOf(of));
+    return call(of, std::forward<Arguments>(arguments)...);
+  };
+}
+
 /// Arrays that a handle keeps: only those of soft bodies.
 template <class State>
 struct Arrays {};

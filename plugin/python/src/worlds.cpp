@@ -93,15 +93,12 @@ Class<World> bindWorlds(nb::module_& module) {
       .def("restore", restore, "snapshot"_a,
            "Restores a state in place. The world has the same bodies and joints as when it was saved, made in the same "
            "order. On an Error nothing is changed.")
-      .def(
-          "shift_origin",
-          [](const std::shared_ptr<World>& w, const Vec3& origin) {
-            const Locked lock(*w);
-            w->shiftOrigin(toBullet(origin, "origin"));
-          },
-          "origin"_a,
-          "Makes a point the origin: it is subtracted from all positions in the world, which goes on as before. For "
-          "worlds that are large beside the digits of a float; best by multiples of 1,024.")
+      .def("shift_origin", locked(+[](const std::shared_ptr<World>& w, const Vec3& origin) {
+             w->shiftOrigin(toBullet(origin, "origin"));
+           }),
+           "origin"_a,
+           "Makes a point the origin: it is subtracted from all positions in the world, which goes on as before. For "
+           "worlds that are large beside the digits of a float; best by multiples of 1,024.")
       .def(
           "__reduce__",
           [](const std::shared_ptr<World>&) -> nb::tuple {
@@ -111,17 +108,12 @@ Class<World> bindWorlds(nb::module_& module) {
           },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"),
           "Raises a TypeError: what travels is what builds a world, and its snapshot.")
-      .def_prop_rw(
-          "gravity",
-          [](const std::shared_ptr<World>& w) {
-            const Locked lock(*w);
-            return vectorOf(w->bullet().getGravity());
-          },
-          [](const std::shared_ptr<World>& w, const Vec3& gravity) {
-            const Locked lock(*w);
-            w->bullet().setGravity(toBullet(gravity, "gravity"));
-          },
-          "(3,) float64, world length / s^2; that of all bodies without their own.");
+      .def_prop_rw("gravity",
+                   locked(+[](const std::shared_ptr<World>& w) { return vectorOf(w->bullet().getGravity()); }),
+                   locked(+[](const std::shared_ptr<World>& w, const Vec3& gravity) {
+                     w->bullet().setGravity(toBullet(gravity, "gravity"));
+                   }),
+                   "(3,) float64, world length / s^2; that of all bodies without their own.");
   return world;
 }
 

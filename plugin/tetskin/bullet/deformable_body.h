@@ -130,7 +130,6 @@ class TETSKIN_BULLET_API DeformableBody {
 
  private:
   struct Impl;
-  friend struct Access<DeformableBody>;
   explicit DeformableBody(std::unique_ptr<Impl> impl);
 
   std::unique_ptr<Impl> impl_;

@@ -208,8 +208,6 @@ struct DeformableBody::Impl final : BodyOwner {
   void enter();
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void visitState(WorldStream& stream) override;
-  btSoftBody& ownedBody() override { return *body; }
-  btDeformableLagrangianForce& elasticForce() override { return *elasticity; }
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == solver; }

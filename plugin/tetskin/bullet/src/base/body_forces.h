@@ -94,8 +94,6 @@ class BodyOwner {
  public:
   /// Writes or reads what it has of the body beside Bullet's state.
   virtual void visitState(WorldStream& stream) = 0;
-  virtual btSoftBody& ownedBody() = 0;
-  virtual btDeformableLagrangianForce& elasticForce() = 0;
 
  protected:
   ~BodyOwner() = default;
@@ -111,8 +109,6 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
  public:
   /// isToldOfRemovals  the solver calls `reinitialize` when a body has been removed, as Bullet's does
   BodyGravity(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals, BodyOwner& owner);
-  BodyOwner& owner() const { return owner_; }
-  btDeformableMultiBodyDynamicsWorld& world() const { return *world_; }
   /// The world that its body is about to enter; as in the constructor.
   void setWorld(btDeformableMultiBodyDynamicsWorld& world, ForceList& list, bool isToldOfRemovals);
 

@@ -25,26 +25,6 @@ std::uint64_t hashOfChunk(std::uint32_t kind, const Bytes& bytes) {
   return tetskin::hashOf(bytes.data(), bytes.size()) ^ kind;
 }
 
-/// The bytes of a chunk that has a function `visit`.
-template <class Content>
-Bytes bytesOf(Content& content) {
-  StateStream counted;
-  content.visit(counted);
-  Bytes bytes(counted.count());
-  StateStream written(bytes.data(), bytes.size());
-  content.visit(written);
-  return bytes;
-}
-
-template <class Content>
-std::optional<Content> contentOf(const Bytes& bytes) {
-  Content content;
-  StateStream read(bytes.data(), bytes.size());
-  content.visit(read);
-  if (read.failed() || read.count() != bytes.size()) return {};
-  return content;
-}
-
 }  // namespace
 
 void StepChunk::visit(StateStream& stream) {
@@ -56,10 +36,19 @@ void StepChunk::visit(StateStream& stream) {
   stream.array(motion);
 }
 Bytes StepChunk::toBytes() {
-  return bytesOf(*this);
+  StateStream counted;
+  visit(counted);
+  Bytes bytes(counted.count());
+  StateStream written(bytes.data(), bytes.size());
+  visit(written);
+  return bytes;
 }
 std::optional<StepChunk> StepChunk::fromBytes(const Bytes& bytes) {
-  return contentOf<StepChunk>(bytes);
+  StepChunk chunk;
+  StateStream read(bytes.data(), bytes.size());
+  chunk.visit(read);
+  if (read.failed() || read.count() != bytes.size()) return {};
+  return chunk;
 }
 
 Status RecordWriter::open(const std::string& path) {

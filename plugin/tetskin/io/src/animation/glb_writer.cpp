@@ -5,7 +5,7 @@
 #include <tetskin/io/src/animation/affine_bone.h>
 #include <tetskin/io/src/animation/glb_scene.h>
 #include <tetskin/io/src/animation/skinned_geometry.h>
-#include <tetskin/io/src/mesh/gltf_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/text/atomic_file.h>
 #include <tetskin/io/src/text/file_text.h>
 

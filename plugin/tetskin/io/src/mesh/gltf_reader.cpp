@@ -7,8 +7,8 @@
 // This work is based on:
 //   "glTF 2.0 Specification", Khronos Group, 2021
 #include <tetskin/io/src/mesh/gltf_accessors.h>
-#include <tetskin/io/src/mesh/gltf_reader.h>
 #include <tetskin/io/src/mesh/gltf_text.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/mesh/scene_mesh.h>
 #include <tetskin/io/src/mesh/unit_normal.h>
 #include <tetskin/io/src/text/file_text.h>

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/io/files.h>
-#include <tetskin/io/src/mesh/assimp_reader.h>
-#include <tetskin/io/src/mesh/gltf_reader.h>
-#include <tetskin/io/src/mesh/obj_reader.h>
-#include <tetskin/io/src/mesh/off_reader.h>
-#include <tetskin/io/src/mesh/ply_reader.h>
-#include <tetskin/io/src/mesh/stl_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/text/file_text.h>
 
 namespace tetskin {

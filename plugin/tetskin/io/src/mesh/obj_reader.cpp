@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/io/src/mesh/obj_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/mesh/obj_scanner.h>
 #include <tetskin/io/src/mesh/polygon.h>
 #include <tetskin/io/src/mesh/unit_normal.h>

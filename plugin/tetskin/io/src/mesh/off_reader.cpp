@@ -3,7 +3,7 @@
 //
 // This work is based on:
 //   "Geomview Manual", The Geometry Center, chapter "OFF Files"
-#include <tetskin/io/src/mesh/off_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/mesh/polygon.h>
 #include <tetskin/io/src/mesh/unit_normal.h>
 #include <tetskin/io/src/text/coordinate_fault.h>

@@ -4,8 +4,8 @@
 // This work is based on:
 //   Greg Turk, "The PLY Polygon File Format", 1994
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/mesh/ply_header.h>
-#include <tetskin/io/src/mesh/ply_reader.h>
 #include <tetskin/io/src/mesh/polygon.h>
 #include <tetskin/io/src/mesh/unit_normal.h>
 #include <tetskin/io/src/text/coordinate_fault.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/io/src/mesh/stl_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/text/binary_numbers.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 #include <tetskin/io/src/text/file_text.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/io/src/mesh/assimp_reader.h>
+#include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/text/file_text.h>
 
 namespace tetskin::io {

@@ -42,7 +42,7 @@ class Cutter {
  public:
   Cutter(FileCage& file, TetFileReport& report) : file_(file), mesh_(file.cage.mesh), report_(report) {}
 
-  Status cut(CurvedEdges curved);
+  Status cut(ReadAs as);
 
  private:
   Status checkNodes(const HighOrderTet& tet) const;
@@ -62,7 +62,7 @@ class Cutter {
   std::vector<HalvedEdge> edges_;
 };
 
-Status Cutter::cut(CurvedEdges curved) {
+Status Cutter::cut(ReadAs as) {
   assert(!file_.highOrder.empty());
   Status status = collectEdges();
   if (!status.ok()) return status;
@@ -72,7 +72,7 @@ Status Cutter::cut(CurvedEdges curved) {
   const std::vector<Eigen::Vector3d> given = mesh_.nodes;
   placeMiddles(given);
   cutTets();
-  if (curved == CurvedEdges::Kept) {
+  if (as == ReadAs::Tets) {
     mesh_.nodes = given;
     report_.movedNodes = 0;
     report_.farthestMove = 0.0;
@@ -190,8 +190,8 @@ void Cutter::cutTets() {
 
 }  // namespace
 
-Status cutHighOrderTets(CurvedEdges curved, FileCage& file, TetFileReport& report) {
-  return file.highOrder.empty() ? Status() : Cutter(file, report).cut(curved);
+Status cutHighOrderTets(ReadAs as, FileCage& file, TetFileReport& report) {
+  return file.highOrder.empty() ? Status() : Cutter(file, report).cut(as);
 }
 
 }  // namespace tetskin::io

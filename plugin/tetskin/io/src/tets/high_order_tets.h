@@ -25,16 +25,14 @@ struct FileCage {
   std::vector<HighOrderTet> highOrder;  ///< ascending
 };
 
-/// Where nodes on edges are to be.
-enum class CurvedEdges {
-  Kept,          ///< as in the file, for tets alone
-  Straightened,  ///< at the middles of their edges, for quadratic tets
-};
+/// What a file is read as: its tets alone, with nodes on edges where the file has them; or a cage, with what `saveCage`
+/// writes with it, and nodes on edges at their middles, for quadratic tets.
+enum class ReadAs { Tets, Cage };
 
 /// Cuts tets of second order into eight, which become quadratic tets unless they are flat.
 /// Errors  Malformed, with the line: nodes that cannot be on the edges; UnsupportedFormat: tets of first order that
 /// have
 ///         such an edge, so that a node would be on the edge of a tet that does not have it; TooLarge
-Status cutHighOrderTets(CurvedEdges curved, FileCage& file, TetFileReport& report);
+Status cutHighOrderTets(ReadAs as, FileCage& file, TetFileReport& report);
 
 }  // namespace tetskin::io

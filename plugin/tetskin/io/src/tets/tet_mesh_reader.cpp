@@ -3,8 +3,7 @@
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/tets/high_order_tets.h>
-#include <tetskin/io/src/tets/tetgen_file.h>
-#include <tetskin/io/src/tets/vtk_file.h>
+#include <tetskin/io/src/tets/tet_readers.h>
 #include <tetskin/io/src/text/file_text.h>
 
 #include <cstdio>
@@ -13,9 +12,9 @@ namespace tetskin {
 
 namespace {
 
-Result<io::FileCage> readByExtension(const std::string& path, io::VtkData data, TetFileReport& report) {
+Result<io::FileCage> readByExtension(const std::string& path, io::ReadAs as, TetFileReport& report) {
   const std::string extension = io::lowerExtension(path);
-  if (extension == ".vtk") return io::readVtkFile(path, data, report);
+  if (extension == ".vtk") return io::readVtkFile(path, as, report);
   if (extension == ".node" || extension == ".ele") return io::readTetgenFiles(path);
   const std::string what =
       extension == ".vtu" || extension == ".pvtu"
@@ -25,18 +24,18 @@ Result<io::FileCage> readByExtension(const std::string& path, io::VtkData data, 
   return io::fileError(StatusCode::UnsupportedFormat, path, 0, what);
 }
 
-Result<Cage> load(const std::string& path, io::VtkData data, io::CurvedEdges curved, TetFileReport* report) {
+Result<Cage> load(const std::string& path, io::ReadAs as, TetFileReport* report) {
   TetFileReport ignored;
   TetFileReport& found = report ? *report : ignored;
   found = {};
-  Result<io::FileCage> file = readByExtension(path, data, found);
+  Result<io::FileCage> file = readByExtension(path, as, found);
   if (!file.ok()) return file.status();
   if (file.value().cage.mesh.tets.empty()) {
     return io::fileError(StatusCode::Empty, path, 0,
                          "has no tets" + (found.skippedCells > 0 ? ": " + found.describe() : std::string()) +
                              "; export a volume mesh of tets");
   }
-  if (Status status = io::cutHighOrderTets(curved, file.value(), found); !status.ok()) return status;
+  if (Status status = io::cutHighOrderTets(as, file.value(), found); !status.ok()) return status;
   return std::move(file.value().cage);
 }
 
@@ -56,13 +55,13 @@ std::string TetFileReport::describe() const {
 }
 
 Result<TetMesh> loadTetMesh(const std::string& path, TetFileReport* report) {
-  Result<Cage> cage = load(path, io::VtkData::Skipped, io::CurvedEdges::Kept, report);
+  Result<Cage> cage = load(path, io::ReadAs::Tets, report);
   if (!cage.ok()) return cage.status();
   return std::move(cage.value().mesh);
 }
 
 Result<Cage> loadCage(const std::string& path, TetFileReport* report) {
-  Result<Cage> cage = load(path, io::VtkData::OfCage, io::CurvedEdges::Straightened, report);
+  Result<Cage> cage = load(path, io::ReadAs::Cage, report);
   if (!cage.ok()) return cage;
   const Status status = validateAttributes(cage.value());
   if (status.ok()) return cage;

@@ -3,7 +3,7 @@
 //
 // This work is based on:
 //   Hang Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", file formats .node and .ele
-#include <tetskin/io/src/tets/tetgen_file.h>
+#include <tetskin/io/src/tets/tet_readers.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_records.h>

@@ -3,8 +3,8 @@
 //
 // This work is based on:
 //   "VTK File Formats", Kitware, chapter "Simple Legacy Formats" (versions 2.0 to 5.1)
+#include <tetskin/io/src/tets/tet_readers.h>
 #include <tetskin/io/src/tets/vtk_cage_data.h>
-#include <tetskin/io/src/tets/vtk_file.h>
 #include <tetskin/io/src/tets/vtk_text.h>
 #include <tetskin/io/src/text/coordinate_fault.h>
 
@@ -26,8 +26,8 @@ constexpr int kVtkBezierTet = 79;
 
 class VtkReader {
  public:
-  VtkReader(const std::string& path, std::string_view text, VtkData data, TetFileReport& report)
-      : file_(path, text), withData_(data == VtkData::OfCage), report_(report) {}
+  VtkReader(const std::string& path, std::string_view text, ReadAs as, TetFileReport& report)
+      : file_(path, text), withData_(as == ReadAs::Cage), report_(report) {}
   Result<FileCage> read();
 
  private:
@@ -324,12 +324,12 @@ Status VtkReader::checkSize(std::size_t cell) const {
 
 }  // namespace
 
-Result<FileCage> readVtkFile(const std::string& path, VtkData data, TetFileReport& report) {
+Result<FileCage> readVtkFile(const std::string& path, ReadAs as, TetFileReport& report) {
   Result<std::string> text = readFile(path);
   if (!text.ok()) return text.status();
   // In binary data, a carriage return is a byte like any other, but the lines before the data end with a line feed.
   if (text.value().find('\n') == std::string::npos) text.value() = withLineFeeds(std::move(text.value()));
-  return VtkReader(path, text.value(), data, report).read();
+  return VtkReader(path, text.value(), as, report).read();
 }
 
 }  // namespace tetskin::io

@@ -173,7 +173,7 @@ void Joint::makeSpring(btScalar seconds, PointJoint& row) const {
 void Joint::addJoints(btScalar seconds, std::vector<PointJoint>& joints) {
   added_ = 0;
   slept_ = false;
-  if (spent() || point_.status() != StatusCode::Ok) return;
+  if (!body() || point_.status() != StatusCode::Ok) return;
   slept_ = !point_.body()->isActive();
   wake();
   const btTransform anchor = anchor_.inWorld();

@@ -12,14 +12,16 @@
 // constrain six directions, which is all that a rigid motion has.
 #pragma once
 
+#include <tetskin/bullet/src/base/row_source.h>
 #include <tetskin/touch/src/joints/joint_anchor.h>
 #include <tetskin/touch/src/points/point_jacobian.h>
-#include <tetskin/touch/src/rows/surface_joint_rows.h>
 
 #include <limits>
 #include <memory>
 
 namespace tetskin::touch_detail {
+
+using namespace bullet_detail;
 
 struct JointSettings {
   bool turns = false;                                         ///< true for a weld, which also constrains rotation
@@ -29,11 +31,12 @@ struct JointSettings {
   bool collide = false;
 };
 
-class Joint : public ActiveJoint {
+/// It acts while it is among the rows of its world.
+class Joint {
  public:
   /// The point's status must be Ok.
   Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSettings& settings);
-  ~Joint() override;
+  ~Joint();
   Joint(const Joint&) = delete;
   Joint& operator=(const Joint&) = delete;
 
@@ -50,15 +53,21 @@ class Joint : public ActiveJoint {
   /// Of a weld: the angle between the current and the initial rotation of the point relative to the anchor, in radians.
   btScalar turn() const;
 
-  btSoftBody* body() const override { return dropped_ ? nullptr : point_.body(); }
-  bool isInWorld() const override;
-  void drop() override;
-  bool spent() const override { return !body(); }
-  void addJoints(btScalar seconds, std::vector<PointJoint>& joints) override;
-  void finish(btScalar seconds, const PointJoint* joints) override;
-  void shift(const btVector3& by) override;
-  void visitState(WorldStream& stream) override;
-  void checkState(WorldStream& stream) override;
+  /// The body on which it acts; null if the body has been destroyed.
+  btSoftBody* body() const { return dropped_ ? nullptr : point_.body(); }
+  /// True if its living body is in the world in which it was made.
+  bool isInWorld() const;
+  /// Called when a body has left the world of which it is not known whether it will live.
+  void drop();
+  /// Adds the constraints of the step.
+  void addJoints(btScalar seconds, std::vector<PointJoint>& joints);
+  /// joints  those that addJoints has added, with their impulses
+  void finish(btScalar seconds, const PointJoint* joints);
+  void shift(const btVector3& by);
+  /// Writes or reads what changes, for snapshots.
+  void visitState(WorldStream& stream);
+  /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
+  void checkState(WorldStream& stream);
 
  private:
   CarriedPoint carriedPoint() const;

@@ -4,7 +4,7 @@
 // Internal to tetskin::touch: what springs and welds have in common.
 #pragma once
 
-#include <tetskin/touch/src/joints/joint.h>
+#include <tetskin/touch/src/joints/joint_rows.h>
 
 class btDiscreteDynamicsWorld;
 

@@ -5,7 +5,7 @@
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/base/world_stream.h>
-#include <tetskin/touch/src/rows/surface_joint_rows.h>
+#include <tetskin/touch/src/joints/joint_rows.h>
 
 #include <algorithm>
 #include <cassert>
@@ -24,8 +24,8 @@ std::shared_ptr<SurfaceJointRows> SurfaceJointRows::instanceOf(DeformableSolver&
   return std::make_shared<SurfaceJointRows>(solver);
 }
 
-void SurfaceJointRows::add(std::shared_ptr<ActiveJoint> joint) {
-  assert(joint && !joint->spent());
+void SurfaceJointRows::add(std::shared_ptr<Joint> joint) {
+  assert(joint && joint->body());
   solver_.requireOwnSolve();
   active_.push_back(std::move(joint));
   if (listed_) return;
@@ -34,7 +34,7 @@ void SurfaceJointRows::add(std::shared_ptr<ActiveJoint> joint) {
   solver_.getLagrangianForceArray()->push_back(this);
 }
 
-void SurfaceJointRows::remove(const ActiveJoint& joint) {
+void SurfaceJointRows::remove(const Joint& joint) {
   const auto found =
       std::find_if(active_.begin(), active_.end(), [&](const auto& item) { return item.get() == &joint; });
   if (found == active_.end()) return;
@@ -58,7 +58,7 @@ void SurfaceJointRows::removeSoftBody(btSoftBody* body) {
 }
 
 void SurfaceJointRows::eraseSpent() {
-  active_.erase(std::remove_if(active_.begin(), active_.end(), [](const auto& joint) { return joint->spent(); }),
+  active_.erase(std::remove_if(active_.begin(), active_.end(), [](const auto& joint) { return !joint->body(); }),
                 active_.end());
   if (active_.empty()) leave();
 }
@@ -82,7 +82,7 @@ void SurfaceJointRows::finish(btScalar seconds) {
 
 void SurfaceJointRows::shift(const btVector3& by) {
   for (const auto& joint : active_) {
-    if (!joint->spent()) joint->shift(by);
+    if (joint->body()) joint->shift(by);
   }
 }
 
