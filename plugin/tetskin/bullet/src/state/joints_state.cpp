@@ -212,7 +212,7 @@ const typename Classes::value_type* classOf(const Classes& classes, const Base& 
   return nullptr;
 }
 
-/// Of joints between rigid bodies, also how one is made; its settings are replaced.
+/// For joints between rigid bodies, also how to make one, whose settings are then replaced.
 struct RigidJointClass : JointClass<btTypedConstraint> {
   btTypedConstraint* (*make)(btRigidBody& a, btRigidBody& b);
 };
@@ -301,7 +301,7 @@ void visitFeedback(WorldStream& stream, btTypedConstraint& joint) {
   visitAll(stream, f.m_appliedForceBodyA, f.m_appliedTorqueBodyA, f.m_appliedForceBodyB, f.m_appliedTorqueBodyB);
 }
 
-/// It has no memory for them before its first step.
+/// A joint has no memory for its impulses before its first step.
 void visitImpulses(WorldStream& stream, btMultiBodyConstraint& joint) {
   auto& data = joint.*memberOf(JointData());
   for (int row = 0; row < joint.getNumRows(); ++row) {

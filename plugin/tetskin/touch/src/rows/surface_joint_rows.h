@@ -39,7 +39,7 @@ class ActiveJoint {
   virtual void shift(const btVector3& by) = 0;
   /// Writes or reads what changes, for snapshots.
   virtual void visitState(WorldStream& stream) = 0;
-  /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
+  /// Writes what does not change, and must be the same in the world in which a snapshot is restored.
   virtual void checkState(WorldStream& stream) = 0;
   /// Writes what it is made of, for recorded runs.
   virtual void describe(BuildStream& stream) = 0;

@@ -46,7 +46,7 @@ class TETSKIN_CORE_API Bvh {
   template <class Scalar>
   Bvh(const std::vector<BvhBox<Scalar>>& boxes, const std::vector<int>& items, int leafSize);
 
-  /// Writes or reads the tree. What was read is to be tested by `isValid`.
+  /// Writes or reads the tree. Call `isValid` for what was read.
   template <class Stream>
   void visitState(Stream& stream) {
     stream.each(nodes_, [&](Node& node) { stream(node.first), stream(node.last), stream(node.right); });
@@ -70,7 +70,7 @@ class TETSKIN_CORE_API Bvh {
   template <class Value, class FromItems, class FromChildren>
   void fill(std::vector<Value>& values, FromItems&& fromItems, FromChildren&& fromChildren) const;
 
-  /// Computes the nodes' boxes from those of the items, `boxOf(index)`. Cost as of `fill`
+  /// Computes the nodes' boxes from those of the items, `boxOf(index)`. Cost as for `fill`
   template <class Box, class BoxOf>
   void fit(std::vector<Box>& boxes, BoxOf&& boxOf) const;
 
