@@ -31,8 +31,8 @@ constexpr double kAccepted = 3.0;
 constexpr double kLeftShare = 1e-3;
 /// Sum of the impulses' sizes on a body, over the size of their sum, from which on it counts as squeezed. The error
 /// that a solve leaves is a share of the impulses: if a light body between heavy ones took it up, it would keep
-/// shaking, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold
-/// what spins around what it is joined to, as a tyre its hub, and impulses that were changed would turn the other body.
+/// shaking, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold what spins around
+/// what it is joined to, as a tyre its hub, and impulses that were changed would turn the other body.
 constexpr double kSqueezed = 30.0;
 
 }  // namespace
