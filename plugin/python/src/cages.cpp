@@ -109,8 +109,8 @@ void bindCages(nb::module_& module) {
             new (self) CageModel(made(nodes, tets));
           },
           "nodes"_a, "tets"_a,
-          "A cage of tets alone. nodes: (n, 3) numbers, any unit; tets: (t, 4) integers, of which those that are "
-          "oriented negatively are reversed.")
+          "A cage of tets alone. nodes: (n, 3) numbers, any unit; tets: (t, 4) integers; tets that are oriented "
+          "negatively are reversed.")
       .def_prop_ro(
           "nodes", [](const CageModel& m) { return view3(viewOf(m.cage->mesh.nodes), m.cage); },
           "(n, 3) float64, rest space. A read-only view.")
@@ -134,7 +134,7 @@ void bindCages(nb::module_& module) {
                    "(t,) int32: equal for all duplicates of one tet. A read-only view.")
       .def_prop_ro(
           "quadratic_tet", arrayOf<&Cage::quadraticTet>(),
-          "(t,) int32: number of the quadratic tet of which the tet is one of eight; -1: linear. A read-only view.")
+          "(t,) int32: number of the quadratic tet that the tet is an eighth of; -1: linear. A read-only view.")
       .def_prop_ro(
           "node_count", [](const CageModel& m) { return m.cage->mesh.nodeCount(); }, "Number of nodes.")
       .def_prop_ro(

@@ -172,7 +172,7 @@ void bindSkins(nb::module_& module) {
           "nodes"_a, "Computes the bones for these nodes, (n, 3) numbers, world space. Returns bones.")
       .def_prop_ro("bones", &Palette::array,
                    "(n, 3, 4) or (n, 4, 4) float32. A read-only view, which each update overwrites.")
-      .def_prop_ro("bone_count", &Palette::count, "Number of nodes, of which each has a bone.")
+      .def_prop_ro("bone_count", &Palette::count, "Number of nodes: each has a bone.")
       .def_prop_ro(
           "vertex_bones", [](const Palette& palette) { return rows4(palette.skinned().bones); },
           "(vertices, 4) uint16: the bones of each vertex. A new array.")

@@ -82,11 +82,10 @@ Class<World> bindWorlds(nb::module_& module) {
           "gravity: world length / s^2. threads: number that work on a step; results are the same to the bit with any. "
           "deterministic: the same bits on other "
           "processors, for some percent of the time. record_forces: for forces_on.")
-      .def(
-          "step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
-          "Goes on by dt seconds, in so many steps of Bullet's, and updates all surfaces; returns the number of steps "
-          "made: none for 0 seconds. The GIL is released. An Error of the code NON_FINITE comes after the step: a body "
-          "has exploded.")
+      .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
+           "Advances by dt seconds in `substeps` steps of Bullet's, and updates all surfaces; returns the number of "
+           "steps made: none for 0 seconds. The GIL is released. An Error of the code NON_FINITE comes after the step: "
+           "a body has exploded.")
       .def("save", save,
            "The state of the world, as bytes, from which restore goes on to the last bit: in this process or another, "
            "on any number of threads.")

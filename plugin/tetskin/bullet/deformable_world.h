@@ -181,11 +181,12 @@ class TETSKIN_BULLET_API DeformableWorld : private DeformableWorldObjects, publi
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
 
-  /// As of Bullet, but steps in which gravity moves a soft body by more than 6 % of its size are divided, into at most
+  /// As in Bullet, but steps in which gravity moves a soft body by more than 6 % of its size are divided, into at most
   /// 64: after a hitch, or with a body of some millimetres. A tick callback is called in each part, with its length.
   /// Limits of joints that are impulses per step (hinges' motors, multibodies' joints, where a joint breaks) are
   /// divided, too. Within it, the world can be neither saved nor restored. A time that is negative or not finite, or a
-  /// fixedTimeStep of 0, changes nothing. Returns  the number of steps, parts counted
+  /// fixedTimeStep of 0, changes nothing.
+  /// Returns  the number of steps, parts counted
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
 

@@ -113,7 +113,7 @@ struct QuadraticTet {
   std::array<int, kSubTets> tets{};  ///< of the cage, ascending
 };
 
-/// The quadratic tets that `Cage::quadraticTet` tells of, by their number; none if it is empty. Cost O(T) for T tets.
+/// The quadratic tets that `Cage::quadraticTet` names, by their number; none if it is empty. Cost O(T) for T tets.
 /// cage    its indices are in range
 /// Errors  SizeMismatch: another number of values than tets; InvalidOption: a number below -1, or that leaves one out;
 ///         the tets of one number are not eight, or not the uniform refinement of a tet

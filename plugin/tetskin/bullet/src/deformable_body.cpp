@@ -222,7 +222,7 @@ struct DeformableBody::Impl final : BodyOwner {
   }
   /// Ok if the body may be put elsewhere now.
   Status checkIsPlaced(const std::string& call) const;
-  /// What lies on the body, or beside it, is to find out that it has gone.
+  /// Wakes what lies on the body or beside it, since the body has gone.
   void wakeNeighbours();
   bool solverLives() const { return !hasOwnSolver || deformableSolver(solver); }
   Status checkNode(int node) const {
@@ -339,7 +339,7 @@ SolverPath DeformableBody::solverPath() const {
   return impl_->forceModel == ForceModel::Corotated ? SolverPath::Solver : SolverPath::Bullet;
 }
 
-/// As the world would remove it, without telling the solver, which has been destroyed before the world.
+/// Removes the body as the world would, but does not tell the solver, which was destroyed before the world.
 void DeformableBody::Impl::leaveWithoutSolver() {
   assert(isInItsWorld());
   world->getSoftBodyArray().remove(body.get());

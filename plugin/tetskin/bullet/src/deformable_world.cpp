@@ -135,7 +135,7 @@ btCollisionDispatcher& DeformableWorld::dispatcher() {
   return impl_->dispatcher;
 }
 
-/// As of btDeformableMultiBodyDynamicsWorld. Of a deterministic world, turns by our own sine after Bullet's.
+/// As btDeformableMultiBodyDynamicsWorld does; in a deterministic world, our own sine then turns the rigid bodies.
 void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
   btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);  // NOLINT(bugprone-parent-virtual-call): the soft ones below
   if (impl_->deformableSolver.deterministic()) RigidTurns::predict(m_nonStaticRigidBodies, dt);
@@ -143,7 +143,7 @@ void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
   impl_->deformableSolver.predictMotion(dt);
 }
 
-/// As of btDeformableMultiBodyDynamicsWorld, likewise.
+/// Likewise.
 void DeformableWorld::integrateTransforms(btScalar dt) {
   if (impl_->forces) impl_->forces->end();
   if (!impl_->deformableSolver.deterministic()) return btDeformableMultiBodyDynamicsWorld::integrateTransforms(dt);

@@ -82,17 +82,17 @@ class OwnForce : public Force {
     Force::removeSoftBody(body);
     if (this->m_softBodies.size() == 0) replaceByNothing(*list_, this);
   }
-  /// Of the world that its body is about to enter.
+  /// Sets the list of the world that the body is about to enter.
   void setList(ForceList& list) { list_ = &list; }
 
  protected:
   ForceList* list_;
 };
 
-/// What has created a body, its gravity and its elasticity.
+/// The owner of a body, which has created its gravity and its elasticity.
 class BodyOwner {
  public:
-  /// Writes or reads what it has of the body beside Bullet's state.
+  /// Writes or reads its own data of the body, beside Bullet's state.
   virtual void visitState(WorldStream& stream) = 0;
 
  protected:

@@ -34,7 +34,7 @@ TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
 /// faces + nodes) without a rebuild; nothing if the flag is not set.
 void updateConstants(btSoftBody& body);
 
-/// What tells, as long as the body lives, whether its nodes may have moved.
+/// Tells whether the nodes of a body may have moved; it exists as long as the body.
 struct NodeMoves {
   std::uint64_t count = 1;
   /// The solver whose steps count; null if none does. If the body has another one, its world moves nodes uncounted.
@@ -71,10 +71,10 @@ class BodyWithTrees : public btSoftBody {
     moves_->counter = solver;
     countMove();  // whatever has happened in between
   }
-  /// What finds the contacts of other points than the nodes with rigid objects; expired if there is nothing.
+  /// Finds contacts of points other than the nodes with rigid objects; expired if nothing does.
   const std::weak_ptr<BodyContacts>& surfaceContacts() const { return surfaceContacts_; }
   void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
-  /// What finds the contacts of the nodes, or null.
+  /// Finds the contacts of the nodes; or null.
   const std::shared_ptr<BodyContacts>& nodeContacts() const { return nodeContacts_; }
   /// size  of the body, when they were made
   void setNodeContacts(std::shared_ptr<BodyContacts> contacts, btScalar size) {

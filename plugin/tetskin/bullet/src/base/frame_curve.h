@@ -44,7 +44,7 @@ struct FrameCurve {
   }
 };
 
-/// What is known of the frames before. All zero: it stands.
+/// The motion in the frames before. All zero: it stands.
 struct FrameMotion {
   btVector3 velocity{0, 0, 0};               ///< at the end of the last frame, per second
   btVector3 mean{0, 0, 0}, before{0, 0, 0};  ///< mean velocities of the last frame and of the one before

@@ -21,7 +21,7 @@ struct NodePush {
 };
 using NodePushes = std::vector<NodePush>;  ///< a node may have several
 
-/// Those of one solver. It is not in the list of forces.
+/// The loads of one solver. It is not in the list of forces.
 class NodeLoads : public RowSource {
  public:
   void add(btSoftBody& body, NodePushes forces, int steps);

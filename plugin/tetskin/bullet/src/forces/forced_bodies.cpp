@@ -200,7 +200,7 @@ void ForcedBody::visitState(WorldStream& stream) {
       dynamics->setMass(at, mass);
     } else {
       outdated |= dynamics->matrix().mass(at) != mass;
-      // What is pinned is led to where the application has it: the step that goes on finds out whether it jumps.
+      // Pinned nodes are led to where the application has them: the next step finds out whether they jump.
       continues &= !(node.m_im > 0) || dynamics->continues(at, node.m_x, node.m_vn);
     }
   }

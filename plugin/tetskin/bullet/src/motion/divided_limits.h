@@ -29,7 +29,7 @@ class DividedLimits {
 
   btMultiBodyDynamicsWorld& world_;
   btScalar parts_;
-  // By joint, which a callback may remove.
+  // By joint: a callback may have removed it.
   std::vector<std::pair<const btTypedConstraint*, Limit>> breaking_, motors_;
   std::vector<std::pair<const btMultiBodyConstraint*, Limit>> multibodies_;
 };

@@ -123,7 +123,7 @@ class LedToTargets::StandIn : public btMotionState {
     body_.*memberOf(MotionStateMember()) = own_;
     isDone_ = true;
   }
-  /// For a step of no time, in which Bullet does not ask.
+  /// For a step of zero length, in which Bullet does not ask the motion state.
   void giveBackIn(const btCollisionObjectArray& objects) const {
     if (isDone_ || objects.findLinearSearch(&body_) == objects.size()) return;
     if (body_.getMotionState() == this) giveBack();

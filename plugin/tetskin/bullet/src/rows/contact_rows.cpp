@@ -102,7 +102,7 @@ btVector3 velocityBefore(const SolvedBody& body, const CarriedPoint& point) {
   return point.sum([&](int n) { return fromPoint(body.dynamics->velocity(static_cast<std::size_t>(n))); });
 }
 
-/// What rounding has taken from the position of a point: where a body rests on something, it moves by less than that.
+/// The part of a point's position that rounding has cut off: a body at rest on something moves by less than that.
 btVector3 remainderAt(const SolvedBody& body, const CarriedPoint& point) {
   if (!body.elastic) return {0, 0, 0};
   return point.sum([&](int n) {
@@ -164,8 +164,8 @@ btVector3 visibleOffset(const btVector3& offset, const btVector3& position) {
   return seen;
 }
 
-/// What the step before has stored about this contact: with the same sample, or with another one of the point, which it
-/// may have taken turns with. Null: nothing.
+/// The anchor that the step before has stored for this contact, with the same sample, or with another one of the point:
+/// samples may take turns. Or null.
 const FrictionAnchor* anchorFrom(const std::vector<FrictionAnchor>& anchors, const ContactRow& row,
                                  const RowOrigin& origin) {
   const auto less = [](const FrictionAnchor& a, const FrictionAnchor& b) { return a.point < b.point; };
@@ -439,7 +439,7 @@ btScalar ContactRows::likeUsual(btScalar seconds) const {
   return static_cast<btScalar>(std::min(std::max(steps * steps, 1.0 / kMostOtherwise), kMostOtherwise));
 }
 
-/// Of rows that do not touch, those that are as near as in a usual step: in longer ones, there are more.
+/// Counts rows that touch, and others only if they are as near as in a usual step: longer steps have more of them.
 void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
   loads_.resize(bodies.bodies().size());
   for (std::size_t b = 0; b < loads_.size(); ++b) {

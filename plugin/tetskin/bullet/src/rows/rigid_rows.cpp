@@ -136,8 +136,8 @@ class RigidRowCollector {
   std::unordered_map<const void*, std::vector<std::size_t>> edgesOf_;  ///< by the bodies' keys: in `edges_`
 };
 
-/// What a bounded row is short of the velocity that Bullet was to give it: all that its bound has cost, as far as the
-/// impulse, which is at that bound, may still grow or shrink.
+/// The velocity that a row lacks because its impulse is at a bound: all that the bound has cost, as far as the impulse
+/// may still grow or shrink.
 btScalar missingVelocity(const JointRows& rows, std::size_t row, btScalar impulse, btScalar velocity) {
   const btScalar missing = rows.number(rows.rest, row) - velocity;
   const btScalar lowest = rows.number(rows.lowest, row), highest = rows.number(rows.highest, row);

@@ -110,7 +110,7 @@ class SolverBodies {
   void clear();
   /// Call it between steps: what is known of a body from the step before, and of others that have touched it.
   void forget(const btSoftBody& body);
-  /// The trees of all bodies are to be fitted in the next step.
+  /// The trees of all bodies must be fitted in the next step.
   void forgetTrees();
 
   std::vector<SolvedBody>& bodies() { return bodies_; }

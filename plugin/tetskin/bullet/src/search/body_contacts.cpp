@@ -86,7 +86,7 @@ BodyContacts::BodyContacts(const btDispatcher* dispatcher, BodyWithTrees& body, 
       thickness_(thickness),
       maxRemembered_(maxRemembered(search_.patches())) {}
 
-/// What sleeps is searched for at once: a contact wakes it, before Bullet finds out what moves.
+/// Sleeping objects are searched for at once: a contact wakes them, before Bullet finds out what moves.
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   assert(bodyLives());
   const btCollisionObject& object = *rigid.getCollisionObject();
@@ -120,7 +120,7 @@ void BodyContacts::readNodes() {
     const btSoftBody::Node& node = body_.m_nodes[n];
     nodes_[static_cast<std::size_t>(n)] = {node.m_x, node.m_x + body_.m_sst.sdt * node.m_v};
   }
-  // What is known to be clear is so by a distance from the margin.
+  // Known clearances are distances beyond the margin.
   const btScalar margin = body_.margin();
   for (auto known = known_.begin(); known != known_.end() && margin != margin_; ++known) {
     for (auto& [number, shape] : known->second.shapes) shape.memory = {};
@@ -232,7 +232,7 @@ void BodyContacts::forgetAll() {
   body_.pointContacts().clear();
 }
 
-/// What was found to be clear is searched again, with the same result.
+/// Clearances are dropped, and found again with the same result.
 void BodyContacts::shift(const btVector3& by) {
   for (auto& [object, known] : known_) {
     for (auto& [number, shape] : known.shapes) {

@@ -45,7 +45,7 @@ class BodyContacts {
   BodyContacts& operator=(const BodyContacts&) = delete;
 
   const btDispatcher* dispatcher() const { return dispatcher_; }
-  /// Of another world, which the body is about to enter.
+  /// Sets the dispatcher of another world, which the body is about to enter.
   void setDispatcher(const btDispatcher* dispatcher) { dispatcher_ = dispatcher; }
   /// If this is false, only `forget` and the accessors may be called.
   bool bodyLives() const { return !lifetime_.expired(); }
@@ -98,7 +98,7 @@ class BodyContacts {
   btScalar thickness_;
   btScalar margin_ = 0;  ///< of the last search
   std::vector<NodePath> nodes_;
-  unsigned nodesRead_ = 0;    ///< BodyWithTrees::predictions when they were read; 0: they are to be read
+  unsigned nodesRead_ = 0;    ///< BodyWithTrees::predictions when they were read; 0: they must be read
   std::vector<Met> waiting_;  ///< those that are yet to be searched for
   ExactProbe exact_;
   HullProbe hull_;

@@ -125,7 +125,7 @@ const KinematicPath& KinematicPaths::advance(const btRigidBody& body, btScalar s
     if (path.done <= kMaxSteps) ++path.done;
     return path;
   }
-  // What the body did before tells nothing if it has stood for long, or has been moved once alone.
+  // The earlier motion tells nothing if the body has stood for long, or has been moved only once.
   path.last = path.last > 0 || path.done > 1 ? path.done : 0;
   path.leadTo(to, stepsOf(path.before, to, body, seconds, path.last), seconds);
   return path;

@@ -29,7 +29,7 @@ class PaddedTrees {
   /// Fits the tree again if its boxes do not hold the nodes at the end of the step, as their velocities have
   /// changed since `fit`.
   void fitAgain(btSoftBody& body, Dynamics& dynamics, btScalar step);
-  /// The tree is to be fitted in the next step, as it has been changed by others.
+  /// The tree must be fitted in the next step, as others have changed it.
   void forget() { ready_ = false; }
 
  private:

@@ -127,7 +127,7 @@ void visitBroadphase(WorldStream& stream) {
   visitAll(stream, b.m_prediction, b.m_stageCurrent, b.m_fupdates, b.m_dupdates, b.m_cupdates, b.m_newpairs,
            b.m_fixedleft, b.m_updates_call, b.m_updates_done, b.m_updates_ratio, b.m_pid, b.m_cid, b.m_gid,
            b.m_deferedcollide, b.m_needcleanup);
-  // It names a list, in which objects are put in each step.
+  // It is the index of the list into which each step puts objects.
   if (b.m_stageCurrent < 0 || b.m_stageCurrent >= kFixedStage) {
     b.m_stageCurrent = 0;
     stream.fail();

@@ -276,7 +276,7 @@ void visitFeedback(WorldStream& stream, btTypedConstraint& joint) {
   visitAll(stream, f.m_appliedForceBodyA, f.m_appliedTorqueBodyA, f.m_appliedForceBodyB, f.m_appliedTorqueBodyB);
 }
 
-/// It has no memory for them before its first step.
+/// A joint has no memory for its impulses before its first step.
 void visitImpulses(WorldStream& stream, btMultiBodyConstraint& joint) {
   auto& data = joint.*memberOf(JointData());
   for (int row = 0; row < joint.getNumRows(); ++row) {

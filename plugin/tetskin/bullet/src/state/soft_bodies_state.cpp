@@ -25,7 +25,7 @@ void visitSettings(WorldStream& stream, btSoftBody& body) {
   if (stream.restoring()) body.getCollisionShape()->setMargin(margin);
 }
 
-/// What the last step has left.
+/// Results of the last step.
 void visitStep(WorldStream& stream, btSoftBody& body) {
   btSoftBody::SolverState& s = body.m_sst;
   visitAll(stream, s.sdt, s.isdt, s.velmrg, s.radmrg, s.updmrg);

@@ -292,7 +292,7 @@ Status WorldDirectory::find(WorldDirectory now) {
   if (!listsFit())
     return {StatusCode::Malformed, "the snapshot is damaged: its lists of bodies are not of its objects"};
 
-  // As the snapshot numbers them.
+  // The numbers that the snapshot uses.
   std::vector<std::int64_t> saved(objects_.size());
   for (std::size_t k = 0; k < objects_.size(); ++k) saved[static_cast<std::size_t>(objectAt_[k])] = static_cast<int>(k);
   const auto renumber = [](std::int64_t& index, const std::vector<std::int64_t>& by) {

@@ -28,7 +28,7 @@ void visitBroadphase(WorldStream& stream);
 void visitPairs(WorldStream& stream);
 /// Before all others while a snapshot is restored: pairs are found by ids, which change. pairs_state.cpp
 void removePairs(WorldStream& stream);
-/// Of its class, rather than of one that derives from it.
+/// True if it is of Bullet's own class, and not of one that derives from it.
 bool isBulletsDispatcher(const btDispatcher& dispatcher);
 /// Nodes of a soft body, and what Bullet remembers of it. soft_bodies_state.cpp
 void visitSoftBodies(WorldStream& stream);

@@ -258,7 +258,7 @@ void RecordedForces::clear() {
   points_.clear();
 }
 
-/// Of pairs whose objects are in the world: the others are not reported.
+/// Visits pairs whose objects are in the world: others are not reported.
 void RecordedForces::visitState(WorldStream& stream) {
   stream(mark_);
   stream(seconds_);

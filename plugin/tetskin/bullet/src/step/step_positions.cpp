@@ -47,7 +47,7 @@ void DeformableSolver::Impl::findShaken() {
   }
 }
 
-/// With the velocities that Bullet has used: it bounds them.
+/// Uses the velocities that Bullet has used, since it bounds them.
 void DeformableSolver::Impl::refinePositions(btScalar dt) {
   if (!solving) return;
   for (const SolvedBody& solved : bodies.bodies()) {

@@ -69,7 +69,7 @@ std::vector<ComponentUnknown> ComponentUnknown::makeAll(const Dynamics& dynamics
     if (dynamics.rigidMotions(component, points)) unknowns.emplace_back().component = component;
   }
   if (unknowns.empty()) return unknowns;
-  // Of all components at once: the matrix connects none with another.
+  // For all components at once: the matrix does not connect them.
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
     products[k].assign(dynamics.matrix().wideSize(), btScalar(0));
     dynamics.matrix().multiply(points[k].data(), products[k].data(), threads);

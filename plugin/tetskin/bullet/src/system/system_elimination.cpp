@@ -232,7 +232,7 @@ void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t 
   }
 }
 
-/// True if six unknowns move the end, as of a body or a component.
+/// True if six unknowns move the end: those of a body or a component.
 bool SystemSolve::hasRowMotions(std::size_t r, std::size_t e) const {
   return isOnComponent(r, e) || system_.rows[r]->ends[e].rigid.jacobian < 0;
 }

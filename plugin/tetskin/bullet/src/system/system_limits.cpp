@@ -109,7 +109,7 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
   const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
     return row->joined && !(row->highest < BT_LARGE_FLOAT);
   });
-  // Of a stiff body, an error of velocities that is small by its masses is one of all the forces that act on it.
+  // In a stiff body, an error of velocities that is small by its masses is as large as all the forces that act on it.
   const double ofForces = std::max(tolerance * tolerance * share, kClosest * kClosest);
   tolerance = toleranceWithForces(std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0));
   tolerance = std::max(tolerance, kClosest);

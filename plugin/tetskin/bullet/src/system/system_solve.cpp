@@ -22,7 +22,7 @@ constexpr int kPassesBeforeDerivative = 2;
 constexpr btScalar kKept = btScalar(0.1), kLongStep = btScalar(0.9);
 /// Passes from which on bounds of friction are means of those before and the new ones, and the share of the new: where
 /// friction jams a body between two others, its bound swings from pass to pass about the one that agrees with itself.
-/// Without, 80 of 720 steps of 50 balls in the pit of `tetskin_pile` do not converge.
+/// Without them, 80 of 720 steps of 50 balls in the pit of `tetskin_pile` do not converge.
 constexpr int kPassesBeforeMeans = 6;
 constexpr btScalar kNewBound = btScalar(0.5);
 /// A solve has converged if the residual is at most this multiple of the tolerance.
@@ -31,8 +31,8 @@ constexpr double kAccepted = 3.0;
 constexpr double kLeftShare = 1e-3;
 /// Sum of the impulses' sizes on a body, over the size of their sum, from which on it counts as squeezed. The error
 /// that a solve leaves is a share of the impulses: if a light body between heavy ones took it up, it would keep
-/// shaking, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold
-/// what spins around what it is joined to, as a tyre its hub, and impulses that were changed would turn the other body.
+/// shaking, by tens of its sizes per second under 100 times its mass. Joints do not count: they hold what spins around
+/// what it is joined to, as a tyre its hub, and impulses that were changed would turn the other body.
 constexpr double kSqueezed = 30.0;
 
 }  // namespace

@@ -37,8 +37,8 @@ struct SystemInput {
   OtherForces& others;
 };
 
-/// What concerns one body is done side by side with the other bodies, and what concerns one row, side by side with the
-/// other rows; sums over bodies and rows are in their order.
+/// Work on bodies runs in parallel over bodies, and work on rows over rows; sums over bodies and rows are in their
+/// order.
 class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::CouplingOperator {
  public:
   /// system  of the bodies of the input

@@ -17,7 +17,8 @@ namespace {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// The directions of a tet's edges: three axes and four diagonals of a cube, of which each tet has two and four.
+/// The directions of tets' edges: three axes and four diagonals of a cube. Each tet has edges along two of
+/// the axes and along all diagonals.
 const std::array<Eigen::Vector3d, 7>& edgeDirections() {
   static const std::array<Eigen::Vector3d, 7> directions = {
       Eigen::Vector3d(1, 0, 0),  Eigen::Vector3d(0, 1, 0),  Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, 1, 1),

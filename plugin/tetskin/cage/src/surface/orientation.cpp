@@ -71,7 +71,7 @@ class Sides {
 struct Patch {
   bool mixed = false;  ///< neighbours disagreed
   bool open = false;
-  double volume = 0.0;  ///< about one of the patch's own points, which is the best choice for an open patch
+  double volume = 0.0;  ///< about the patch's own centre, which is the best choice for an open patch
   double area = 0.0;
   std::vector<int> triangles;
 };

@@ -79,7 +79,7 @@ bool CandidateValidity::lasts(const ContactBody& first, const ContactBody& secon
                                                  [&](std::size_t n) { return second.positions[n]; });
   const Deviation own = deviate(0, first, motion), other = deviate(1, second, motion);
   drift_ = spread * own.near + kInsideSpread * other.near;
-  // What is used up of the slack: the rest is there for the steps to come.
+  // The part of the slack that is used up: the rest is left for later steps.
   moved_ = std::max(
       {drift_, usedUp(0, spread, kInsideSpread * other.anywhere), usedUp(1, kInsideSpread, spread * own.near)});
   return moved_ + rounding_ <= slack_;

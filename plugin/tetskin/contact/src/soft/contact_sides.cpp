@@ -86,7 +86,7 @@ void ContactSides::clear() {
   next_ = 0;
 }
 
-/// Those of the step before are replaced at the beginning of the next one.
+/// Sides of the previous step are not saved: the next step replaces them when it begins.
 void ContactSides::visitState(bullet_detail::WorldStream& stream) {
   if (stream.restoring()) clear();
   stream.each(now_, [&](ContactSide& side) {

@@ -17,7 +17,7 @@ namespace tetskin::contact_detail {
 /// Infinite: a clearance that no motion exceeds.
 constexpr btScalar kForever = std::numeric_limits<btScalar>::infinity();
 
-/// What a sample within a tet approaches the surface by at the most, per motion relative to the tet. While the tet
+/// Upper bound of how much a sample within a tet approaches the surface, per motion relative to the tet. While the tet
 /// deforms, the surface comes nearer faster than its nodes.
 constexpr btScalar kApproach = 4;
 

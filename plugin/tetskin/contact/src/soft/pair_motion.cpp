@@ -38,7 +38,7 @@ bool PairMotion::isStill(const ContactBody& first, const ContactBody& second, bt
   if (!searched_) return false;
   const btScalar motion = sinceBefore(first, second);
   path_ += motion;
-  // What moves as fast as that is searched for in the next step, too.
+  // A pair that moves this fast is searched in the next step, too.
   if (motion > maximum) return false;
   coming_ = inNextStep(first, second, dt);
   return path_ + std::max(coming_ - searchedComing_, btScalar(0)) <= maximum;

@@ -509,7 +509,7 @@ void PairSearch::keepBeside(const Touch& touch, int node) {
   if (isNear(sameWay_.front())) return;
   auto rival = std::find_if(sameWay_.begin() + 1, sameWay_.end(), isNear);
   if (rival == sameWay_.end()) {
-    // What has touched in the step before would sink without.
+    // A sample that has touched in the step before would sink otherwise.
     const bool sinks = ageOf(touch.sample) == 0 || touch.distance < -kSunkCubes * now_.second->data().grid.spacing();
     if (sameWay_.size() <= (sinks ? kMostBeside : 1)) return add(touch, node);
     rival = std::max_element(sameWay_.begin() + 1, sameWay_.end(),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to ContactShape: the normals by which it is told which surfaces can touch.
+// Internal to ContactShape: the normals that decide which surfaces can touch.
 #pragma once
 
 #include <tetskin/contact/src/soft/distance_grid.h>

@@ -25,10 +25,10 @@ constexpr double kInOnePlace = 0.3;
 constexpr std::size_t kMaxTasks = 64;
 /// Numbers of points begin here, so that they differ from those of contacts with rigid bodies.
 constexpr std::uint32_t kFirstPoint = 0x40000000U;
-/// Those of the other body's points, where a contact is told by the body that it meets.
+/// First number for points of the other body, where the body that is met reports the contact.
 constexpr std::uint32_t kFirstTurned = 0xC0000000U;
 
-/// Of the point relative to the body that it meets.
+/// The velocity of the point relative to the body that it meets.
 btVector3 velocityOf(const PointContact& contact) {
   const btVector3 v = contact.at.velocity(*contact.body);
   const btSoftBody& object = *btSoftBody::upcast(contact.object);

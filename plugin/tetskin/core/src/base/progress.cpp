@@ -11,7 +11,7 @@ namespace {
 /// Often enough for whoever waits.
 constexpr std::chrono::milliseconds kAskedEach{200};
 
-/// That of this thread; null: none.
+/// The progress of this thread, or null.
 Progress*& current() {
   thread_local Progress* progress = nullptr;
   return progress;
@@ -28,8 +28,8 @@ Progress::~Progress() {
   current() = outer_;
 }
 
-/// What an application computes while it is told is nobody's part: it would be told without end, and cancel the wrong
-/// computation.
+/// What an application computes in its callback is no part of the progress: it would be reported without end, and
+/// cancel the wrong computation.
 class Progress::Pause {
  public:
   Pause() : before_(std::exchange(current(), nullptr)) {}

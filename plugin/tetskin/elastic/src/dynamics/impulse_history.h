@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What a body's step of second order takes from the steps before: H of time_scheme.h, and whether steps of this length
-// resolve its motion. A deformed body may be stiffer than its matrix says; a step of second order then
-// lets vibrations grow that are too fast for it, and that one of first order takes away. They show as a change of
-// dt^2 K y from step to step, y being the deviation from rigid motion, that is not small beside y itself.
+// resolve its motion. A deformed body may be stiffer than its matrix says; a step of second order then lets vibrations
+// grow that are too fast for it, and that one of first order takes away. They show as a change of dt^2 K y from step to
+// step, y being the deviation from rigid motion, that is not small beside y itself.
 #pragma once
 
 #include <tetskin/core/src/base/aligned.h>

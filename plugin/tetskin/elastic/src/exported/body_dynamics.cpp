@@ -37,7 +37,7 @@ constexpr double kFeelsTurns = 1.0;
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
 
-/// Least bound of the iterations of a solve that is continued in two levels: a lower one says that it is to be cheap.
+/// Least bound of the iterations of a solve that is continued in two levels: with a lower one it must be cheap.
 constexpr int kPatience = 50;
 /// Number of solves after which the conjugate gradient is tried alone again.
 constexpr int kTwoLevelSolves = 240;
@@ -722,7 +722,7 @@ void BodyDynamics<S>::carry(bool turns, const std::array<double, 9>& turn, const
   }
 }
 
-/// Of the steps before, only what the next one would not forget.
+/// Earlier steps are written only if the next one would use them.
 template <class S>
 bool BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues) {
   bool deterministic = deterministic_;

@@ -69,7 +69,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void beTouched(double seconds, ParallelFor* threads);
   /// The first step is half a step of velocities, as they are known at its beginning and belong to its middle from then
   /// on; each takes half of the lengths of the step before and of its own. Otherwise each takes its own length, as
-  /// Bullet's rigid bodies do, beside which a body of the same velocity then stays.
+  /// Bullet's rigid bodies do: a body of the same velocity then stays beside them.
   void setStaggered(bool staggered) { staggered_ = staggered; }
   /// True if each component has a pinned node.
   bool isHeld() const;
@@ -118,7 +118,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
     for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<S>(x[k] - static_cast<double>(points_[4 * slot + k]));
   }
 
-  /// True if the node is where the last step has brought it, and as fast, but for less than one sees.
+  /// True if the node is where the last step has brought it, and as fast, except for invisible differences.
   bool continues(std::size_t node, const S* point, const S* velocity) const;
   /// True if the last step is remembered for the next one.
   bool remembers() const { return history_.isKnown(); }
@@ -126,7 +126,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void forget() { history_.forget(); }
   /// Call it when nothing but `solve` has changed the solution, for the next step to be of second order.
   void remember(double seconds);
-  /// The same where other forces and joints have changed it, too. Nothing is remembered of a touched body.
+  /// The same if other forces and joints have changed the solution, too. A touched body remembers nothing.
   void rememberAmongOthers(double seconds, ParallelFor* threads);
   /// True if the last `predict` has begun a step of second order.
   bool isSecondOrder() const { return secondOrder_; }
@@ -148,7 +148,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   int solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
   /// The square of the norm of what acts, see SolveLimits, of the last `start`.
   double squaredActing(ParallelFor* threads);
-  /// The same of impulses that change all velocities by this speed.
+  /// The square of the norm of impulses that change all velocities by this speed.
   double squaredImpulses(double speed) const { return speed * speed * unitImpulses_; }
   /// True if the body counted as stiff in the last `predict`.
   bool isStiff() const { return stiff_; }

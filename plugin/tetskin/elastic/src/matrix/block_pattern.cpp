@@ -31,7 +31,7 @@ struct Term {
 struct Terms {
   std::vector<Term> linear, quadratic;
 
-  /// As a quadratic one takes four times as long.
+  /// A quadratic tet takes four times as long as a linear one.
   std::size_t effort() const { return linear.size() + 4 * quadratic.size(); }
 };
 

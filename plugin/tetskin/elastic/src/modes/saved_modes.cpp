@@ -27,7 +27,7 @@ constexpr char kMagic[] = "tetskmod";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 8 * 8;
 
-/// That of the mesh, unless some of its tets are quadratic: then a body of the same nodes vibrates otherwise.
+/// The hash of the mesh, unless some tets are quadratic: a body with the same nodes then vibrates differently.
 std::uint64_t hashOfTets(const Cage& cage) {
   const std::vector<int>& number = cage.quadraticTet;
   const std::uint64_t ofMesh = hashOf(cage.mesh);

@@ -48,7 +48,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// flatAlpha  if larger than `alpha`: its value where tets were flat or inverted in the last `forces`, whose points
   ///            must still be there
   const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
-  /// The same again, for a matrix that is made anew from the state of a snapshot.
+  /// The same result again, for a matrix that is assembled from the state in a snapshot.
   const S* cornersAgain(S alpha, ParallelFor* threads);
   /// Writes or reads the rotations.
   /// alpha     of the matrix

@@ -29,7 +29,7 @@ namespace tetskin::io {
 
 namespace {
 
-/// Extensions of the looks, beside which a shape is complete.
+/// Extensions of the looks: the shape is complete without them.
 constexpr std::array<std::string_view, 9> kLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                     "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
                                                     "KHR_xmp",        "AGI_",         "KHR_technique"};

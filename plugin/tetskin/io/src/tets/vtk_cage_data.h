@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a legacy VTK file tells of a cage beside its nodes and tets, as arrays by these names:
+// The data of a cage in a legacy VTK file, beside its nodes and tets, as arrays by these names:
 //
 //   behind the mesh        FIELD    mesh_hash    2 x 1             unsigned_int: upper and lower 32 bits of meshHash
 //                                   vertex_tets  1 x vertexCount   int

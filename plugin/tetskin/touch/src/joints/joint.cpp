@@ -130,8 +130,7 @@ btScalar Joint::turn() const {
   return turned.getAngleShortestPath();
 }
 
-/// What has come to rest keeps resting, and what moves wakes the other end. The solver lets the two fall asleep
-/// together.
+/// An end at rest stays at rest, and one that moves wakes the other. The solver lets the two fall asleep together.
 void Joint::wake() {
   const btTransform anchor = anchor_.inWorld();
   const bool moved = !(anchor == anchorBefore_);
@@ -200,7 +199,7 @@ void Joint::finish(btScalar seconds, const PointJoint* joints) {
   added_ = 0;
 }
 
-/// What the anchor was found to be before is rounded otherwise elsewhere, which is no motion.
+/// The previous anchor is rounded differently at the new place: that is no motion.
 void Joint::shift(const btVector3& by) {
   if (!anchor_.object) anchor_.frame.getOrigin() += by;
   anchorBefore_.getOrigin() += by;

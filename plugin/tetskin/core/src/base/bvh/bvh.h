@@ -61,7 +61,7 @@ class TETSKIN_CORE_API Bvh {
   template <class Value, class FromItems, class FromChildren>
   void fill(std::vector<Value>& values, FromItems&& fromItems, FromChildren&& fromChildren) const;
 
-  /// Computes the nodes' boxes from those of the items, `boxOf(index)`. Cost as of `fill`
+  /// Computes the nodes' boxes from those of the items, `boxOf(index)`. Cost as for `fill`
   template <class Box, class BoxOf>
   void fit(std::vector<Box>& boxes, BoxOf&& boxOf) const;
 

@@ -48,7 +48,8 @@ void refineFill(const Cage& linear, Cage& refined) {
   }
 }
 
-/// By what fills the tets, so that the sum stays the same; an empty tet has a share that holds its nodes.
+/// Distributes masses by what fills the tets, so that their sum stays the same; an empty tet has a share that holds its
+/// nodes.
 void refineMasses(const Cage& linear, Cage& refined) {
   if (linear.masses.empty()) return;
   refined.masses.assign(refined.mesh.nodeCount(), 0.0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a modeller cut off often leaves its vertices in the file. They are nowhere drawn: neither a size nor a contact
-// is to be taken from them.
+// Vertices of parts that a modeller has cut off often stay in the file. They are drawn nowhere: neither a size nor a
+// contact may be taken from them.
 #pragma once
 
 #include <tetskin/core/mesh.h>
