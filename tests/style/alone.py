@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""alone.py BUILD_FOLDER [FILE... | --files LIST]: checks that each source and each header of the library compiles by
-itself, not only after the files that a unity build puts before it. Uses the compile commands of a build without unity;
-checks only FILE..., or those named in LIST, one per line, and those that include them, if any are named.
+"""alone.py BUILD_FOLDER [--compiler CLANG] [FILE... | --files LIST]: checks that each source and each header of the
+library compiles by itself, not only after the files that a unity build puts before it. Uses the compile commands of a
+build without unity; checks only FILE..., or those named in LIST, one per line, and those that include them, if any are
+named.
 
-Eigen is precompiled, except for public headers: it takes most of the time, and everything includes it through core's
-types."""
+Clang, if it is given, takes a third of GCC's time. Both have the same standard library, so an include that is missing is
+missing for both. Eigen is precompiled, except for public headers: it takes most of the time, and everything includes it
+through core's types."""
 import concurrent.futures
 import json
 import pathlib
@@ -19,14 +21,14 @@ LIBRARY = SOURCE / "plugin" / "tetskin"
 EIGEN = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"
 
 
-def options_of(entry):
-    """The options that affect whether a file compiles."""
+def options_of(entry, compiler):
+    """The compiler, that of the entry unless one is given, and the options that affect whether a file compiles."""
     words = shlex.split(entry["command"])
     kept = [w for w in words[1:] if w.startswith(("-D", "-I", "-m", "-f", "-std")) and w != "-fPIC"]
     for place, word in enumerate(words):
         if word == "-isystem":
             kept += words[place:place + 2]
-    return [words[0], "-std=c++17"] + kept + ["-w"]
+    return [compiler or next(word for word in words if not word.endswith("ccache")), "-std=c++17"] + kept + ["-w"]
 
 
 def precompile(options, folder):
@@ -62,15 +64,18 @@ def including(names):
 
 def main():
     build = pathlib.Path(sys.argv[1])
-    names = sys.argv[2:]
+    names, compiler = sys.argv[2:], None
+    if names[:1] == ["--compiler"]:
+        compiler, names = names[1], names[2:]
     if len(names) == 2 and names[0] == "--files":
         names = pathlib.Path(names[1]).read_text(encoding="utf-8").splitlines()
         if not names:
-            sys.exit(f"{sys.argv[3]} names no file")
+            sys.exit("The list of files is empty")
         names += including(names)
     wanted = {pathlib.Path(name).resolve() for name in names}
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    options = {pathlib.Path(e["file"]): options_of(e) for e in entries if LIBRARY in pathlib.Path(e["file"]).parents}
+    options = {pathlib.Path(e["file"]): options_of(e, compiler) for e in entries
+               if LIBRARY in pathlib.Path(e["file"]).parents}
     plain = {}  # by library: the options with which its headers are compiled
     for file, own in options.items():
         library = file.relative_to(LIBRARY).parts[0]
