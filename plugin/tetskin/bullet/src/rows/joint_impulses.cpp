@@ -109,9 +109,11 @@ std::array<btScalar, JointRows::kMaxRows> JointImpulses::of(const btTypedConstra
   put(sum, 3, told->m_appliedTorqueBodyA, one);
   put(sum, 6, told->m_appliedForceBodyB, one);
   put(sum, 9, told->m_appliedTorqueBodyB, one);
-  const auto solved = (columns.completeOrthogonalDecomposition().solve(sum) * static_cast<double>(seconds)).eval();
-  for (std::size_t k = 0; k < rows.count; ++k)
-    impulses[k] = static_cast<btScalar>(solved[static_cast<Eigen::Index>(k)]);
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, static_cast<int>(JointRows::kMaxRows), 1> solved =
+      columns.completeOrthogonalDecomposition().solve(sum);
+  for (std::size_t k = 0; k < rows.count; ++k) {
+    impulses[k] = static_cast<btScalar>(solved[static_cast<Eigen::Index>(k)] * static_cast<double>(seconds));
+  }
   return impulses;
 }
 
