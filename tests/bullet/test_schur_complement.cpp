@@ -128,6 +128,25 @@ Groups::Couplings allOf(std::size_t count) {
   return all;
 }
 
+TEST(SchurComplement, AddsProductsWithTheBitsOfEigens) {
+  for (const Index rows : {6, 7, 12}) {
+    for (const Index columns : {6, 11}) {
+      SchurComplement complement;
+      const Index second = complement.add(columns), first = complement.add(rows);
+      complement.couple(first, second);
+      complement.order();
+      const Eigen::Matrix<double, 3, Eigen::Dynamic> a = numbers(3, rows, 1.0), b = numbers(3, columns, 2.0);
+      const Eigen::Matrix3d h = numbers(3, 3, 3.0);
+      MatrixXd wanted = MatrixXd::Zero(rows, columns);
+      for (const double sign : {1.0, -1.0, 1.0}) {
+        wanted += sign * (a.transpose() * h * b);
+        complement.addProduct(first, second, sign, a, smallFrom<3, 3>(h.data()), b);
+      }
+      EXPECT_EQ(MatrixXd(complement.block(first, second)), wanted) << rows << " " << columns;
+    }
+  }
+}
+
 TEST(SchurComplement, SolvesForRigidBodiesAndOtherUnknowns) {
   for (const int rigid : {0, 1, 3}) {
     for (const int others : {0, 2}) {

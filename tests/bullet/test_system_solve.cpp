@@ -27,6 +27,11 @@ using Eigen::VectorXd;
 
 constexpr btScalar kSeconds = btScalar(1) / 240;
 
+template <int Rows, int Columns>
+MatrixXd inEigen(const SmallMatrix<Rows, Columns>& of) {
+  return Eigen::Map<const MatrixXd>(of.values, Rows, Columns);
+}
+
 /// A body in the middle of a step, and a rigid box beside it.
 class System : public testing::Test {
  protected:
@@ -336,20 +341,21 @@ TEST_F(System, TheRigidMotionOfAComponentHasTheProductsOfDenseMatrices) {
   ASSERT_EQ(unknown->begin, 0u);
   MatrixXd z(size(), 6);
   for (std::size_t k = 0; k < 6; ++k) z.col(static_cast<Eigen::Index>(k)) = dense(unknown->motions[k].data());
-  EXPECT_LT((unknown->mass - z.transpose() * a * z).norm(), 1e-5 * unknown->mass.norm());
-  EXPECT_LT((unknown->began - z.transpose() * rightSide()).norm(), 1e-4 * unknown->began.norm());
+  const MatrixXd mass = inEigen(unknown->mass), began = inEigen(unknown->began);
+  EXPECT_LT((mass - z.transpose() * a * z).norm(), 1e-5 * mass.norm());
+  EXPECT_LT((began - z.transpose() * rightSide()).norm(), 1e-4 * began.norm());
   const btScalar* solution = dynamics().matrix().solution();
   const VectorXd y = dense(solution);
-  EXPECT_LT((unknown->motionProducts(solution) - z.transpose() * y).norm(), 1e-5 * (1.0 + y.norm()));
-  EXPECT_LT((unknown->imageProducts(solution) - z.transpose() * a * y).norm(), 1e-4 * (1.0 + (a * y).norm()));
+  EXPECT_LT((inEigen(unknown->motionProducts(solution)) - z.transpose() * y).norm(), 1e-5 * (1.0 + y.norm()));
+  EXPECT_LT((inEigen(unknown->imageProducts(solution)) - z.transpose() * a * y).norm(), 1e-4 * (1.0 + (a * y).norm()));
   const CarriedPoint point = pointIn(4);
-  EXPECT_LT((unknown->motionsAt(dynamics(), point) - weightsOf(point) * z).norm(), 1e-6 * z.norm());
-  Vector6 q;
-  q << 1, -2, 3, -1, 2, -3;
+  EXPECT_LT((inEigen(unknown->motionsAt(dynamics(), point)) - weightsOf(point) * z).norm(), 1e-6 * z.norm());
+  const Small6 factors{{1, -2, 3, -1, 2, -3}};
+  const VectorXd q = inEigen(factors);
   std::vector<btScalar> wide(dynamics().matrix().wideSize(), btScalar(0));
-  unknown->addImages(q, wide.data());
+  unknown->addImages(factors, wide.data());
   EXPECT_LT((dense(wide.data()) - a * z * q).norm(), 1e-4 * (a * z * q).norm());
-  unknown->addMotions(q, dynamics());
+  unknown->addMotions(factors, dynamics());
   EXPECT_LT((dense(solution) - y - z * q).norm(), 1e-5 * (z * q).norm());
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
+#include <tetskin/core/src/base/arithmetic/small_matrix.h>
 #include <tetskin/elastic/src/base/elastic_kernels.h>
 
 #include <cmath>
@@ -29,6 +30,13 @@ inline void toWide(const btVector3& v, btScalar* wide) {
 }
 inline btVector3 fromWide(const btScalar* wide) {
   return {wide[0], wide[kernels::kGroup], wide[2 * kernels::kGroup]};
+}
+
+inline Small3 toSmall(const btVector3& v) {
+  return {{static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())}};
+}
+inline btVector3 fromSmall(const Small3& v) {
+  return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
 }
 
 /// A velocity without components too small to move a position within the step: far from the origin, contacts at rounded

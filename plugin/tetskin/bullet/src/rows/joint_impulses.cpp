@@ -3,16 +3,15 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <tetskin/bullet/src/rows/joint_impulses.h>
+#include <tetskin/bullet/src/rows/smallest_solution.h>
 
-#include <Eigen/QR>
 #include <cassert>
 
 namespace tetskin::bullet_detail {
 namespace {
 
 /// Writes a vector, by the factors of a body's freedom, into three rows of a column.
-template <class Column>
-void put(Column&& column, int at, const btVector3& vector, const btVector3& factor) {
+void put(double* column, int at, const btVector3& vector, const btVector3& factor) {
   for (int k = 0; k < 3; ++k) column[at + k] = static_cast<double>(vector[k] * factor[k]);
 }
 
@@ -94,24 +93,24 @@ std::array<btScalar, JointRows::kMaxRows> JointImpulses::of(const btTypedConstra
   const btJointFeedback* told = joint.getJointFeedback();
   if (!told || rows.count == 0) return impulses;
   const btRigidBody &a = joint.getRigidBodyA(), &b = joint.getRigidBodyB();
-  Eigen::Matrix<double, 12, Eigen::Dynamic, Eigen::ColMajor, 12, static_cast<int>(JointRows::kMaxRows)> columns(
-      12, static_cast<Eigen::Index>(rows.count));
+  SmallestSolution::Columns columns{};
   for (std::size_t k = 0; k < rows.count; ++k) {
-    auto column = columns.col(static_cast<Eigen::Index>(k));
+    double* column = &columns[SmallestSolution::kRows * k];
     put(column, 0, rows.vector(rows.linearA, k), a.getLinearFactor());
     put(column, 3, rows.vector(rows.angularA, k), a.getAngularFactor());
     put(column, 6, rows.vector(rows.linearB, k), b.getLinearFactor());
     put(column, 9, rows.vector(rows.angularB, k), b.getAngularFactor());
   }
-  Eigen::Matrix<double, 12, 1> sum;
+  std::array<double, SmallestSolution::kRows> sum{};
   const btVector3 one(1, 1, 1);
-  put(sum, 0, told->m_appliedForceBodyA, one);
-  put(sum, 3, told->m_appliedTorqueBodyA, one);
-  put(sum, 6, told->m_appliedForceBodyB, one);
-  put(sum, 9, told->m_appliedTorqueBodyB, one);
-  const auto solved = (columns.completeOrthogonalDecomposition().solve(sum) * static_cast<double>(seconds)).eval();
-  for (std::size_t k = 0; k < rows.count; ++k)
-    impulses[k] = static_cast<btScalar>(solved[static_cast<Eigen::Index>(k)]);
+  put(sum.data(), 0, told->m_appliedForceBodyA, one);
+  put(sum.data(), 3, told->m_appliedTorqueBodyA, one);
+  put(sum.data(), 6, told->m_appliedForceBodyB, one);
+  put(sum.data(), 9, told->m_appliedTorqueBodyB, one);
+  const auto solved = SmallestSolution(columns, rows.count).solve(sum);
+  for (std::size_t k = 0; k < rows.count; ++k) {
+    impulses[k] = static_cast<btScalar>(solved[k] * static_cast<double>(seconds));
+  }
   return impulses;
 }
 

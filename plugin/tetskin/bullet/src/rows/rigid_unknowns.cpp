@@ -3,12 +3,11 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
-#include <tetskin/bullet/soft_body.h>
+#include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/rows/rigid_unknowns.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
-#include <tetskin/core/src/base/cross_matrix.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -20,7 +19,8 @@ constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
 
 /// The inverse mass matrix that btRigidBody::applyImpulse applies; symmetric unless factors lock single axes.
 Eigen::MatrixXd inverseMassOf(const btRigidBody& rigid) {
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(6, 6);
+  Eigen::MatrixXd inverse(6, 6);
+  std::fill(inverse.data(), inverse.data() + inverse.size(), 0.0);
   const btVector3 &linear = rigid.getLinearFactor(), &angular = rigid.getAngularFactor();
   for (int i = 0; i < 3; ++i) {
     inverse(i, i) = static_cast<double>(rigid.getInvMass() * linear[i]);
@@ -45,7 +45,10 @@ Eigen::MatrixXd inverseMassOf(btMultiBody& body) {
     for (int i = 0; i < size; ++i) inverse(i, k) = static_cast<double>(answer[i]);
   }
   // Makes it symmetric, as it is up to rounding.
-  return 0.5 * (inverse + inverse.transpose());
+  for (int k = 0; k < size; ++k) {
+    for (int i = 0; i < k; ++i) inverse(i, k) = inverse(k, i) = 0.5 * (inverse(i, k) + inverse(k, i));
+  }
+  return inverse;
 }
 
 /// Of the path on which turning takes a point within a step: the difference to the straight path, per second.
@@ -72,9 +75,19 @@ bool movesFreely(const btCollisionObject& object) {
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at) {
-  Eigen::Matrix<double, 3, 6> jacobian;
-  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(toEigen(at.arm));
+Small3x6 bodyJacobian(const RigidPoint& at) {
+  const Small3x3 turning = -smallCrossMatrix(toSmall(at.arm));
+  Small3x6 jacobian;
+  for (int k = 0; k < 3; ++k) {
+    jacobian(k, k) = 1.0;
+    jacobian.setColumn(3 + k, turning.column(k));
+  }
+  return jacobian;
+}
+
+RigidUnknowns::Jacobian RigidUnknowns::toJacobian(const Small3x6& of) {
+  Jacobian jacobian(3, 6);
+  std::copy(of.values, of.values + of.kSize, jacobian.data());
   return jacobian;
 }
 
@@ -100,9 +113,12 @@ int RigidUnknowns::find(const btCollisionObject& object) const {
 }
 
 int RigidUnknowns::addScalarJacobian(const btVector3& linear, const btVector3& angular) {
-  Jacobian jacobian = Jacobian::Zero(3, 6);
-  jacobian.row(0) << toEigen(linear).transpose(), toEigen(angular).transpose();
-  jacobians_.push_back(std::move(jacobian));
+  Small3x6 jacobian;
+  for (int k = 0; k < 3; ++k) {
+    jacobian(0, k) = static_cast<double>(linear[k]);
+    jacobian(0, 3 + k) = static_cast<double>(angular[k]);
+  }
+  jacobians_.push_back(toJacobian(jacobian));
   return static_cast<int>(jacobians_.size()) - 1;
 }
 
@@ -154,13 +170,13 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
   if (linkOf(object) && at.jacobian >= 0) {
     const btMultiBody& body = *linkOf(object)->m_multiBody;
     const Jacobian& jacobian = jacobians_[static_cast<std::size_t>(at.jacobian)];
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
-      sum += jacobian.col(k) * static_cast<double>(body.getVelocityVector()[k]);
+    Small3 sum;
+    for (int k = 0; k < jacobian.cols(); ++k) {
+      sum += smallFrom<3>(&jacobian(0, k)) * static_cast<double>(body.getVelocityVector()[k]);
     }
     btVector3 bent(0, 0, 0);
     if (seconds > 0) bent = bend(turningOf(object, unknowns_[static_cast<std::size_t>(at.unknown)]), at.arm, seconds);
-    return toBullet(sum) + bent;
+    return fromSmall(sum) + bent;
   }
   const btRigidBody* rigid = btRigidBody::upcast(&object);
   if (!rigid) return {0, 0, 0};
@@ -210,46 +226,58 @@ bool RigidUnknowns::isLed(const btCollisionObject& object) const {
 }
 
 RigidUnknowns::Jacobian RigidUnknowns::jacobianOf(const RigidPoint& at) const {
-  return at.jacobian >= 0 ? jacobians_[static_cast<std::size_t>(at.jacobian)] : Jacobian(bodyJacobian(at));
+  return at.jacobian >= 0 ? jacobians_[static_cast<std::size_t>(at.jacobian)] : toJacobian(bodyJacobian(at));
 }
 
 btVector3 RigidUnknowns::velocity(const RigidPoint& at, const Eigen::VectorXd& change) const {
   if (at.unknown < 0) return {0, 0, 0};
   const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    return toBullet(jacobians_[static_cast<std::size_t>(at.jacobian)] * change.segment(unknown.first, unknown.size));
+    const Jacobian& jacobian = jacobians_[static_cast<std::size_t>(at.jacobian)];
+    Small3 sum;
+    for (Eigen::Index k = 0; k < unknown.size; ++k) sum += smallFrom<3>(&jacobian(0, k)) * change[unknown.first + k];
+    return fromSmall(sum);
   }
-  const Eigen::Vector3d linear = change.segment<3>(unknown.first), angular = change.segment<3>(unknown.first + 3);
-  return toBullet(linear) + toBullet(angular).cross(at.arm);
+  const double* of = change.data() + unknown.first;
+  return fromSmall(smallFrom<3>(of)) + fromSmall(smallFrom<3>(of + 3)).cross(at.arm);
 }
 
 void RigidUnknowns::addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const {
   if (at.unknown < 0) return;
   const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
   if (at.jacobian >= 0) {
-    to.segment(unknown.first, unknown.size) +=
-        jacobians_[static_cast<std::size_t>(at.jacobian)].transpose() * toEigen(impulse);
+    const Jacobian& jacobian = jacobians_[static_cast<std::size_t>(at.jacobian)];
+    for (Eigen::Index k = 0; k < unknown.size; ++k) {
+      to[unknown.first + k] += dot(smallFrom<3>(&jacobian(0, k)), toSmall(impulse));
+    }
     return;
   }
-  const Eigen::Vector3d force = toEigen(impulse);
-  to.segment<3>(unknown.first) += force;
-  to.segment<3>(unknown.first + 3) += toEigen(at.arm).cross(force);
+  const Small3 force = toSmall(impulse), torque = cross(toSmall(at.arm), force);
+  for (int k = 0; k < 3; ++k) {
+    to[unknown.first + k] += force[k];
+    to[unknown.first + 3 + k] += torque[k];
+  }
 }
 
 double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& direction) const {
   if (at.unknown < 0) return 0.0;
   const RigidUnknown& unknown = unknowns_[static_cast<std::size_t>(at.unknown)];
-  const Eigen::VectorXd moment = jacobianOf(at).transpose() * toEigen(direction);
-  return moment.dot(unknown.inverseMass * moment);
+  const Jacobian jacobian = jacobianOf(at);
+  Eigen::VectorXd moment(jacobian.cols());
+  for (Eigen::Index k = 0; k < moment.size(); ++k) moment[k] = dot(smallFrom<3>(&jacobian(0, k)), toSmall(direction));
+  const Eigen::VectorXd answer = unknown.inverseMass * moment;
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < moment.size(); ++k) sum += moment[k] * answer[k];
+  return sum;
 }
 
 void RigidUnknowns::apply(const RigidUnknown& unknown, const Eigen::VectorXd& change) {
-  const auto part = change.segment(unknown.first, unknown.size);
-  if (!part.allFinite()) return;
+  const double* part = change.data() + unknown.first;
+  if (!std::all_of(part, part + unknown.size, [](double v) { return std::isfinite(v); })) return;
   if (unknown.rigid) {
     btRigidBody& rigid = *unknown.rigid;
-    rigid.setLinearVelocity(rigid.getLinearVelocity() + toBullet(part.head<3>()));
-    rigid.setAngularVelocity(rigid.getAngularVelocity() + toBullet(part.segment<3>(3)));
+    rigid.setLinearVelocity(rigid.getLinearVelocity() + fromSmall(smallFrom<3>(part)));
+    rigid.setAngularVelocity(rigid.getAngularVelocity() + fromSmall(smallFrom<3>(part + 3)));
     return;
   }
   std::vector<btScalar> delta(static_cast<std::size_t>(unknown.size));

@@ -13,6 +13,7 @@
 
 #include <LinearMath/btTransform.h>
 #include <tetskin/bullet/src/search/kinematic_paths.h>
+#include <tetskin/core/src/base/arithmetic/small_matrix.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -44,7 +45,7 @@ struct RigidUnknown {
 };
 
 /// The derivative of the velocity of a point of a rigid body by those of the body.
-Eigen::Matrix<double, 3, 6> bodyJacobian(const RigidPoint& at);
+Small3x6 bodyJacobian(const RigidPoint& at);
 
 class RigidUnknowns {
  public:
@@ -78,6 +79,7 @@ class RigidUnknowns {
   const std::vector<RigidUnknown>& list() const { return unknowns_; }
   std::vector<RigidUnknown>& list() { return unknowns_; }
   Jacobian jacobianOf(const RigidPoint& at) const;
+  static Jacobian toJacobian(const Small3x6& of);
 
   // The functions below use vectors of a system: the unknowns' indices in it must be set.
   /// The change of the point's velocity that changed velocities of the unknowns cause.

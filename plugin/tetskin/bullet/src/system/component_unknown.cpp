@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/system/component_unknown.h>
 
@@ -17,15 +16,15 @@ constexpr double kRounded = 0.01;
 
 using Fields = AlignedVector<btScalar>[Dynamics::kRigidMotions];
 
-Eigen::Index indexOf(std::size_t k) {
-  return static_cast<Eigen::Index>(k);
+int indexOf(std::size_t k) {
+  return static_cast<int>(k);
 }
 
 /// The products of six wide vectors with another one. There is a sum for each lane, as compilers do not change the
 /// order of sums.
-Vector6 productsOf(const Fields& fields, const btScalar* wide) {
+Small6 productsOf(const Fields& fields, const btScalar* wide) {
   constexpr auto kLanes = static_cast<std::size_t>(kernels::kGroup);
-  Vector6 products;
+  Small6 products;
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
     const btScalar* field = fields[k].data();
     const std::size_t size = fields[k].size();
@@ -42,7 +41,7 @@ Vector6 productsOf(const Fields& fields, const btScalar* wide) {
 }
 
 /// Adds the sum of the fields, each times its factor.
-void addFields(const Fields& fields, const Vector6& factors, btScalar* wide) {
+void addFields(const Fields& fields, const Small6& factors, btScalar* wide) {
   constexpr auto kLanes = static_cast<std::size_t>(kernels::kGroup);
   btScalar q[Dynamics::kRigidMotions];
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) q[k] = static_cast<btScalar>(factors[indexOf(k)]);
@@ -117,8 +116,8 @@ double ComponentUnknown::rounding(const Dynamics& dynamics) const {
     for (const std::size_t n : nodes_) {
       const std::size_t at = matrix.wideOf(n) - begin;
       const btVector3 exact = matrix.mass(n) * fromWide(&motions[k][at]);
-      added += (toEigen(fromWide(&images[k][at])) - toEigen(exact)).squaredNorm();
-      all += toEigen(exact).squaredNorm();
+      added += squaredNorm(toSmall(fromWide(&images[k][at])) - toSmall(exact));
+      all += squaredNorm(toSmall(exact));
     }
   }
   return std::sqrt(added / all);
@@ -147,24 +146,24 @@ void ComponentUnknown::findMass(const Dynamics& dynamics, bool elastic) {
   }
   began = productsOf(motions, right.data());
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    mass.col(indexOf(k)) = productsOf(motions, images[k].data());
+    mass.setColumn(indexOf(k), productsOf(motions, images[k].data()));
   }
-  mass = (0.5 * (mass + mass.transpose())).eval();
+  mass = 0.5 * (mass + transposed(mass));
 }
 
-Vector6 ComponentUnknown::imageProducts(const btScalar* wide) const {
+Small6 ComponentUnknown::imageProducts(const btScalar* wide) const {
   return productsOf(images, wide + begin);
 }
 
-Vector6 ComponentUnknown::motionProducts(const btScalar* wide) const {
+Small6 ComponentUnknown::motionProducts(const btScalar* wide) const {
   return productsOf(motions, wide + begin);
 }
 
-void ComponentUnknown::addImages(const Vector6& q, btScalar* wide) const {
+void ComponentUnknown::addImages(const Small6& q, btScalar* wide) const {
   addFields(images, q, wide + begin);
 }
 
-void ComponentUnknown::addMotions(const Vector6& q, Dynamics& dynamics) const {
+void ComponentUnknown::addMotions(const Small6& q, Dynamics& dynamics) const {
   addFields(motions, q, dynamics.matrix().solution() + begin);
 }
 
@@ -172,11 +171,12 @@ RowMotions ComponentUnknown::motionsAt(const Dynamics& dynamics, const CarriedPo
   assert(point.count > 0);
   RowMotions at;
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
-    at.col(indexOf(k)) = toEigen(point.sum([&](int n) {
+    const btVector3 motion = point.sum([&](int n) {
       const auto node = static_cast<std::size_t>(n);
       if (dynamics.componentOf(node) != component) return btVector3(0, 0, 0);
       return fromWide(&motions[k][dynamics.matrix().wideOf(node) - begin]);
-    }));
+    });
+    at.setColumn(indexOf(k), toSmall(motion));
   }
   return at;
 }

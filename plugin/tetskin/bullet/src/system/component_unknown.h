@@ -9,15 +9,15 @@
 #include <tetskin/bullet/src/base/carried_point.h>
 #include <tetskin/bullet/src/forces/forced_bodies.h>
 #include <tetskin/core/src/base/aligned.h>
+#include <tetskin/core/src/base/arithmetic/small_matrix.h>
 
 #include <Eigen/Core>
 #include <vector>
 
 namespace tetskin::bullet_detail {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 /// The velocity of a row's point in each of the six motions.
-using RowMotions = Eigen::Matrix<double, 3, 6>;
+using RowMotions = Small3x6;
 
 /// Z are the six motions, A is the matrix without rows, b the right side.
 struct ComponentUnknown {
@@ -27,21 +27,21 @@ struct ComponentUnknown {
   std::size_t begin = 0;                                     ///< of its nodes in the wide layout, and of the fields
   AlignedVector<btScalar> motions[Dynamics::kRigidMotions];  ///< Z, in the wide layout from `begin` on
   AlignedVector<btScalar> images[Dynamics::kRigidMotions];   ///< A Z, likewise
-  Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Z^T A Z
-  Vector6 began = Vector6::Zero();                                         ///< Z^T b
+  Small6x6 mass;                                             ///< Z^T A Z
+  Small6 began;                                              ///< Z^T b
 
   /// Those of a body's first `most` components, without components that have a pinned node.
   /// dynamics  whose matrix has no rows added yet
   static std::vector<ComponentUnknown> makeAll(const Dynamics& dynamics, std::size_t most, ParallelFor* threads);
 
   /// Z^T A times a vector in the wide layout.
-  Vector6 imageProducts(const btScalar* wide) const;
+  Small6 imageProducts(const btScalar* wide) const;
   /// Z^T times a vector in the wide layout.
-  Vector6 motionProducts(const btScalar* wide) const;
+  Small6 motionProducts(const btScalar* wide) const;
   /// Adds A Z q to a vector in the wide layout.
-  void addImages(const Vector6& q, btScalar* wide) const;
+  void addImages(const Small6& q, btScalar* wide) const;
   /// Adds Z q to the solution.
-  void addMotions(const Vector6& q, Dynamics& dynamics) const;
+  void addMotions(const Small6& q, Dynamics& dynamics) const;
   /// Z at the point where a row acts on the body; 0 if it belongs to another component.
   RowMotions motionsAt(const Dynamics& dynamics, const CarriedPoint& point) const;
 

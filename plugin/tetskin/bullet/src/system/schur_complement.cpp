@@ -7,6 +7,33 @@
 #include <numeric>
 
 namespace tetskin::bullet_detail {
+namespace {
+
+// Loops, as each of Eigen's products of matrices takes the compiler a second.
+
+/// value = by^T value
+void multiplyFromLeft(const SchurComplement::Matrix& by, SchurComplement::Block& value) {
+  std::vector<double> column(static_cast<std::size_t>(value.rows()));
+  for (Eigen::Index j = 0; j < value.cols(); ++j) {
+    std::copy(&value(0, j), &value(0, j) + value.rows(), column.begin());
+    for (Eigen::Index i = 0; i < value.rows(); ++i) {
+      value(i, j) = std::inner_product(column.begin(), column.end(), &by(0, i), 0.0);
+    }
+  }
+}
+
+/// value = value by
+void multiplyFromRight(const SchurComplement::Matrix& by, SchurComplement::Block& value) {
+  std::vector<double> row(static_cast<std::size_t>(value.cols()));
+  for (Eigen::Index i = 0; i < value.rows(); ++i) {
+    for (Eigen::Index k = 0; k < value.cols(); ++k) row[static_cast<std::size_t>(k)] = value(i, k);
+    for (Eigen::Index j = 0; j < value.cols(); ++j) {
+      value(i, j) = std::inner_product(row.begin(), row.end(), &by(0, j), 0.0);
+    }
+  }
+}
+
+}  // namespace
 
 Eigen::Index SchurComplement::addRigid(const Matrix& inverseMass) {
   assert(inverseMass.rows() == inverseMass.cols());
@@ -89,14 +116,37 @@ SchurComplement::Block SchurComplement::block(Eigen::Index row, Eigen::Index col
   return {matrix_.valuePtr() + columns.firstValue + top, rows.size, columns.size, Eigen::OuterStride<>(columns.height)};
 }
 
+void SchurComplement::add(Eigen::Index row, Eigen::Index column, const Small6x6& more) {
+  Block to = block(row, column);
+  assert(to.rows() == 6 && to.cols() == 6);
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 6; ++i) to(i, j) += more(i, j);
+  }
+}
+
+void SchurComplement::addProduct(Eigen::Index row, Eigen::Index column, double sign,
+                                 const Eigen::Matrix<double, 3, Eigen::Dynamic>& a, const Small3x3& h,
+                                 const Eigen::Matrix<double, 3, Eigen::Dynamic>& b) {
+  Block to = block(row, column);
+  // Sums are in the order of Eigen's products, which depends on their size.
+  const bool halved = 3 + a.cols() + b.cols() < 20;
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    const Small3 left = sign * transposeTimes(h, smallFrom<3>(&a(0, i)));
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      const double terms[3] = {left[0] * b(0, j), left[1] * b(1, j), left[2] * b(2, j)};
+      to(i, j) += halved ? halvedSum<3>(terms) : (terms[0] + terms[1]) + terms[2];
+    }
+  }
+}
+
 void SchurComplement::factor() {
   for (const Group& columns : groups_) {
     for (const std::size_t r : columns.rows) {
       const Group& rows = groups_[r];
       Block value = block(rows.first, columns.first);
-      if (rows.isRigid()) value = (rows.root.transpose() * value).eval();
-      if (columns.isRigid()) value = (value * columns.root).eval();
-      if (&rows == &columns && rows.isRigid()) value.diagonal().array() += 1.0;
+      if (rows.isRigid()) multiplyFromLeft(rows.root, value);
+      if (columns.isRigid()) multiplyFromRight(columns.root, value);
+      for (Eigen::Index k = 0; &rows == &columns && rows.isRigid() && k < rows.size; ++k) value(k, k) += 1.0;
     }
   }
   factor_.factorize(matrix_);

@@ -5,6 +5,8 @@
 // couple, ordered once per step and factored once per pass.
 #pragma once
 
+#include <tetskin/core/src/base/arithmetic/small_matrix.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
@@ -42,6 +44,11 @@ class SchurComplement {
   /// The block of K with the rows of one group, and the columns of the same or an earlier one. There is none for the
   /// opposite, as K is symmetric.
   Block block(Eigen::Index row, Eigen::Index column);
+  /// Adds to a block of six rows and columns.
+  void add(Eigen::Index row, Eigen::Index column, const Small6x6& more);
+  /// Adds sign a^T h b to a block.
+  void addProduct(Eigen::Index row, Eigen::Index column, double sign, const Eigen::Matrix<double, 3, Eigen::Dynamic>& a,
+                  const Small3x3& h, const Eigen::Matrix<double, 3, Eigen::Dynamic>& b);
   /// Replaces K by its factors.
   /// Cost  O(n) where groups are coupled like the links of chains or trees, O(n^3) where all are coupled with all
   void factor();

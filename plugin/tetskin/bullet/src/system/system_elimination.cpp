@@ -9,7 +9,6 @@
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/system/system_solve.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cassert>
 
@@ -21,21 +20,33 @@ constexpr double kStiffPart = 5.0;
 /// Most components of a body whose rigid motions are separate unknowns.
 constexpr std::size_t kMaxParts = 64;
 
-Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
-  Eigen::Matrix3d to;
+Small3x3 toSmallMatrix(const btMatrix3x3& m) {
+  Small3x3 to;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) to(i, j) = static_cast<double>(m[i][j]);
   }
   return to;
 }
 
-/// In one place, and into a separate vector: the compiler takes seconds for each kind of vector that Eigen solves
-/// into.
-Vector6 ldltSolve(const Eigen::Matrix<double, 6, 6>& matrix, const Vector6& right) {
-  return matrix.ldlt().solve(right);
+}  // namespace
+
+SystemSolve::Vector SystemSolve::zeros(Eigen::Index size) {
+  Vector v(size);
+  std::fill(v.data(), v.data() + size, 0.0);
+  return v;
 }
 
-}  // namespace
+void SystemSolve::addTimes(double factor, const Vector& of, Vector& to) {
+  assert(of.size() <= to.size());
+  for (Eigen::Index k = 0; k < of.size(); ++k) to[k] += factor * of[k];
+}
+
+double SystemSolve::dotOfFirst(Eigen::Index size, const Vector& a, const Vector& b) {
+  assert(size <= a.size() && size <= b.size());
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < size; ++k) sum += a[k] * b[k];
+  return sum;
+}
 
 void SystemSolve::numberRigids() {
   for (const std::size_t r : system_.rigids) {
@@ -43,7 +54,7 @@ void SystemSolve::numberRigids() {
     unknown.first = schurComplement_.addRigid(unknown.inverseMass);
   }
   rigidSize_ = schurComplement_.size();
-  rigidMomentum_ = rigidPush_ = Vector::Zero(rigidSize_);
+  rigidMomentum_ = rigidPush_ = zeros(rigidSize_);
 }
 
 void SystemSolve::collectComponents() {
@@ -62,10 +73,10 @@ void SystemSolve::collectComponents() {
     }
     bodies_[k].lastComponent = components_.size();
   }
-  if (!components_.empty()) motionsOf_.assign(system_.rows.size(), {RowMotions::Zero(), RowMotions::Zero()});
+  if (!components_.empty()) motionsOf_.assign(system_.rows.size(), {});
   forEachBody([&](Body& body, ParallelFor*) { findEndMotions(body); });
   reducedSize_ = schurComplement_.size();
-  reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = Vector::Zero(reducedSize_);
+  reduced_ = reducedStep_ = reducedResidual_ = images_ = imagesBefore_ = partsBefore_ = zeros(reducedSize_);
   stepImages_ = reduced_;
   if (reducedSize_ > 0) coupleReduced();
 }
@@ -106,7 +117,7 @@ void SystemSolve::findEndMotions(const Body& body) {
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     for (const BodyEnd& end : body.ends.list()) {
       const RowMotions motions = components_[c].motionsAt(body.dynamics(), pointOf(end.row, end.index));
-      if (motions.isZero(0.0)) continue;
+      if (isZero(motions)) continue;
       componentOf_[end.row][end.index] = &components_[c];
       motionsOf_[end.row][end.index] = motions;
     }
@@ -117,19 +128,20 @@ void SystemSolve::findEndMotions(const Body& body) {
 void SystemSolve::moveIntoComponents(const Body& body) {
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     const ComponentUnknown& component = components_[c];
-    reduced_.segment<6>(component.first) = ldltSolve(component.mass, component.imageProducts(body.matrix().solution()));
-    component.addMotions(-reduced_.segment<6>(component.first), body.dynamics());
+    const Small6 moved = SmallLdlt<6>(component.mass).solve(component.imageProducts(body.matrix().solution()));
+    setPart(reduced_, component, moved);
+    component.addMotions(-moved, body.dynamics());
   }
 }
 
 void SystemSolve::moveOutOfComponents(const Body& body) {
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c)
-    components_[c].addMotions(reduced_.segment<6>(components_[c].first), body.dynamics());
+    components_[c].addMotions(partOf(reduced_, components_[c]), body.dynamics());
 }
 
 /// Z^T A (y + Z q)
-Vector6 SystemSolve::momentumOf(const ComponentUnknown& component) const {
-  return images_.segment<6>(component.first) + component.mass * reduced_.segment<6>(component.first);
+Small6 SystemSolve::momentumOf(const ComponentUnknown& component) const {
+  return partOf(images_, component) + component.mass * partOf(reduced_, component);
 }
 
 /// The nodes' equations also contain each component's rigid motion, and must agree with its own equation about it:
@@ -139,8 +151,8 @@ void SystemSolve::matchComponents(const Body& body) {
   btScalar* residual = body.matrix().residual();
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
     const ComponentUnknown& component = components_[c];
-    const Vector6 excess = component.motionProducts(residual) - reducedResidual_.segment<6>(component.first);
-    component.addImages(-ldltSolve(component.mass, excess), residual);
+    const Small6 excess = component.motionProducts(residual) - partOf(reducedResidual_, component);
+    component.addImages(-SmallLdlt<6>(component.mass).solve(excess), residual);
   }
 }
 
@@ -154,7 +166,7 @@ btVector3 SystemSolve::reducedVelocity(std::size_t r, const Vector& reduced) con
   for (std::size_t e = 0; e < 2; ++e) {
     btVector3 velocity = in_.rigids.velocity(system_.rows[r]->ends[e].rigid, reduced);
     if (isOnComponent(r, e)) {
-      velocity += toBullet(motionsOf_[r][e] * reduced.segment<6>(componentOf_[r][e]->first));
+      velocity += fromSmall(motionsOf_[r][e] * partOf(reduced, *componentOf_[r][e]));
     }
     sum += btScalar(signOf(e)) * velocity;
   }
@@ -167,7 +179,7 @@ void SystemSolve::addRowPush(std::size_t r, const btVector3& push, Vector& to) c
     const btVector3 own = btScalar(signOf(e)) * push;
     in_.rigids.addImpulse(system_.rows[r]->ends[e].rigid, own, to);
     if (isOnComponent(r, e)) {
-      to.segment<6>(componentOf_[r][e]->first) += motionsOf_[r][e].transpose() * toEigen(own);
+      addPart(to, *componentOf_[r][e], transposeTimes(motionsOf_[r][e], toSmall(own)));
     }
   }
 }
@@ -183,12 +195,13 @@ void SystemSolve::addRowPushes(const std::vector<btVector3>& steps, Vector& to) 
 /// The momentum of rigid bodies and components that is left.
 void SystemSolve::findReducedResiduals() {
   assert(reducedResidual_.size() == reducedSize_ && rigidMomentum_.size() == rigidSize_);
-  reducedResidual_.setZero();
-  reducedResidual_.head(rigidSize_) -= rigidMomentum_;
+  std::fill(reducedResidual_.data(), reducedResidual_.data() + reducedSize_, 0.0);
+  addTimes(-1.0, rigidMomentum_, reducedResidual_);
   imagesBefore_ = images_;
   for (const ComponentUnknown& component : components_) {
-    partsBefore_.segment<6>(component.first) = momentumOf(component);
-    reducedResidual_.segment<6>(component.first) += component.began - partsBefore_.segment<6>(component.first);
+    const Small6 momentum = momentumOf(component);
+    setPart(partsBefore_, component, momentum);
+    addPart(reducedResidual_, component, component.began - momentum);
   }
   for (const std::size_t r : reducedRows_) {
     addRowPush(r, system_.rows[r]->impulse - system_.rows[r]->given, reducedResidual_);
@@ -209,26 +222,25 @@ void SystemSolve::findReducedStiffness() {
   schurComplement_.setZero();
   for (const std::size_t r : reducedRows_) {
     if (system_.rows[r]->state == ContactRow::State::Apart) continue;
-    const Eigen::Matrix3d h = toEigenMatrix(system_.rows[r]->tangent);
+    const Small3x3 h = toSmallMatrix(system_.rows[r]->tangent);
     for (std::size_t a = 0; a < 2; ++a) {
       for (std::size_t b = 0; b < 2; ++b) addReducedStiffness(r, a, b, h);
     }
   }
   for (const ComponentUnknown& component : components_) {
-    schurComplement_.block(component.first, component.first) += component.mass;
+    schurComplement_.add(component.first, component.first, component.mass);
   }
 }
 
 /// Adds J_a^T H J_b, where it belongs to the lower triangle.
-void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t b, const Eigen::Matrix3d& h) {
+void SystemSolve::addReducedStiffness(std::size_t r, std::size_t a, std::size_t b, const Small3x3& h) {
   const Eigen::Index first = firstReduced(r, a), second = firstReduced(r, b);
   if (second < 0 || first < second) return;
-  auto block = schurComplement_.block(first, second);
   const double sign = signOf(a) * signOf(b);
   if (hasRowMotions(r, a) && hasRowMotions(r, b)) {  // nearly always, so that nothing is allocated
-    block += sign * (rowMotions(r, a).transpose() * h * rowMotions(r, b));
+    schurComplement_.add(first, second, sign * (transposeTimes(rowMotions(r, a), h) * rowMotions(r, b)));
   } else {
-    block += sign * (jacobianOf(r, a).transpose() * h * jacobianOf(r, b));
+    schurComplement_.addProduct(first, second, sign, jacobianOf(r, a), h, jacobianOf(r, b));
   }
 }
 
@@ -243,7 +255,7 @@ RowMotions SystemSolve::rowMotions(std::size_t r, std::size_t e) const {
 }
 
 RigidUnknowns::Jacobian SystemSolve::jacobianOf(std::size_t r, std::size_t e) const {
-  return isOnComponent(r, e) ? RigidUnknowns::Jacobian(motionsOf_[r][e])
+  return isOnComponent(r, e) ? RigidUnknowns::toJacobian(motionsOf_[r][e])
                              : in_.rigids.jacobianOf(system_.rows[r]->ends[e].rigid);
 }
 
@@ -263,7 +275,7 @@ void SystemSolve::addReduced(const Body& body, const Vector& reduced, btScalar s
     body.ends.addImpulse(end, (sign * own) * (system_.rows[end.row]->tangent * velocity), to);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
-    components_[c].addImages(static_cast<double>(sign) * reduced.segment<6>(components_[c].first), to);
+    components_[c].addImages(static_cast<double>(sign) * partOf(reduced, components_[c]), to);
   }
 }
 
@@ -279,15 +291,15 @@ void SystemSolve::moveReduced() {
   Vector push = reducedResidual_, left = reducedResidual_;
   addRowPushes(stepped_, push);
   for (const ComponentUnknown& component : components_) {
-    push.segment<6>(component.first) -= images_.segment<6>(component.first) - imagesBefore_.segment<6>(component.first);
+    addPart(push, component, -(partOf(images_, component) - partOf(imagesBefore_, component)));
   }
   reducedStep_ = schurComplement_.solve(push);
-  reduced_ += reducedStep_;
+  addTimes(1.0, reducedStep_, reduced_);
   forEachRow([&](std::size_t r) { stepped_[r] = velocityOf(r) - before_[r]; });
   if (rigidSize_ == 0) return;
   addRowPushes(stepped_, left);
-  rigidPush_ = left.head(rigidSize_);
-  rigidMomentum_ += rigidPush_;
+  std::copy(left.data(), left.data() + rigidSize_, rigidPush_.data());
+  addTimes(1.0, rigidPush_, rigidMomentum_);
 }
 
 /// The residual that is left is small in terms of velocity, but with stiff rows its impulses need not be small. The few
@@ -295,7 +307,7 @@ void SystemSolve::moveReduced() {
 void SystemSolve::settleReduced() {
   if (reducedSize_ == 0) return;
   const Vector change = schurComplement_.solve(reducedResidual_);
-  reduced_ += change;
+  addTimes(1.0, change, reduced_);
   for (const std::size_t r : reducedRows_) {
     ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) row.impulse -= row.tangent * reducedVelocity(r, change);
@@ -313,14 +325,15 @@ void SystemSolve::readPoints(std::size_t k) {
     endSteps_[end.row][end.index] = body.ends.stepVelocity(end);
   }
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
-    stepImages_.segment<6>(components_[c].first) = components_[c].imageProducts(body.matrix().step());
+    setPart(stepImages_, components_[c], components_[c].imageProducts(body.matrix().step()));
   }
 }
 
 void SystemSolve::combine() {
   if (!system_.forces.empty()) in_.others.multiplySteps(system_);
   if (reducedSize_ == 0) return;
-  Vector push = -stepImages_;
+  Vector push = stepImages_;
+  for (Eigen::Index k = 0; k < push.size(); ++k) push[k] = -push[k];
   for (const std::size_t r : reducedRows_) {
     const ContactRow& row = *system_.rows[r];
     if (row.state != ContactRow::State::Apart) addRowPush(r, row.tangent * (endSteps_[r][1] - endSteps_[r][0]), push);

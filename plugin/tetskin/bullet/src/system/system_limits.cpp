@@ -104,7 +104,7 @@ elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
     share = std::min(share, shareOfImpulses(body.solved));
   }
   for (const ComponentUnknown& component : components_) {
-    byMasses += reduced_.segment<6>(component.first).dot(partsBefore_.segment<6>(component.first));
+    byMasses += dot(partOf(reduced_, component), partOf(partsBefore_, component));
   }
   const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
     return row->joined && !(row->highest < BT_LARGE_FLOAT);

@@ -129,7 +129,7 @@ void SystemSolve::beginBounds() {
 void SystemSolve::readSolution(Body& body) {
   for (const BodyEnd& end : body.ends.list()) endVelocities_[end.row][end.index] = body.ends.velocity(end);
   for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
-    images_.segment<6>(components_[c].first) = components_[c].imageProducts(body.matrix().solution());
+    setPart(images_, components_[c], components_[c].imageProducts(body.matrix().solution()));
   }
 }
 
@@ -145,7 +145,7 @@ void SystemSolve::findResiduals() {
     body.dynamics().restart(inner);
     in_.others.addResiduals(system_, body.index);
     for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
-      components_[c].addImages(-reduced_.segment<6>(components_[c].first), body.matrix().residual());
+      components_[c].addImages(-partOf(reduced_, components_[c]), body.matrix().residual());
     }
   });
 }
@@ -179,7 +179,7 @@ bool SystemSolve::start(int pass) {
   solve.start(std::move(matrices), limits, coupled ? this : nullptr, threads_);
   const double accepted = kAccepted * kAccepted * limits.enough;
   double squared = solve.squaredResidual();
-  if (reducedSize_ > 0) squared += reducedResidual_.dot(schurComplement_.solve(reducedResidual_));
+  if (reducedSize_ > 0) squared += dotOfFirst(reducedSize_, reducedResidual_, schurComplement_.solve(reducedResidual_));
   chooseMoving();
   return squared <= accepted;
 }
@@ -270,7 +270,7 @@ double SystemSolve::slope(btScalar fraction, double linear, double quadratic) co
     const ContactRow& row = *system_.rows[r];
     ContactRow::State state{};
     const btVector3 impulse = impulseAt(row, before_[r] + fraction * stepped_[r], false, state);
-    sum -= toEigen(impulse - row.given).dot(toEigen(stepped_[r]));
+    sum -= dot(toSmall(impulse - row.given), toSmall(stepped_[r]));
   }
   return sum;
 }
@@ -278,8 +278,10 @@ double SystemSolve::slope(btScalar fraction, double linear, double quadratic) co
 /// The fraction of the pass's step to take.
 btScalar SystemSolve::searchLine() {
   findResiduals();
-  const Vector rigidStep = reducedStep_.head(rigidSize_);
-  double linear = rigidStep.dot(rigidMomentum_ - rigidPush_), quadratic = rigidStep.dot(rigidPush_);
+  Vector rigidBefore = rigidMomentum_;
+  addTimes(-1.0, rigidPush_, rigidBefore);
+  double linear = dotOfFirst(rigidSize_, reducedStep_, rigidBefore);
+  double quadratic = dotOfFirst(rigidSize_, reducedStep_, rigidPush_);
   forEachBody([](Body& body, ParallelFor*) {
     const auto& matrix = body.matrix();
     const btScalar *solution = matrix.solution(), *residual = body.matrix().residual();
@@ -296,10 +298,9 @@ btScalar SystemSolve::searchLine() {
     quadratic += body.quadratic;
   }
   for (const ComponentUnknown& component : components_) {
-    const Vector6 step = reducedStep_.segment<6>(component.first);
-    const Vector6 grown = momentumOf(component) - partsBefore_.segment<6>(component.first);
-    linear += step.dot(partsBefore_.segment<6>(component.first) - component.began);
-    quadratic += step.dot(grown);
+    const Small6 step = partOf(reducedStep_, component), was = partOf(partsBefore_, component);
+    linear += dot(step, was - component.began);
+    quadratic += dot(step, momentumOf(component) - was);
   }
   return static_cast<btScalar>(
       stepFraction([&](double fraction) { return slope(static_cast<btScalar>(fraction), linear, quadratic); }));
@@ -315,8 +316,8 @@ void SystemSolve::moveBack(btScalar fraction) {
     readSolution(body);
   });
   const auto rest = static_cast<double>(1 - fraction);
-  reduced_ -= rest * reducedStep_;
-  rigidMomentum_ -= rest * rigidPush_;
+  addTimes(-rest, reducedStep_, reduced_);
+  addTimes(-rest, rigidPush_, rigidMomentum_);
   for (btVector3& step : stepped_) step *= fraction;
 }
 
@@ -340,7 +341,7 @@ void SystemSolve::giveMomentum() {
       if (body.solved.elastic && body.solved.fixed.empty() && !isHung(body)) removeMomentumError(body);
     });
   }
-  Vector push = Vector::Zero(reducedSize_);
+  Vector push = zeros(reducedSize_);
   for (const std::size_t r : reducedRows_) {
     const ContactRow& row = *system_.rows[r];
     const btVector3 more = row.impulse - row.given;
@@ -353,7 +354,7 @@ void SystemSolve::giveMomentum() {
 void SystemSolve::removeMomentumError(Body& body) const {
   std::vector<std::array<double, 3>> impulses(body.dynamics().nodeCount(), {0.0, 0.0, 0.0});
   std::vector<std::array<double, 3>> torques(body.dynamics().componentCount(), {0.0, 0.0, 0.0});
-  Eigen::Vector3d net = Eigen::Vector3d::Zero();
+  Small3 net;
   double pressed = 0.0;
   for (const BodyEnd& of : body.ends.list()) {
     const CarriedPoint& point = pointOf(of.row, of.index);
@@ -362,8 +363,8 @@ void SystemSolve::removeMomentumError(Body& body) const {
     if (row.joined) {
       addTorqueOfGap(body, of, impulse, torques);
     } else {
-      net += toEigen(impulse);
-      pressed += toEigen(impulse).norm();
+      net += toSmall(impulse);
+      pressed += norm(toSmall(impulse));
     }
     for (std::uint32_t n = 0; n < point.count; ++n) {
       auto& to = impulses[static_cast<std::size_t>(point.nodes[n])];
@@ -374,10 +375,10 @@ void SystemSolve::removeMomentumError(Body& body) const {
   }
   std::vector<HeldPoint> held;
   std::vector<ContactRow*> rows;
-  if (pressed > kSqueezed * net.norm()) findHeld(body, held, rows);
+  if (pressed > kSqueezed * norm(net)) findHeld(body, held, rows);
   body.dynamics().removeMomentum([&](std::size_t node) { return impulses[node]; }, torques, &held);
   for (std::size_t k = 0; k < held.size(); ++k) {
-    const btVector3 change = toBullet({held[k].change[0], held[k].change[1], held[k].change[2]});
+    const btVector3 change = fromSmall({{held[k].change[0], held[k].change[1], held[k].change[2]}});
     rows[k]->impulse -= rows[k]->tangent * change;
     rows[k]->slip += change - rows[k]->normal.dot(change) * rows[k]->normal;
   }

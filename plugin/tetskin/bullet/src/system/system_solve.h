@@ -18,6 +18,7 @@
 #include <tetskin/core/src/base/run_by_size.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 namespace tetskin::bullet_detail {
@@ -111,6 +112,22 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
                       std::vector<std::array<double, 3>>& torques) const;
   void findHeld(const Body& body, std::vector<HeldPoint>& held, std::vector<ContactRow*>& rows) const;
 
+  // Vectors of the reduced unknowns. By loops: each of Eigen's expressions takes the compiler tenths of a second.
+  static Vector zeros(Eigen::Index size);
+  /// to += factor of, for all numbers of `of`, which is the shorter one
+  static void addTimes(double factor, const Vector& of, Vector& to);
+  /// The product of the first `size` numbers of both.
+  static double dotOfFirst(Eigen::Index size, const Vector& a, const Vector& b);
+  static Small6 partOf(const Vector& of, const ComponentUnknown& component) {
+    return smallFrom<6>(of.data() + component.first);
+  }
+  static void setPart(Vector& of, const ComponentUnknown& component, const Small6& to) {
+    std::copy(to.values, to.values + 6, of.data() + component.first);
+  }
+  static void addPart(Vector& of, const ComponentUnknown& component, const Small6& more) {
+    setPart(of, component, partOf(of, component) + more);
+  }
+
   // The reduced unknowns; implemented in system_elimination.cpp.
   void numberRigids();
   void collectComponents();
@@ -121,11 +138,11 @@ class SystemSolve : private elastic_detail::ConjugateGradient<btScalar>::Couplin
   void findEndMotions(const Body& body);
   void moveIntoComponents(const Body& body);
   void moveOutOfComponents(const Body& body);
-  Vector6 momentumOf(const ComponentUnknown& component) const;
+  Small6 momentumOf(const ComponentUnknown& component) const;
   void matchComponents(const Body& body);
   void findReducedResiduals();
   void findReducedStiffness();
-  void addReducedStiffness(std::size_t row, std::size_t a, std::size_t b, const Eigen::Matrix3d& h);
+  void addReducedStiffness(std::size_t row, std::size_t a, std::size_t b, const Small3x3& h);
   bool hasRowMotions(std::size_t row, std::size_t end) const;
   RowMotions rowMotions(std::size_t row, std::size_t end) const;
   RigidUnknowns::Jacobian jacobianOf(std::size_t row, std::size_t end) const;
