@@ -28,11 +28,11 @@ SceneOptions withReduction(const Model& model, const Placement& position, const 
 
 }  // namespace
 
-Player::Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how)
+Player::Player(const ModelOptions& options, const MakeScene& makeScene, const SceneOptions& how)
     : options_(options),
       model_(loadModel(options)),
       position_(placementOf(boundingBox(model_.cage.mesh.nodes))),
-      scene_(sceneNamed(scene).make(position_.toWorld(model_.cage), withReduction(model_, position_, options, how))) {
+      scene_(makeScene(position_.toWorld(model_.cage), withReduction(model_, position_, options, how))) {
   position_.offset = scene_->offset;
 }
 
