@@ -12,6 +12,7 @@
 #include "scenes/frame_writer.h"
 #include "scenes/input_error.h"
 #include "scenes/materials.h"
+#include "scenes/obstacles.h"
 #include "scenes/player.h"
 #include "scenes/printed_table.h"
 #include "scenes/recording.h"
@@ -88,7 +89,7 @@ class Drop {
  public:
   explicit Drop(const DropOptions& options)
       : options_(options),
-        player_(options.model, "obstacles", howOf(options)),
+        player_(options.model, makeObstacles, howOf(options)),
         surface_(player_.carry(options.skin)),
         restExtent_(bounds().sizes().maxCoeff()) {
     if (options.contactPossible() == Contact::Surface) player_.touchBySurface();

@@ -16,6 +16,7 @@
 #include "scenes/printed_table.h"
 #include "scenes/recording.h"
 #include "scenes/summary.h"
+#include "scenes/table.h"
 #include "scenes/wring.h"
 
 namespace {
@@ -204,7 +205,7 @@ Recording record(const OutputOptions& output, const std::string& view, const Mod
 
 int run(const TwistOptions& options) {
   const std::string view = viewPath(options.output);
-  Player player(options.model, "wring");
+  Player player(options.model, makerOf("wring"));
   const auto carry = [&](Interpolation interpolation) -> const Carried& {
     SkinOptions skin = options.skin;
     skin.interpolation = interpolation;

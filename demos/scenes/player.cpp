@@ -28,11 +28,11 @@ SceneOptions withReduction(const Model& model, const Placement& position, const 
 
 }  // namespace
 
-Player::Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how)
+Player::Player(const ModelOptions& options, const MakeScene& makeScene, const SceneOptions& how)
     : options_(options),
       model_(loadModel(options)),
       placement_(placementOf(boundingBox(model_.cage.mesh.nodes))),
-      scene_(sceneNamed(scene).make(placement_.toWorld(model_.cage), withReduction(model_, placement_, options, how))) {
+      scene_(makeScene(placement_.toWorld(model_.cage), withReduction(model_, placement_, options, how))) {
   placement_.offset = scene_->offset;
 }
 

@@ -8,7 +8,7 @@
 #include "scenes/command_line.h"
 #include "scenes/placement.h"
 #include "scenes/playback.h"
-#include "scenes/table.h"
+#include "scenes/scene.h"
 
 namespace tetskin::scenes {
 
@@ -23,8 +23,11 @@ struct Carried {
 /// Frame 0 is the model at rest.
 class Player {
  public:
+  /// Makes a scene with a cage, see scenes/table.h, where those of `sceneTable` are.
+  using MakeScene = std::function<std::unique_ptr<Scene>(const Cage& cage, const SceneOptions& options)>;
+
   /// Loads the model. Throws InputError.
-  Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how = {});
+  Player(const ModelOptions& options, const MakeScene& makeScene, const SceneOptions& how = {});
 
   /// Adds a surface. All later ones share the binding of the first, and may leave out its quadratic skinning. Throws
   /// InputError if mesh and cage do not fit.

@@ -8,7 +8,7 @@
 
 namespace tetskin::scenes {
 
-// One line per scene: its maker is make<Name>, in a file of the folder `all`. Name, frames, whether it lands,
+// One line per scene: its maker is make<Name>, in a file of the folder `all`, or in obstacles.cpp. Name, frames, whether it lands,
 // description.
 #define TETSKIN_SCENES(SCENE)                                                                                       \
   SCENE(Sag, "sag", 60, false, "pinned at its lower end, under gravity")                                            \
@@ -74,6 +74,12 @@ const SceneEntry& sceneNamed(const std::string& name) {
   const auto found = std::find_if(table.begin(), table.end(), [&](const SceneEntry& e) { return e.name == name; });
   if (found != table.end()) return *found;
   throw InputError("unknown scene '" + name + "'; choose from: " + sceneNames());
+}
+
+std::function<std::unique_ptr<Scene>(const Cage&, const SceneOptions&)> makerOf(const std::string& name) {
+  return [&entry = sceneNamed(name)](const Cage& cage, const SceneOptions& options) {
+    return entry.make(cage, options);
+  };
 }
 
 std::unique_ptr<Scene> SceneEntry::make(const Cage& cage, SceneOptions options) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tetskin/core/cage.h>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,5 +32,7 @@ const std::vector<SceneEntry>& sceneTable();
 std::string sceneNames();
 /// The scene with this name. Throws InputError, with all names, if there is none.
 const SceneEntry& sceneNamed(const std::string& name);
+/// What makes this scene, for `Player`. Throws InputError, with all names, if there is none.
+std::function<std::unique_ptr<Scene>(const Cage&, const SceneOptions&)> makerOf(const std::string& name);
 
 }  // namespace tetskin::scenes

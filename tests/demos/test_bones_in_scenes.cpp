@@ -41,7 +41,7 @@ struct Offsets {
 };
 
 Offsets offsetsOf(const char* scene, const scenes::ModelOptions& model, int frames, Interpolation interpolation) {
-  Player player(model, scene);
+  Player player(model, scenes::makerOf(scene));
   SkinOptions options;
   options.interpolation = Interpolation::Quadratic;
   options.normals = Normals::Transformed;

@@ -8,14 +8,21 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// u^T K u for each column of the displacements of these nodes.
-template <class Stiffness, class Nodes>
-Eigen::RowVectorXd energiesOf(const Stiffness& stiffness, const Nodes& nodes, const Fields& displacements) {
-  Eigen::Matrix<double, Stiffness::RowsAtCompileTime, Eigen::Dynamic> moved(stiffness.rows(), displacements.cols());
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    moved.template middleRows<3>(static_cast<Eigen::Index>(3 * k)) = displacements.middleRows<3>(3 * nodes[k]);
+/// u^T K u for each column of the displacements of these nodes. The compiler needs a second for each size of a product
+/// with sizes that it knows.
+template <class Stiffness, std::size_t N>
+Eigen::RowVectorXd energiesOf(const Stiffness& stiffness, const std::array<int, N>& nodes,
+                              const Fields& displacements) {
+  static_assert(Stiffness::RowsAtCompileTime == 3 * N);
+  Eigen::MatrixXd moved(stiffness.rows(), displacements.cols());
+  for (std::size_t k = 0; k < N; ++k) {
+    moved.middleRows<3>(static_cast<Eigen::Index>(3 * k)) = displacements.middleRows<3>(3 * nodes[k]);
   }
-  return moved.cwiseProduct((stiffness * moved).eval()).colwise().sum();
+  const Eigen::MatrixXd forces = Eigen::MatrixXd(stiffness) * moved;
+  Eigen::RowVectorXd energies(moved.cols());
+  using Column = Eigen::Map<const Eigen::Matrix<double, 3 * N, 1>>;
+  for (Eigen::Index k = 0; k < moved.cols(); ++k) energies[k] = Column(&moved(0, k)).dot(Column(&forces(0, k)));
+  return energies;
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/cross_matrix.h>
+#include <tetskin/elastic/src/base/small_solves.h>
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -39,6 +39,12 @@ Matrix3d inertiaOf(const Matrix3d& turn, const Matrix3d& spread) {
   return p.trace() * Matrix3d::Identity() - p;
 }
 
+/// x such that A x = b.
+Vector3d solved(Matrix3d a, Vector3d b) {
+  solveSmall(3, a.data(), b.data());
+  return b;
+}
+
 Matrix3d rotationBy(const Vector3d& angle) {
   const double size = angle.norm();
   if (!(size > 0.0)) return Matrix3d::Identity();
@@ -68,7 +74,8 @@ Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
   constexpr int kMaxSteps = 12;
   // Radians: the next step would be below the last digit.
   constexpr double kConverged = 1e-14;
-  Vector3d step = inertiaOf(Matrix3d::Identity(), spread).ldlt().solve(moment);
+  Vector3d step = moment;
+  SymmetricFactors(inertiaOf(Matrix3d::Identity(), spread).data()).solve(step.data());
   const double sine = step.norm();
   if (!std::isfinite(sine)) return Matrix3d::Identity();
   if (sine > kMaxSineOfTurn) {
@@ -79,7 +86,7 @@ Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
   for (int k = 0; k < kMaxSteps; ++k) {
     turn = rotationBy(step) * turn;
     if (step.norm() < kConverged) break;
-    step = inertiaOf(turn, spread).partialPivLu().solve(moment - momentOf(turn, spread));
+    step = solved(inertiaOf(turn, spread), moment - momentOf(turn, spread));
     if (!(step.norm() < 1.0)) return Matrix3d::Identity();
   }
   return turn;
@@ -233,11 +240,13 @@ RigidVelocity ComponentMotion::excess(const ComponentMomentum& now, const Vector
   Resistance inertia = held;
   inertia.topLeftCorner<3, 3>().diagonal().array() += mass_;
   inertia.bottomRightCorner<3, 3>() += inertiaOf(turn_, second_);
-  Eigen::Matrix<double, 6, 1> wanted;
-  wanted << momentum, spin;
-  const Eigen::Matrix<double, 6, 1> found = inertia.partialPivLu().solve(wanted);
-  if (!found.allFinite()) return {};
-  return rigidVelocity(about_, found.head<3>(), crossMatrix(found.tail<3>()) * turn_);
+  double found[6];
+  keep(momentum, found);
+  keep(spin, found + 3);
+  solveSmall(6, inertia.data(), found);
+  const Vector3d push = vectorOf(found), rate = vectorOf(found + 3);
+  if (!(push.allFinite() && rate.allFinite())) return {};
+  return rigidVelocity(about_, push, crossMatrix(rate) * turn_);
 }
 
 void ComponentMotion::addResistance(const Vector3d& point, const Matrix3d& stiffness, Resistance& to) const {
@@ -257,7 +266,7 @@ RigidVelocity ComponentMotion::rigidWith(const Vector3d& momentum, const Vector3
   const Matrix3d inertia = inertiaOf(turn, second_);
   if (pinned_.kind == PinnedNodes::Nothing && mass_ > 0.0) push = momentum / mass_;
   if (pinned_.kind == PinnedNodes::Nothing || pinned_.kind == PinnedNodes::Point)
-    rate = inertia.partialPivLu().solve(spin);
+    rate = solved(inertia, spin);
   if (pinned_.kind == PinnedNodes::Line)
     rate = pinned_.axis * (pinned_.axis.dot(spin) / pinned_.axis.dot(inertia * pinned_.axis));
   if (!push.allFinite()) push.setZero();

@@ -48,7 +48,7 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) :
     component.inertia +=
         masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
   }
-  for (Component& component : components_) component.inertiaFactors.compute(component.inertia);
+  for (Component& component : components_) component.inertiaFactors = SymmetricFactors(component.inertia.data());
 }
 
 void RigidMotions::removeFrom(Fields& displacements) const {
@@ -65,8 +65,8 @@ void RigidMotions::removeFrom(Fields& displacements) const {
   for (std::size_t p = 0; p < components_.size(); ++p) {
     linear.middleRows<3>(rowOf(p)) /= components_[p].mass;
     for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
-      const Eigen::Vector3d spin = angular.block<3, 1>(rowOf(p), k);
-      const Eigen::Vector3d velocity = components_[p].inertiaFactors.solve(spin);
+      Eigen::Vector3d velocity = angular.block<3, 1>(rowOf(p), k);
+      components_[p].inertiaFactors.solve(velocity.data());
       angular.block<3, 1>(rowOf(p), k) = velocity;
     }
   }

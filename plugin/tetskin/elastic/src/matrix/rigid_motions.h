@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/elastic/src/base/small_solves.h>
 #include <tetskin/elastic/src/matrix/linear_elasticity.h>
 
-#include <Eigen/Cholesky>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -34,7 +34,7 @@ class RigidMotions {
     double mass = 0.0;
     Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-    Eigen::LDLT<Eigen::Matrix3d> inertiaFactors;
+    SymmetricFactors inertiaFactors;
   };
 
   std::vector<int> partOf_;            ///< by node

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "scenes/table.h"
+#include "scenes/obstacles.h"
 
 namespace tetskin::scenes {
 namespace {

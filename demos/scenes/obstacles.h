@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// The scene of tetskin_drop, which is made without the table of all scenes: who tries it compiles no other.
+#pragma once
+
+#include <tetskin/core/cage.h>
+#include <memory>
+
+#include "scenes/scene.h"
+
+namespace tetskin::scenes {
+
+/// A body above a floor, a ramp and a dome.
+std::unique_ptr<Scene> makeObstacles(const Cage& cage, const SceneOptions& options);
+
+}  // namespace tetskin::scenes
