@@ -21,36 +21,13 @@ using test::lowest;
 using test::rmsSpeed;
 using test::step;
 using test::TetskinWorld;
-using test::twoComponents;
 
 using Vector = Eigen::Vector3d;
 
 class Landing : public testing::TestWithParam<double> {};
 
-/// Steps of 1/240 s; the parameter is the stiffness in units of density x gravity x size.
-TEST_P(Landing, BouncesAndRests) {
-  TetskinWorld world;
-  SoftBodyOptions options;
-  options.relativeStiffness = GetParam();
-  const auto body = added(world, cageAbove(0.5), options);
-  step(world, 240);
-  EXPECT_LT(rmsSpeed(body->body()), 0.05);
-  EXPECT_GT(lowest(body->body()), -0.005);
-  EXPECT_LT(lowest(body->body()), 0.03);  // the margin is 0.02
-}
-
-/// One step per frame.
-TEST_P(Landing, HoldsInLongSteps) {
-  TetskinWorld world;
-  SoftBodyOptions options;
-  options.relativeStiffness = GetParam();
-  const auto body = added(world, cageAbove(0.5), options);
-  for (int f = 0; f < 240; ++f) world.deformable().stepSimulation(btScalar(1) / 60, 1, btScalar(1) / 60);
-  EXPECT_LT(rmsSpeed(body->body()), 0.05);
-  EXPECT_GT(lowest(body->body()), -0.005);
-}
-
-/// Several bodies side by side, one of them pinned at a side.
+/// Several bodies side by side, one of them pinned at a side, in steps of 1/240 s and of a frame; the parameter is the
+/// stiffness in units of density x gravity x size.
 TEST_P(Landing, HoldsForSeveralBodiesAndWithPins) {
   for (const int substeps : {4, 1}) {
     TetskinWorld world;
@@ -71,19 +48,12 @@ TEST_P(Landing, HoldsForSeveralBodiesAndWithPins) {
       EXPECT_LT(rmsSpeed(body->body()), 0.05) << substeps;
       EXPECT_GT(lowest(body->body()), -0.005) << substeps;
     }
+    EXPECT_LT(lowest(bodies[0]->body()), 0.03);  // the margin is 0.02
     EXPECT_GT(lowest(bodies[1]->body()) - lowest(bodies[0]->body()), -1e-3);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(DeformableSolver, Landing, testing::Values(50.0, 300.0, 1e4));
-
-TEST(DeformableSolver, CarriesPartsThatShareNoNode) {
-  TetskinWorld world;
-  const auto body = added(world, twoComponents(cageAbove(0.5)));
-  step(world, 180);
-  EXPECT_LT(rmsSpeed(body->body()), 0.05);
-  EXPECT_GT(lowest(body->body()), -0.005);
-}
 
 TEST(DeformableSolver, LetsBodiesSlideDownASlipperySlopeAndNotAStickyOne) {
   const auto slid = [](double friction) {
@@ -113,26 +83,6 @@ TEST(DeformableSolver, LetsBodiesSlideDownASlipperySlopeAndNotAStickyOne) {
   EXPECT_NEAR(slid(0.0), 0.5 * 10.0 * std::sin(0.3), 0.15);
   EXPECT_NEAR(slid(0.2), 0.5 * 10.0 * (std::sin(0.3) - 0.2 * std::cos(0.3)), 0.25);
   EXPECT_LT(slid(0.6), 0.1);
-}
-
-TEST(DeformableSolver, LetsAHeavyBoxRestOnALightBody) {
-  TetskinWorld world;
-  SoftBodyOptions options;
-  options.youngsModulus = 2e5;
-  const auto body = added(world, cageAbove(0.02), options);
-  btBoxShape shape(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
-  btVector3 inertia;
-  shape.calculateLocalInertia(100, inertia);
-  btRigidBody box(100, nullptr, &shape, inertia);
-  btTransform above(btQuaternion::getIdentity(), btVector3(btScalar(0.5), btScalar(1.4), btScalar(0.5)));
-  box.setWorldTransform(above);
-  box.setInterpolationWorldTransform(above);
-  world.deformable().addRigidBody(&box);
-  step(world, 240);
-  EXPECT_LT(box.getLinearVelocity().length(), 0.1);
-  EXPECT_GT(box.getWorldTransform().getOrigin().y(), 1.1);
-  EXPECT_LT(box.getWorldTransform().getOrigin().y(), 1.4);
-  world.deformable().removeRigidBody(&box);
 }
 
 /// Such contacts have no effect, as in Bullet's own solver.

@@ -85,47 +85,6 @@ TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
   expectNear(onLeft + onRight, btVector3(0, -kWeight, 0), 1e-3 * kWeight);
 }
 
-TEST(ForceRecord, AGripperHoldsByFriction) {
-  TetskinWorld world;
-  TetMesh cage = latticeCage(3, 3, 3, 0.1);
-  for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.15, 3, -0.15);
-  SoftBodyOptions highFriction;
-  highFriction.friction = 1;
-  const auto held = added(world, cage, highFriction);
-  held->body().setActivationState(DISABLE_DEACTIVATION);
-  const auto plate = [] { return std::make_unique<btBoxShape>(btVector3(0.1, 0.5, 0.5)); };
-  const btScalar margin = held->body().getCollisionShape()->getMargin();
-  const btScalar open = btScalar(0.25) + margin, closed = open - btScalar(0.02);
-  Rigid left(world, plate(), 0, btVector3(-open, 3, 0)), right(world, plate(), 0, btVector3(open, 3, 0));
-  for (Rigid* finger : {&left, &right}) {
-    finger->body->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
-    finger->body->setActivationState(DISABLE_DEACTIVATION);
-    finger->body->setFriction(1);
-  }
-  const auto forces = forcesIn(world);
-  for (int f = 0; f < 240; ++f) {
-    const btScalar x = open + (closed - open) * std::min(btScalar(f + 1) / 6, btScalar(1));
-    left.body->setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(-x, 3, 0)));
-    right.body->setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(x, 3, 0)));
-    step(world, 1);
-  }
-  AppliedForces onLeft, onRight;
-  btVector3 sum(0, 0, 0);
-  // The set of nodes in contact changes: contacts that Bullet finds last some thousandths of a second.
-  for (int f = 0; f < 30; ++f) {
-    step(world, 1);
-    onLeft = forces->forcesBetween(*left.body, held->body());
-    onRight = forces->forcesBetween(*right.body, held->body());
-    sum += onLeft.total().force + onRight.total().force;
-  }
-  expectNear(sum / 30, btVector3(0, -kWeight, 0), 1e-3 * kWeight);
-  // Bullet's normals are not exactly upright.
-  EXPECT_NEAR(onLeft.friction.force.y() + onRight.friction.force.y(), -kWeight, 0.2 * kWeight);
-  EXPECT_LT(onLeft.contact.force.x(), -kWeight);
-  EXPECT_NEAR(onLeft.contact.force.x() + onRight.contact.force.x(), 0, 0.05 * kWeight);
-  EXPECT_GT(lowest(held->body()), 2.9);
-}
-
 TEST(ForceRecord, TellsAnchorsFromContacts) {
   TetskinWorld world;
   const auto block = added(world, smallCageAbove(3));

@@ -93,19 +93,6 @@ class ForeignForces : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Worlds, ForeignForces, testing::Values(Kind::Explicit, Kind::Implicit, Kind::Tetskin),
                          [](const auto& instance) { return std::string(toString(instance.param)); });
 
-TEST_P(ForeignForces, OfABodyAddedAfterOursAreItsOwn) {
-  const auto made = worldOf(GetParam());
-  EmptyWorld& world = *made;
-  auto ours = added(world, smallCageAbove(20), optionsOf(GetParam()));
-  OwnBody own(world.deformable());
-  EXPECT_EQ(own.gravity.m_softBodies.size(), 1);
-  EXPECT_EQ(own.elasticity.m_softBodies.size(), 1);
-  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
-  EXPECT_NEAR(fallsAt(world, *ours), 10.0, 0.05);
-  ours.reset();
-  EXPECT_NEAR(own.fallsAt(world), 1.6, 0.01);
-}
-
 TEST_P(ForeignForces, OfABodyAddedBeforeOursAreItsOwn) {
   const auto made = worldOf(GetParam());
   EmptyWorld& world = *made;

@@ -4,7 +4,6 @@
 // Frames that are drawn between two steps.
 #include "skin_test.h"
 #include "support/allocation_count.h"
-#include "worlds.h"
 
 #include <limits>
 
@@ -85,18 +84,6 @@ TEST_F(FramesBetweenSteps, AreToldNodeByNode) {
   EXPECT_EQ(skin.nodeAt(3, 0), now);
 }
 
-TEST_F(FramesBetweenSteps, MayBeDrawnInAnyOrderAndAnyNumber) {
-  SkinOptions options;
-  options.interpolation = Interpolation::Quadratic;
-  bindAndKeepTwo(options);
-  const Surface early = at(btScalar(0.3)), late = at(btScalar(0.8));
-  EXPECT_NE(early, late);
-  EXPECT_EQ(at(btScalar(0.8)), late);
-  EXPECT_EQ(at(btScalar(0.3)), early);
-  EXPECT_EQ(at(1), bent);
-  EXPECT_EQ(at(btScalar(0.3)), early);
-}
-
 TEST_F(FramesBetweenSteps, CostTwoCopiesOfTheNodesAndOnlyIfStepsAreKept) {
   const std::size_t bound = test::allocatedBytes();
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
@@ -170,19 +157,6 @@ TEST_F(FramesBetweenSteps, ReachTheLastStepOfABodyThatFallsAsleepAndThenCostNoth
     skin.recordStep();
   }
   EXPECT_EQ(surfaceOf(skin), bent);
-}
-
-TEST_F(FramesBetweenSteps, FollowATeleportOfASleepingBodyWithoutAWord) {
-  bindAndKeepTwo();
-  body->setActivationState(ISLAND_SLEEPING);
-  skin.recordStep();
-  skin.recordStep();
-  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
-  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Asleep);
-  moveUp();
-  EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
-  EXPECT_EQ(skin.update(btScalar(0.7)), StatusCode::Asleep);
-  expectNothingBetween();
 }
 
 TEST_F(FramesBetweenSteps, DoNotComeFromWhereABodyFellAsleepWhenItWakes) {
@@ -288,21 +262,6 @@ TEST_F(FramesBetweenSteps, HaveTheMotionSinceTheFrameBefore) {
   EXPECT_NEAR(motion(), 0.25, 100 * kRounding);
 }
 
-TEST_F(FramesBetweenSteps, AreEachSkinsOwn) {
-  bindAndKeepTwo();
-  SoftBodySkin late, never;
-  ASSERT_TRUE(late.bind(*body, skin.binding()).ok());
-  ASSERT_TRUE(never.bind(*body, skin.binding()).ok());
-  late.recordStep();
-  moveUp();
-  const Surface before = surfaceOf(late);
-  late.recordStep();
-  (void)never.update(btScalar(0.5));
-  (void)late.update(btScalar(0.5));
-  EXPECT_LT(distance(surfaceOf(late), before, surfaceOf(never), 0.5), 4 * kRounding);
-  EXPECT_LT(distance(at(btScalar(0.5)), rest, bent, 0.5), kRounding);  // this skin has not recorded the step
-}
-
 TEST_F(FramesBetweenSteps, AreAMovedSkinsStill) {
   bindAndKeepTwo();
   const Surface half = at(btScalar(0.5));
@@ -313,16 +272,6 @@ TEST_F(FramesBetweenSteps, AreAMovedSkinsStill) {
   skin = SoftBodySkin();
   skin.recordStep();
   EXPECT_EQ(skin.update(btScalar(0.5)), StatusCode::Unbound);
-}
-
-TEST_F(FramesBetweenSteps, TakeANewOrigin) {
-  bindAndKeepTwo();
-  const Surface half = at(btScalar(0.5));
-  ASSERT_TRUE(skin.setOrigin(btVector3(0, 3, 0)).ok());
-  const Surface shifted = at(btScalar(0.5));
-  for (std::size_t i = 0; i < half.size(); ++i) {
-    ASSERT_NEAR(double(half[i] - shifted[i]), i % 3 == 1 ? 3.0 : 0.0, 8 * kRounding);
-  }
 }
 
 TEST_F(FramesBetweenSteps, OfManySkinsAreThoseOfEach) {
@@ -337,35 +286,6 @@ TEST_F(FramesBetweenSteps, OfManySkinsAreThoseOfEach) {
   EXPECT_EQ(surfaceOf(plain), bent);
   EXPECT_EQ(SoftBodySkin::updateAll(both, 2), 2u);
   EXPECT_EQ(surfaceOf(skin), bent);
-}
-
-TEST(FramesInTheDeformableWorld, ReachTheStepInWhichABodyFallsAsleep) {
-  const btScalar step = btScalar(1) / 60;
-  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
-  test::DeformableWorld world(cage);
-  SoftBodySkin skin, now;
-  ASSERT_TRUE(skin.bind(world.body(), cage, test::sphere(12, 0.4, Eigen::Vector3d::Constant(0.5))).ok());
-  ASSERT_TRUE(now.bind(world.body(), skin.binding()).ok());
-  Surface before;
-  const auto advance = [&] {
-    world.world->stepSimulation(step, 4, step / 4);
-    skin.recordStep();
-    before = surfaceOf(now);
-    (void)now.update();
-  };
-  for (int k = 0; world.body().isActive() && k < 3000; ++k) {
-    advance();
-    ASSERT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
-  }
-  ASSERT_FALSE(world.body().isActive()) << "it never fell asleep";
-  EXPECT_LT(distance(surfaceOf(skin), before, surfaceOf(now), 0.5), kRounding);
-  advance();
-  ASSERT_EQ(skin.update(btScalar(0.5)), StatusCode::Ok);
-  EXPECT_EQ(surfaceOf(skin), surfaceOf(now));
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(skin.update(btScalar(0.9)), StatusCode::Asleep);
-    advance();
-  }
 }
 
 }  // namespace

@@ -141,59 +141,6 @@ TEST(ManyRigidBodies, OfAChainLieOnAMat) {
   at.expectToCarryAll(0.02);
 }
 
-/// Eleven capsules: pelvis, chest, head, and two parts of each limb.
-TEST(ManyRigidBodies, OfARagdollComeToRestOnAMattress) {
-  Mat at(18, 10, 0.1, 3e4);
-  const auto part = [&](double radius, double length, const btVector3& from, const btVector3& to) -> btRigidBody& {
-    const btVector3 along = (to - from).normalized();
-    btRigidBody& made = at.add(std::make_unique<btCapsuleShapeX>(btScalar(radius), btScalar(length)),
-                               btScalar(20 * radius * (length + radius)), (from + to) / 2);
-    made.setWorldTransform(btTransform(shortestArcQuat(btVector3(1, 0, 0), along), (from + to) / 2));
-    made.setInterpolationWorldTransform(made.getWorldTransform());
-    made.setDamping(btScalar(0.05), btScalar(0.05));
-    return made;
-  };
-  const btScalar y = btScalar(kTop + 0.25);
-  const auto along = [&](double x, double z) { return btVector3(btScalar(x), y, btScalar(z)); };
-  btRigidBody& pelvis = part(0.1, 0.15, along(-0.1, 0), along(0.1, 0));
-  btRigidBody& chest = part(0.1, 0.2, along(0.2, 0), along(0.4, 0));
-  btRigidBody& head = part(0.08, 0.08, along(0.5, 0), along(0.65, 0));
-  const auto frameAt = [](const btRigidBody& body, const btVector3& pivot) {
-    return body.getWorldTransform().inverse() * btTransform(btQuaternion::getIdentity(), pivot);
-  };
-  const auto cone = [&](btRigidBody& a, btRigidBody& b, const btVector3& pivot) {
-    at.join(std::make_unique<btConeTwistConstraint>(a, b, frameAt(a, pivot), frameAt(b, pivot)), pivot)
-        .setLimit(btScalar(0.6), btScalar(0.6), btScalar(0.3));
-  };
-  const auto hinge = [&](btRigidBody& a, btRigidBody& b, const btVector3& pivot) {
-    const btTransform turn(btQuaternion(btVector3(1, 0, 0), btScalar(SIMD_HALF_PI)));
-    at.join(std::make_unique<btHingeConstraint>(a, b, frameAt(a, pivot) * turn, frameAt(b, pivot) * turn), pivot)
-        .setLimit(btScalar(-0.1), btScalar(1.5));
-  };
-  cone(pelvis, chest, along(0.15, 0));
-  cone(chest, head, along(0.47, 0));
-  for (const double side : {-1.0, 1.0}) {
-    btRigidBody& thigh = part(0.08, 0.26, along(-0.2, 0.1 * side), along(-0.5, 0.1 * side));
-    btRigidBody& shin = part(0.07, 0.26, along(-0.55, 0.1 * side), along(-0.85, 0.1 * side));
-    btRigidBody& upper = part(0.06, 0.17, along(0.35, 0.18 * side), along(0.15, 0.25 * side));
-    btRigidBody& lower = part(0.06, 0.17, along(0.1, 0.27 * side), along(-0.1, 0.3 * side));
-    cone(pelvis, thigh, along(-0.15, 0.1 * side));
-    hinge(thigh, shin, along(-0.525, 0.1 * side));
-    cone(chest, upper, along(0.38, 0.17 * side));
-    hinge(upper, lower, along(0.125, 0.26 * side));
-  }
-  ASSERT_EQ(at.rigids.size(), 11U);
-  double widest = 0.0;
-  forEachSubstep(at.world, 480, [&] { widest = std::max(widest, at.widestJoint()); });
-  EXPECT_LT(widest, 0.005);
-  at.expectToCarryAll(0.02);
-  EXPECT_LT(at.fastest(), 0.02);
-  for (const auto& rigid : at.rigids) {
-    EXPECT_GT(rigid->height(), kTop - 0.05);
-    EXPECT_LT(rigid->height(), kTop + 0.3);
-  }
-}
-
 TEST(ManyRigidBodies, LieAsDeepAsOneAlone) {
   constexpr int kRows = 6, kColumns = 10;
   constexpr double kEdge = 0.2, kRadius = 0.17;

@@ -42,22 +42,6 @@ bool isAtTheWall(const TetMesh& cage, std::size_t node) {
   return cage.nodes[node].x() == 0.0;
 }
 
-Path positionsOf(const btSoftBody& body) {
-  Path positions;
-  for (int n = 0; n < body.m_nodes.size(); ++n) {
-    const btVector3& x = body.m_nodes[n].m_x;
-    positions.emplace_back(x.x(), x.y(), x.z());
-  }
-  return positions;
-}
-
-/// RMS distance.
-double apart(const Path& a, const Path& b) {
-  double squared = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) squared += (a[k] - b[k]).squaredNorm();
-  return std::sqrt(squared / static_cast<double>(a.size()));
-}
-
 enum class Hold { Pins, Anchors };
 
 /// A beam that a wall holds, and the place of its free end's last node after each frame.
@@ -168,27 +152,6 @@ TEST(OrderInTimeOfAWorld, AFreeBodyFallsBesideARigidOne) {
   }
 }
 
-/// A free beam that trembles, in steps whose lengths differ by turns.
-TEST(OrderInTimeOfAWorld, StepsOfVaryingLengthAreAccurate) {
-  const auto trembled = [](double damping, int steps) {
-    TetskinWorld world;
-    world.deformable().setGravity(btVector3(0, 0, 0));
-    const TetMesh cage = beamCage();
-    const auto beam = added(world, cage, beamOptions(damping));
-    for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
-      const double x = cage.nodes[static_cast<std::size_t>(n)].x() / kLength - 0.5;
-      beam->body().m_nodes[n].m_v.setValue(0, static_cast<btScalar>(4.0 * x * x - 1.0 / 3.0), 0);
-    }
-    for (int k = 0; k < steps; ++k) {
-      world.deformable().stepSimulation(static_cast<btScalar>((k % 2 == 0 ? 0.6 : 1.4) * 0.5 / steps), 0);
-    }
-    return positionsOf(beam->body());
-  };
-  for (const double damping : {0.0, 0.02}) {
-    EXPECT_LT(apart(trembled(damping, 120), trembled(damping, 1200)), 4e-3) << damping;
-  }
-}
-
 /// Whether the last step of the world's only body was backward Euler's.
 bool wasBackwardEulers(EmptyWorld& world, double damping) {
   const auto& forces = *static_cast<btDeformableBodySolver&>(*world.softSolver).getLagrangianForceArray();
@@ -245,24 +208,6 @@ std::unique_ptr<DeformableBody> trembling(EmptyWorld& world, double damping) {
   return beam;
 }
 
-/// What the application writes, it finds: the impulses that the last step has left are those of another motion.
-TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToRestStaysAtRest) {
-  for (const double damping : {0.0, 0.02}) {
-    TetskinWorld world;
-    const auto beam = trembling(world, damping);
-    ASSERT_GT(rmsSpeed(beam->body()), 0.05) << damping;
-    for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
-      btSoftBody::Node& node = beam->body().m_nodes[n];
-      const Eigen::Vector3d p = beamCage().nodes[static_cast<std::size_t>(n)];
-      node.m_x.setValue(static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z()));
-      node.m_q = node.m_x;
-      node.m_v.setZero();
-    }
-    for (int k = 0; k < 5; ++k) world.deformable().stepSimulation(btScalar(1) / 240, 0);
-    EXPECT_LT(rmsSpeed(beam->body()), 1e-4) << damping;
-  }
-}
-
 /// Compares two bodies in the same state, of which one has come there by moving.
 TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedOrStiffenedGoesOnAsOneThatHasNeverMoved) {
   enum class Change { Stopped, Turned, Stiffened };
@@ -310,19 +255,6 @@ TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToSleepWakesWithoutItsOldMo
   other.deformable().stepSimulation(btScalar(1) / 240, 0);
   for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
     EXPECT_LT((beam->body().m_nodes[n].m_v - fresh->body().m_nodes[n].m_v).length(), 0.003);
-  }
-}
-
-TEST(OrderInTimeOfAWorld, ReadingTheEnergyChangesNothing) {
-  TetskinWorld world, read;
-  const auto beam = trembling(world, 0.0), other = trembling(read, 0.0);
-  for (int k = 0; k < 20; ++k) {
-    world.deformable().stepSimulation(btScalar(1) / 240, 0);
-    read.deformable().stepSimulation(btScalar(1) / 240, 0);
-    EXPECT_GT(elasticEnergyIn(read), 0.0);
-  }
-  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
-    EXPECT_LT((beam->body().m_nodes[n].m_x - other->body().m_nodes[n].m_x).length(), 1e-5);
   }
 }
 

@@ -189,11 +189,6 @@ TEST_F(RefusedSnapshots, NameAJointOfAnotherClass) {
   expectRefused(scenes[1], saved(scenes[0].world), StatusCode::SnapshotMismatch, "its joint 0 is missing");
 }
 
-TEST_F(RefusedSnapshots, AreToldFromThoseOfADeterministicWorld) {
-  scene.world.deformableSolver().setDeterministic(true);
-  expectMismatch("it was not deterministic, and this one is");
-}
-
 TEST_F(RefusedSnapshots, HoldNoOtherConstraintSolver) {
   btMultiBodyConstraintSolver solver;
   scene.world.setConstraintSolver(&solver);

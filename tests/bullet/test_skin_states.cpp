@@ -28,19 +28,6 @@ TEST_F(SkinState, HiddenSkinIsLeftAloneAndRightAtOnceWhenShown) {
   EXPECT_LT((at(skin, 17) - before - Eigen::Vector3d(2, 3, 0)).norm(), 8 * kRounding);
 }
 
-TEST_F(SkinState, ShownAgainIsRightEvenIfItsBodyHasFallenAsleep) {
-  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
-  const Eigen::Vector3d before = at(skin, 17);
-  skin.setVisible(false);
-  for (int n = 0; n < body->m_nodes.size(); ++n) {
-    if (n % 3 != 0) body->m_nodes[n].m_x += btVector3(0, 1, 0);
-  }
-  body->setActivationState(ISLAND_SLEEPING);
-  skin.setVisible(true);
-  EXPECT_GT((at(skin, 17) - before).norm(), 0.1);
-  EXPECT_EQ(skin.update(), StatusCode::Asleep);
-}
-
 TEST_F(SkinState, SleepingBodyOfNoWorldIsSkippedUntilAnyOfItsNodesMoves) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   body->setActivationState(ISLAND_SLEEPING);
@@ -55,15 +42,6 @@ TEST_F(SkinState, SleepingBodyOfNoWorldIsSkippedUntilAnyOfItsNodesMoves) {
   }
   skin.markMoved();
   EXPECT_EQ(skin.update(), StatusCode::Ok);
-}
-
-/// No hash is kept of a body that is awake.
-TEST_F(SkinState, SleepingBodyOfNoWorldIsUpdatedOnceMore) {
-  ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
-  EXPECT_EQ(skin.update(), StatusCode::Ok);
-  body->setActivationState(ISLAND_SLEEPING);
-  EXPECT_EQ(skin.update(), StatusCode::Ok);
-  EXPECT_EQ(skin.update(), StatusCode::Asleep);
 }
 
 TEST_F(SkinState, KeepsTheLastGoodSurfaceWhenTheSimulationExplodes) {
@@ -176,15 +154,6 @@ TEST_F(SkinState, PreviousPositionsAreThoseOfTheUpdateBefore) {
   body->m_nodes[20].m_x.setX(good);
   ASSERT_EQ(skin.update(), StatusCode::Ok);
   EXPECT_NEAR(motion(9), 0.0, 16 * kRounding);
-}
-
-TEST_F(SkinState, EveryUpdateStatusHasAName) {
-  EXPECT_STREQ(toString(StatusCode::Ok), "ok");
-  EXPECT_STREQ(toString(StatusCode::Asleep), "asleep");
-  EXPECT_STREQ(toString(StatusCode::Hidden), "hidden");
-  EXPECT_STREQ(toString(StatusCode::NonFinite), "not finite");
-  EXPECT_STREQ(toString(StatusCode::TopologyChanged), "topology changed");
-  EXPECT_STREQ(toString(StatusCode::Unbound), "unbound");
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 // The library's own solve: where it is used, with which settings, and what it reports about itself.
 #include "cloth.h"
 
-#include <tetskin/threads/thread_pool.h>
-
 #include <cmath>
 
 namespace tetskin {
@@ -126,27 +124,6 @@ TEST(DeformableSolver, DoesNotBoundTheDefaultStiffnessByTheStep) {
   EXPECT_LT(added(bullets, cage, options)->youngsModulus(), 0.5 * wanted);
 }
 
-TEST(DeformableSolver, GivesTheSameBitsAgainAndWithThreads) {
-  const auto run = [](ParallelFor* threads, int bodies) {
-    TetskinWorld world;
-    world.bodySolver().setThreads(threads);
-    std::vector<std::unique_ptr<DeformableBody>> all;
-    for (int b = 0; b < bodies; ++b) all.push_back(added(world, cageAbove(0.3 + 1.5 * b)));
-    step(world, 40);
-    std::vector<btVector3> positions;
-    for (const auto& body : all) {
-      for (const btVector3& p : positionsOf(body->body())) positions.push_back(p);
-    }
-    return positions;
-  };
-  ThreadPool pool(3);
-  for (const int bodies : {1, 3}) {
-    const std::vector<btVector3> alone = run(nullptr, bodies);
-    EXPECT_TRUE(sameBits(alone, run(nullptr, bodies))) << bodies;
-    EXPECT_TRUE(sameBits(alone, run(&pool, bodies))) << bodies;
-  }
-}
-
 TEST(DeformableSolver, TakesAStiffnessForEachTetAndAMassForEachNode) {
   TetskinWorld world;
   const TetMesh cage = cageAbove(5);
@@ -207,13 +184,6 @@ TEST(DeformableSolver, RefusesValuesThatMakeNoSense) {
   for (const double bad : {nan, -0.1, 1.001, HUGE_VAL}) {
     EXPECT_EQ(refused([&](SoftBodyOptions& o) { o.friction = bad; }), StatusCode::InvalidOption) << bad;
   }
-  EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
-}
-
-TEST(DeformableSolver, RefusesAWorldOfReducedBodies) {
-  EmptyWorld world(std::make_unique<btReducedDeformableBodySolver>());
-  const auto result = DeformableBody::add(world.deformable(), smallCageAbove(5));
-  EXPECT_EQ(result.status().code, StatusCode::InvalidOption);
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 
@@ -284,23 +254,6 @@ TEST(DeformableSolver, IteratesWithAnchorsAsOftenAsItIsAllowedTo) {
   };
   EXPECT_LE(iterationsPerSolve(50), 51);
   EXPECT_GT(iterationsPerSolve(1000), 80);
-}
-
-/// Rays find a body wherever it has gone, although its trees are not refitted in each step.
-TEST(DeformableSolver, LeavesBodiesToBeFoundByRays) {
-  TetskinWorld world;
-  const auto body = added(world, cageAbove(6));
-  for (int f = 0; f < 90; ++f) {
-    step(world, 1);
-    const btSoftBody::Face& face = body->body().m_faces[(37 * f) % body->body().m_faces.size()];
-    const btVector3 centre = (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3;
-    const btVector3 normal =
-        (face.m_n[1]->m_x - face.m_n[0]->m_x).cross(face.m_n[2]->m_x - face.m_n[0]->m_x).normalized();
-    const btVector3 from = centre + btScalar(0.001) * normal, to = centre - btScalar(0.001) * normal;
-    btCollisionWorld::ClosestRayResultCallback hit(from, to);
-    world.deformable().rayTest(from, to, hit);
-    EXPECT_TRUE(hit.hasHit()) << "frame " << f;
-  }
 }
 
 }  // namespace

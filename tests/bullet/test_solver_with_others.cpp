@@ -49,17 +49,6 @@ TEST(SolverWithOthers, ClothHangsAsWithBulletsSolver) {
   EXPECT_GT(swung, 0.5);
 }
 
-TEST(SolverWithOthers, ClothLandsAsWithBulletsSolver) {
-  TetskinWorld ours;
-  EmptyWorld bullets;
-  Cloth a(ours, false), b(bullets, false);
-  step(ours, 120);
-  step(bullets, 120);
-  EXPECT_LT(lowest(*b.body), 0.1);
-  EXPECT_NEAR(lowest(*a.body), lowest(*b.body), 0.01);
-  EXPECT_LT((centreOf(*a.body) - centreOf(*b.body)).length(), btScalar(0.02));
-}
-
 TEST(SolverWithOthers, BulletsMaterialsLandAsWithBulletsSolver) {
   for (const ForceModel model : {ForceModel::NeoHookean, ForceModel::LinearElasticity}) {
     TetskinWorld ours;
@@ -99,57 +88,6 @@ TEST(SolverWithOthers, BodiesOfAllKindsLandInImplicitWorlds) {
     EXPECT_GT(lowest(a->body()), -0.01);
     EXPECT_LT(lowest(a->body()), 0.1);
   }
-}
-
-TEST(SolverWithOthers, AnchorsHoldBodies) {
-  TetskinWorld world;
-  btBoxShape shape(btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2)));
-  btRigidBody box(0, nullptr, &shape);
-  btTransform above(btQuaternion::getIdentity(), btVector3(0, btScalar(6.2), 0));
-  box.setWorldTransform(above);
-  box.setInterpolationWorldTransform(above);
-  world.deformable().addRigidBody(&box);
-  const auto body = added(world, cageAbove(5));
-  int node = 0;
-  for (int n = 0; n < body->body().m_nodes.size(); ++n) {
-    const auto distance = [&](int k) { return (body->body().m_nodes[k].m_x - btVector3(0, 6, 0)).length(); };
-    if (distance(n) < distance(node)) node = n;
-  }
-  const btVector3 where = body->body().m_nodes[node].m_x;
-  body->body().appendDeformableAnchor(node, &box);
-  step(world, 120);
-  EXPECT_LT((body->body().m_nodes[node].m_x - where).length(), btScalar(1e-3));
-  EXPECT_GT(lowest(body->body()), 3.0);
-  EXPECT_LT(rmsSpeed(body->body()), 5.0);
-  body->body().m_deformableAnchors.clear();
-  world.deformable().removeRigidBody(&box);
-}
-
-/// A multibody falls on a body.
-TEST(SolverWithOthers, MultibodiesRestOnBodies) {
-  TetskinWorld world;
-  SoftBodyOptions options;
-  options.youngsModulus = 1e4;
-  const auto body = added(world, cageAbove(0.02), options);
-  btBoxShape shape(btVector3(btScalar(0.4), btScalar(0.1), btScalar(0.4)));
-  btVector3 inertia;
-  shape.calculateLocalInertia(btScalar(0.2), inertia);
-  btMultiBody multi(0, btScalar(0.2), inertia, false, false);
-  multi.finalizeMultiDof();
-  multi.setBaseWorldTransform(
-      btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.5), btScalar(1.1), btScalar(0.5))));
-  btMultiBodyLinkCollider collider(&multi, -1);
-  collider.setCollisionShape(&shape);
-  collider.setWorldTransform(multi.getBaseWorldTransform());
-  collider.setInterpolationWorldTransform(multi.getBaseWorldTransform());
-  multi.setBaseCollider(&collider);
-  world.deformable().addCollisionObject(&collider, 2, 1 + 2);
-  world.deformable().addMultiBody(&multi);
-  step(world, 180);
-  EXPECT_GT(multi.getBasePos().y(), 0.8);
-  EXPECT_LT(multi.getBasePos().y(), 1.1);
-  world.deformable().removeMultiBody(&multi);
-  world.deformable().removeCollisionObject(&collider);
 }
 
 /// The world's setting becomes known in its first step, only after the solver has been asked to begin that step.

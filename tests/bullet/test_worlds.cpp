@@ -71,15 +71,6 @@ class Worlds : public testing::TestWithParam<NamedWorld> {
 
 constexpr btScalar kStep = btScalar(1) / 240;
 
-TEST_P(Worlds, SkinFollowsTheNodesAfterOneSubstep) {
-  for (int step = 0; step < 120; ++step) {
-    ASSERT_EQ(world->world->stepSimulation(kStep, 1, kStep), 1);
-    ASSERT_EQ(skin.update(), StatusCode::Ok);
-    expectSkinFollowsNodes();
-  }
-  EXPECT_LT(skin.bounds().min().y(), 0.25);  // the body fell
-}
-
 TEST_P(Worlds, SkinFollowsTheNodesAfterTenSubsteps) {
   for (int step = 0; step < 12; ++step) {
     // The time is a little more than ten steps, so that rounding does not reduce it to nine.
@@ -88,15 +79,6 @@ TEST_P(Worlds, SkinFollowsTheNodesAfterTenSubsteps) {
     expectSkinFollowsNodes();
   }
   EXPECT_LT(skin.bounds().min().y(), 0.25);
-}
-
-TEST_P(Worlds, NothingMovesWithoutASubstep) {
-  ASSERT_EQ(world->world->stepSimulation(kStep, 1, kStep), 1);
-  ASSERT_EQ(skin.update(), StatusCode::Ok);
-  const auto before = surface();
-  ASSERT_EQ(world->world->stepSimulation(kStep / 100, 10, kStep), 0);
-  ASSERT_EQ(skin.update(), StatusCode::Ok);  // unnecessary, but allowed
-  EXPECT_EQ(surface(), before);
 }
 
 TEST_P(Worlds, FramesBetweenStepsGoFromEachStepToTheNext) {
@@ -120,46 +102,12 @@ TEST_P(Worlds, FramesBetweenStepsGoFromEachStepToTheNext) {
   EXPECT_LT(skin.bounds().min().y(), 0.25);
 }
 
-TEST_P(Worlds, FallingBodyReachesTheFloorAndStaysAboveIt) {
-  for (int step = 0; step < 240; ++step) {
-    world->world->stepSimulation(kStep, 1, kStep);
-    (void)skin.update();
-    ASSERT_GT(skin.bounds().min().y(), -0.2);  // free fall would have reached -4.7
-  }
-  EXPECT_LT(skin.bounds().min().y(), 0.2);
-}
-
 INSTANTIATE_TEST_SUITE_P(All, Worlds,
                          testing::Values(NamedWorld{"SoftRigid", makeWorld<test::RigidWorld>},
                                          NamedWorld{"SoftMultiBody", makeWorld<test::MultiBodyWorld>},
                                          NamedWorld{"Deformable", makeWorld<test::DeformableWorld>},
                                          NamedWorld{"Reduced", makeWorld<test::ReducedWorld>}),
                          [](const auto& instance) { return std::string(instance.param.name); });
-
-TEST(DeformableWorld, SleepingBodyIsSkippedUntilItIsMoved) {
-  const TetMesh cage = test::latticeCage(3, 3, 3, 1.0 / 3.0);
-  test::DeformableWorld world(cage);
-  const TriangleMesh mesh = test::sphere(12, 0.4, Eigen::Vector3d::Constant(0.5));
-  SoftBodySkin skin;
-  ASSERT_TRUE(skin.bind(world.body(), cage, mesh).ok());
-
-  int steps = 0;
-  while (world.body().isActive() && steps++ < 3000) {
-    world.world->stepSimulation(kStep, 1, kStep);
-    ASSERT_EQ(skin.update(), StatusCode::Ok) << "the step of falling asleep is still updated";
-  }
-  ASSERT_FALSE(world.body().isActive()) << "it never fell asleep";
-  const Box3 before = skin.bounds();
-  world.world->stepSimulation(kStep, 1, kStep);
-  EXPECT_EQ(skin.update(), StatusCode::Asleep);
-  EXPECT_EQ(skin.update(), StatusCode::Asleep);
-
-  world.body().translate(btVector3(2, 0, 0));  // a teleport does not wake it
-  ASSERT_FALSE(world.body().isActive());
-  EXPECT_EQ(skin.update(), StatusCode::Ok);
-  EXPECT_NEAR(skin.bounds().min().x(), before.min().x() + 2.0, 1e-5);
-  EXPECT_EQ(skin.update(), StatusCode::Asleep);
-}
 
 }  // namespace
 }  // namespace tetskin

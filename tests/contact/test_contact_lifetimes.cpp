@@ -193,16 +193,6 @@ TEST(ContactLifetimes, NoObstacleIsToldOfThatHasLeftTheWorld) {
   EXPECT_FALSE(touches(gone));
 }
 
-TEST(ContactLifetimes, OtherSoftBodiesKeepBulletsPath) {
-  TetskinWorld world;
-  const TouchingBody body(world, ballMesh(12, 0.35), btVector3(0, btScalar(0.36), 0));
-  TetMesh cage = looseCage();
-  for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(3, 0.55, 0);
-  const auto plain = added(world, cage);
-  step(world, 120);
-  EXPECT_NEAR(lowest(plain->body()), 0.02, 0.01);
-}
-
 /// An application's own algorithm for a pair, which is Bullet's, and counted.
 struct CountedAlgorithm : btCollisionAlgorithmCreateFunc {
   explicit CountedAlgorithm(btCollisionAlgorithmCreateFunc& ofBullet) : bullets(ofBullet) {}

@@ -98,15 +98,6 @@ TEST_P(Sleepers, AreLiftedAndLoweredAtAnySpeed) {
   }
 }
 
-TEST_P(Sleepers, AreCarriedByWhatTheyLieOn) {
-  soft().m_cfg.kDF = 1;
-  for (int f = 1; f <= 60; ++f) {
-    moveTo(rigid(), btVector3(btScalar(f) / 120, 4, 0));
-    step(world, 1);
-  }
-  EXPECT_NEAR(centreOf(soft()).x(), 0.5, 0.05);
-}
-
 TEST_P(Sleepers, ArePushedByAKinematicBody) {
   Obstacle pusher(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.5), 1)),
                   placeAt(btVector3(-3, btScalar(5.6), 0)));
@@ -118,54 +109,6 @@ TEST_P(Sleepers, ArePushedByAKinematicBody) {
     step(world, 1);
   }
   EXPECT_GT(centreOf(soft()).x(), 0.45);
-}
-
-TEST_P(Sleepers, FallWhereWhatHoldsThemIsTakenAway) {
-  platform.reset();
-  step(world, 30);
-  EXPECT_LT(body->height(), 4.5);
-}
-
-TEST_P(Sleepers, FallWhereWhatHoldsThemIsTeleported) {
-  for (const bool isStatic : {false, true}) {
-    if (isStatic) {
-      body.reset();
-      platform.reset();
-      rest(btVector3(0, 0, 0));
-      rigid().setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-      rigid().forceActivationState(ISLAND_SLEEPING);
-    }
-    step(world, 10);
-    ASSERT_FALSE(soft().isActive());
-    moveTo(rigid(), btVector3(10, 4, 0));
-    step(world, 30);
-    EXPECT_LT(body->height(), 4.5) << isStatic;
-  }
-}
-
-TEST_P(Sleepers, FollowWhatIsRescaledOrGivenAnotherShape) {
-  double before = body->height();
-  rigid().getCollisionShape()->setLocalScaling(btVector3(1, btScalar(0.8), 1));
-  step(world, 60);
-  EXPECT_LT(body->height(), before - 0.1);
-  letSleep(world, {&soft()});
-  before = body->height();
-  btBoxShape lower(btVector3(2, btScalar(0.7), 2));
-  btCollisionShape* const old = rigid().getCollisionShape();
-  rigid().setCollisionShape(&lower);
-  step(world, 60);
-  EXPECT_LT(body->height(), before - 0.05);
-  rigid().setCollisionShape(old);
-}
-
-TEST_P(Sleepers, WakeWhereAStaticBodyIsPutIntoThem) {
-  Obstacle wall(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.5), 1)),
-                placeAt(btVector3(-3, btScalar(5.6), 0)));
-  step(world, 60);
-  ASSERT_FALSE(soft().isActive()) << "it was far away";
-  moveTo(wall.body(), btVector3(GetParam() == TouchedBy::Nodes ? btScalar(-0.95) : btScalar(-0.75), btScalar(5.6), 0));
-  step(world, 60);
-  EXPECT_GT(centreOf(soft()).x(), 0.02);
 }
 
 TEST_P(Sleepers, AreNotWokenByTriggersNorByWhatTheyDoNotMeet) {
@@ -193,24 +136,6 @@ TEST_P(Sleepers, AreNotWokenByTriggersNorByWhatTheyDoNotMeet) {
   }
   world.deformable().removeCollisionObject(&ghost);
   soft().setIgnoreCollisionCheck(&stranger.body(), false);
-}
-
-TEST_P(Sleepers, FollowTheHookThatTheyAreAnchoredTo) {
-  Obstacle hook(world, std::make_unique<btBoxShape>(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1))),
-                placeAt(btVector3(0, 8, 0)));
-  makeKinematic(hook.body());
-  int top = 0;
-  for (int n = 0; n < soft().m_nodes.size(); ++n) {
-    if (soft().m_nodes[n].m_x.y() > soft().m_nodes[top].m_x.y()) top = n;
-  }
-  soft().appendDeformableAnchor(top, &hook.body());
-  letSleep(world, {&soft()});
-  const btScalar before = centreOf(soft()).y();
-  for (int f = 1; f <= 60; ++f) {
-    moveTo(hook.body(), btVector3(0, 8 + btScalar(f) / 60, 0));
-    step(world, 1);
-  }
-  EXPECT_GT(centreOf(soft()).y(), before + btScalar(0.4));
 }
 
 /// Bodies that are put to sleep as they are added, as in a saved state or a scene.
@@ -390,15 +315,6 @@ struct SoftPile {
   std::unique_ptr<SoftContacts> contacts = contactsIn(*world);
   std::vector<std::unique_ptr<DeformableBody>> bodies;
 };
-
-TEST(SleepersOnSoftBodies, StayAsleep) {
-  SoftPile pile;
-  pile.sleep();
-  for (int f = 0; f < 240; ++f) {
-    step(*pile.world, 1);
-    ASSERT_TRUE(pile.asleep()) << "frame " << f;
-  }
-}
 
 TEST(SleepersOnSoftBodies, FallWhereTheLowerOneIsTakenAway) {
   SoftPile pile;

@@ -40,10 +40,6 @@ class OnBoxes : public ReplayedScene {
   std::unique_ptr<TouchingBody> ball_;
 };
 
-TEST(SnapshotsWithContacts, OfASurfaceOnBoxes) {
-  expectReplays([] { return std::make_unique<OnBoxes>(); }, 150, {5, 20, 60, 140});
-}
-
 /// A ball, and a cage that touches at its nodes, on a mesh, a hull and a compound; and a plate that comes and goes.
 class OnKinds : public ReplayedScene {
  public:

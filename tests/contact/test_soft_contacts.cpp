@@ -262,19 +262,6 @@ TEST(SoftContacts, SaysThatABodyHasLostItsTets) {
   EXPECT_EQ(contacts->status(a->body()), StatusCode::TopologyChanged);
 }
 
-TEST(SoftContacts, TheSameStepsHaveTheSameBits) {
-  btVector3 centre[2];
-  for (int run = 0; run < 2; ++run) {
-    const auto world = std::make_unique<TetskinWorld>();
-    const auto a = addBall(*world, Vector3d(0, 2, 0)), b = addBall(*world, Vector3d(0.3, 2.8, 0.1));
-    const auto contacts = contactsIn(*world);
-    for (DeformableBody* body : {a.get(), b.get()}) ASSERT_TRUE(contacts->add(body->body(), ball().shape).ok());
-    step(*world, 15);
-    centre[run] = centreOf(b->body());
-  }
-  EXPECT_EQ(centre[0], centre[1]);
-}
-
 TEST(SoftContacts, ABodyThatIsNotFiniteMeetsNothing) {
   const auto world = std::make_unique<TetskinWorld>();
   const auto a = addBall(*world, Vector3d(0, 2, 0)), b = addBall(*world, Vector3d(0.3, 2.7, 0));

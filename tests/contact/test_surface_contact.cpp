@@ -135,16 +135,6 @@ double energyOf(EmptyWorld& world, const btSoftBody& body) {
   return energy;
 }
 
-TEST(SurfaceContact, LetsBodiesFallAsleepFarFromTheOrigin) {
-  for (const btScalar far : {btScalar(10000), btScalar(30000)}) {
-    TetskinWorld world;
-    Obstacle ground(world, std::make_unique<btBoxShape>(btVector3(5, 1, 5)), placeAt(btVector3(far, 4, 0)));
-    TouchingBody body(world, ballMesh(12, 0.35), btVector3(far, btScalar(5.4), 0));
-    step(world, 480);
-    EXPECT_FALSE(body.body->body().isActive()) << far;
-  }
-}
-
 TEST(SurfaceContact, GainsNoEnergyInALanding) {
   TetskinWorld world;
   TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(0.55), 0));

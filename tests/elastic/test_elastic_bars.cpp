@@ -227,32 +227,5 @@ TEST(ElasticBars, ABarRingsWithItsTextbookFrequency) {
   EXPECT_NEAR((passages[2] - passages[0]) / period, 1.0, 0.01);
 }
 
-TEST(ElasticBars, ConvergesWithTheFirstPowerOfTheStep) {
-  constexpr double kLength = 1.0, kTime = 0.32;
-  const TetMesh cage = latticeCage(4, 1, 1, kLength / 4);
-  ElasticOptions options = soft();
-  options.youngsModulus = 2e4;
-  options.tolerance = 1e-8;
-  const auto nodesAfter = [&](int steps) {
-    ElasticBody<double> body = made<double>(cage, options);
-    pinTheEnd(body, cage);
-    for (int k = 0; k < steps; ++k) body.step(kTime / steps, {0, 0, -9.8});
-    return pointsOf(body.positions());
-  };
-  const int coarsest = 100;
-  const Points right = nodesAfter(64 * coarsest);
-  ASSERT_LT(right.back().z() - cage.nodes.back().z(), -0.05) << "it swings far";
-  double before = 0.0;
-  for (const int steps : {coarsest, 2 * coarsest, 4 * coarsest, 8 * coarsest}) {
-    const Points nodes = nodesAfter(steps);
-    double error = 0.0;
-    for (std::size_t n = 0; n < nodes.size(); ++n) error = std::max(error, (nodes[n] - right[n]).norm());
-    if (before > 0.0) {
-      EXPECT_GT(std::log2(before / error), 0.9) << steps;
-    }
-    before = error;
-  }
-}
-
 }  // namespace
 }  // namespace tetskin::test

@@ -138,17 +138,6 @@ TEST(BulletsReduction, TakesTheBentShapeForTheRestShapeWhenItIsMoved) {
   world.world->removeSoftBody(body.get());
 }
 
-TEST(BulletsReduction, GoesBackWhereItBeganWhenItIsMoved) {
-  World world;
-  const auto body = bullets(world, barModes(), barOptions());
-  world.step(120);  // it falls by more than a unit
-  const btVector3 origin = body->getRigidTransform().getOrigin();
-  EXPECT_LT(origin.y(), -1);
-  body->transform(at(0, 1, 0));
-  EXPECT_NEAR(body->getRigidTransform().getOrigin().y(), 1, 1e-4);  // not one unit above its earlier position
-  world.world->removeSoftBody(body.get());
-}
-
 TEST(BulletsReduction, FloatsInAWorldWhoseGravityWasNeverSet) {
   World world;
   btReducedDeformableBodySolver fresh;
