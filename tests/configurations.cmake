@@ -227,17 +227,15 @@ add_test(NAME consumer.after_demos_run
     -DGENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/after_demos_run.cmake)
 set_tests_properties(consumer.shared consumer.after_demos_run
   PROPERTIES TIMEOUT 1200 PROCESSORS ${nested_parallel} LABELS "${labels_full}")
-# What this build has compiled of the same text, in the same way, is not compiled again.
-set(same_object)
+# What this build has compiled of the same text, joined in the same way, is not compiled again.
+set(same_objects)
 if(PYTHON_IN_PATH AND CMAKE_EXPORT_COMPILE_COMMANDS)
-  set(same_object -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CURRENT_SOURCE_DIR}/support/same_object.py)
+  set(same_objects -DOBJECTS_OF=${PROJECT_BINARY_DIR})
+  if(DEFINED CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
+    list(APPEND same_objects -DCMAKE_UNITY_BUILD_BATCH_SIZE=$CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
+  endif()
 endif()
-set(same_units)
-if(DEFINED CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
-  set(same_units -DCMAKE_UNITY_BUILD_BATCH_SIZE=$CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
-endif()
-tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory -DCMAKE_UNITY_BUILD=ON ${same_units} ${same_object})
-set_tests_properties(consumer.add_subdirectory PROPERTIES ENVIRONMENT TETSKIN_OBJECTS_OF=${PROJECT_BINARY_DIR})
+tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory -DCMAKE_UNITY_BUILD=ON ${same_objects})
 
 # Configurations that must stop with a message that gives the reason.
 function(tetskin_test_refusal name message)
