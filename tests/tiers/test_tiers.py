@@ -394,7 +394,7 @@ class Script(InASmallProject):
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
-                      "style[.]alone_changes|python[.]beside_others|python[.]package|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
+                      "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):
