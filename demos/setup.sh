@@ -56,11 +56,13 @@ fuzzer_runtime() {
   echo "libclang-rt-${version:-14}-dev"
 }
 
-# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed.
+# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed. By the commands that
+# are exported, the Python package finds what has been compiled already.
 configure() {
   local repository=$1
   shift
   local generator=()
   if [ ! -f "$repository/build/CMakeCache.txt" ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
+  cmake -S "$repository" -B "$repository/build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "$@"
 }

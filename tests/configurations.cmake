@@ -88,23 +88,27 @@ tetskin_test_configuration(without_assimp LABELS full TARGET test_io TESTS ^io O
   "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_ASSIMP=OFF -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DTETSKIN_BULLET=OFF
   -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF -DTETSKIN_DEMOS=OFF)
 
-# The Python package: built and installed from the checkout; beside the packages of its demos, which are run; and, with
-# all tests, as a wheel of a staged source package, by other Pythons, and in a system that has nothing but Python.
-foreach(way IN ITEMS package beside_others staged_package versions fresh_root)
-  set(command_package run)
-  set(command_beside_others run --beside)
-  set(command_staged_package run --staged)
-  set(command_versions run --versions)
-  set(command_fresh_root root)
+# The Python package: its wheel, made once from the checkout; installed; beside the packages of its demos, which are run;
+# and, with all tests, as a wheel of a staged source package, by other Pythons, and in a system that has nothing but
+# Python. Only the wheels take both processors.
+set(command_wheel run --wheel ${PROJECT_BINARY_DIR}/python/made)
+set(command_package run)
+set(command_beside_others run --beside)
+set(command_staged_package run --staged)
+set(command_versions run --versions)
+set(command_fresh_root root)
+foreach(way IN ITEMS wheel package beside_others staged_package versions fresh_root)
   list(POP_FRONT command_${way} script)
   add_test(NAME python.${way} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/python/${script} ${command_${way}})
-  set_tests_properties(python.${way} PROPERTIES LABELS "config;python" TIMEOUT 3600 PROCESSORS ${nested_parallel}
-    SKIP_RETURN_CODE 77)
-  set_property(TEST python.${way} PROPERTY RESOURCE_LOCK python_build bullet_sources)
+  set_tests_properties(python.${way} PROPERTIES LABELS "config;python" TIMEOUT 3600 SKIP_RETURN_CODE 77
+    RESOURCE_LOCK python_build FIXTURES_REQUIRED python_wheel)
   if(way MATCHES "staged|versions|root")
     set_property(TEST python.${way} APPEND PROPERTY LABELS full)
   endif()
 endforeach()
+set_tests_properties(python.wheel PROPERTIES FIXTURES_REQUIRED "" FIXTURES_SETUP python_wheel)
+set_tests_properties(python.wheel python.staged_package PROPERTIES PROCESSORS ${nested_parallel}
+  RESOURCE_LOCK "python_build;bullet_sources")
 
 # The module for JavaScript in Node, and the live page in headless Chromium: both are built in one folder, by one test at
 # a time, which compiles what has changed since the last one. Without Emscripten, Node or Chromium they are skipped.
@@ -227,17 +231,15 @@ add_test(NAME consumer.after_demos_run
     -DGENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_SOURCE_DIR}/consumer/after_demos_run.cmake)
 set_tests_properties(consumer.shared consumer.after_demos_run
   PROPERTIES TIMEOUT 1200 PROCESSORS ${nested_parallel} LABELS "${labels_full}")
-# What this build has compiled of the same text, in the same way, is not compiled again.
-set(same_object)
+# What this build has compiled of the same text, joined in the same way, is not compiled again.
+set(same_objects)
 if(PYTHON_IN_PATH AND CMAKE_EXPORT_COMPILE_COMMANDS)
-  set(same_object -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CURRENT_SOURCE_DIR}/support/same_object.py)
+  set(same_objects -DOBJECTS_OF=${PROJECT_BINARY_DIR})
+  if(DEFINED CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
+    list(APPEND same_objects -DCMAKE_UNITY_BUILD_BATCH_SIZE=$CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
+  endif()
 endif()
-set(same_units)
-if(DEFINED CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
-  set(same_units -DCMAKE_UNITY_BUILD_BATCH_SIZE=$CACHE{CMAKE_UNITY_BUILD_BATCH_SIZE})
-endif()
-tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory -DCMAKE_UNITY_BUILD=ON ${same_units} ${same_object})
-set_tests_properties(consumer.add_subdirectory PROPERTIES ENVIRONMENT TETSKIN_OBJECTS_OF=${PROJECT_BINARY_DIR})
+tetskin_test_consumer(add_subdirectory -DCONSUME=subdirectory -DCMAKE_UNITY_BUILD=ON ${same_objects})
 
 # Configurations that must stop with a message that gives the reason.
 function(tetskin_test_refusal name message)

@@ -15,7 +15,8 @@ which target uses which, is then what CMake says. In BUILD/changes:
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
-  python       only if the Python package, its demos or its tests have changed
+  python       only if the Python package, its demos or its tests have changed ("package"), or else the library that it is
+               built from, or a page with its programs ("library")
   web          only if the module for JavaScript, the live page or their tests have changed ("page"), or else the library
                that they are built from ("library")
 """
@@ -34,18 +35,22 @@ LAST = "tests/last_full_run"
 # Files that are not compiled, and that --change tests in full, as it does pages, style and plots.
 READ = re.compile(r"[.](md|csv|png|svg|jpg|html|js|css)$|^(LICENSE|[.]gitignore|[.]editorconfig|tests/pages/.*[.]txt)$|"
                   r"^demos/plots/.*[.]py$")
-# What makes the tests: if it has changed, all libraries count as changed. Of tests/, all but sources and the lists of
-# those.
+# What makes the tests with sanitizers and clang-tidy: if it has changed, all libraries count as changed. Of tests/, all but
+# sources and the lists of those; and but what makes other tests only, which are run in full, or which tests/run --all
+# alone runs.
 ORDINARY_TEST = re.compile(r"^tests/[^/]+/([^/]+[.](cpp|h|js|md)|CMakeLists[.]txt)$|^tests/[^/]+[.]md$|^tests/pages/.*[.]txt$")
-MACHINERY = re.compile(r"^([.]ci|plugin/packages|tests/(tiers|fuzz|consumer|platforms))/|^demos/(setup[.]sh|run)$|"
-                       r"[.]cmake([.]in)?$|"
+OTHER_TEST = re.compile(r"^tests/(consumer|platforms|fuzz|golden|glb|models|pages|clients)/|^tests/style/(?!alone|tidy)|"
+                        r"^tests/coverage[.]py$|^plugin/packages/")
+MACHINERY = re.compile(r"^([.]ci|tests/tiers)/|^demos/(setup[.]sh|run)$|[.]cmake([.]in)?$|"
                        r"^((plugin/|tests/|demos/)?CMakeLists[.]txt|CMakePresets[.]json|[.]clang-tidy|[.]clang-format)$")
 PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own; with what it shares
 # with the module for JavaScript.
-PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers|plugin/facade)/")
+PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers|plugin/facade)/|^tests/platforms/common[.]sh$")
+# What else is in the package or its tests: the library, what draws its pages, the programs of pages.
+IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/.*[.]md)$")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
-WEB = re.compile(r"^(plugin/js|plugin/facade|demos/live|tests/js|tests/live)/")
+WEB = re.compile(r"^(plugin/js|plugin/facade|demos/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 
@@ -175,7 +180,7 @@ def selected(graph, files):
     """The targets that changed, by file; or why all libraries count as changed."""
     changed = {}
     for file in files:
-        if PYTHON.search(file) or WEB.search(file):
+        if PYTHON.search(file) or WEB.search(file) or (OTHER_TEST.search(file) and file not in graph.owners):
             continue
         if MACHINERY.search(file) or (file.startswith("tests/") and not ORDINARY_TEST.search(file)):
             return {}, f"{file} has changed, on which all tests depend"
@@ -198,11 +203,18 @@ def web_tests(files):
     return "library" if any(file.startswith("plugin/tetskin/") and not READ.search(file) for file in files) else ""
 
 
-def write(build, everything, folders, sources, page=False, python=False, web=""):
+def python_tests(files):
+    """Which tests of the Python package a change of these files needs: "package", all; "library", those of itself."""
+    if any(PYTHON.search(file) for file in files):
+        return "package"
+    return "library" if any(IN_PYTHON.search(file) for file in files) else ""
+
+
+def write(build, everything, folders, sources, page=False, python="", web=""):
     out = build / "changes"
     out.mkdir(parents=True, exist_ok=True)
     for name, text in (("everything", everything), ("page", PAGE if page else ""),
-                       ("python", "python" if python else ""), ("web", web)):
+                       ("python", python), ("web", web)):
         (out / name).unlink(missing_ok=True)
         if text:
             (out / name).write_text(text + "\n", encoding="utf-8")
@@ -225,8 +237,7 @@ def select(build):
     everyone = graph.with_users(own)
     folders = graph.test_folders(everyone)
     sources = [file for file in files if is_library_source(file)]
-    python = any(PYTHON.search(file) for file in files)
-    write(build, "", folders, sources, PAGE in files, python, web_tests(files))
+    write(build, "", folders, sources, PAGE in files, python_tests(files), web_tests(files))
     print(f"Since {commit[:12]}, at which everything passed, {len(files)} files have changed.")
     if not changed:
         print("None of them is compiled.")

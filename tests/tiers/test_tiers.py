@@ -193,6 +193,7 @@ class Selection(InASmallProject):
         self.assertEqual(self.result(), ("", [], ""))
 
     def test_the_python_package_selects_nothing_that_is_compiled(self):
+        python = self.root / "build/changes/python"
         for name in ("plugin/python/src/skins.cpp", "plugin/facade/shapes.cpp", "plugin/python/cmake/bullet.cmake", "plugin/python/CMakeLists.txt",
                      "plugin/facade/shapes.cpp", "demos/python/drop.py", "demos/python/drop.ipynb", "tests/python/run",
                      "tests/python/test_drop.py"):
@@ -200,11 +201,19 @@ class Selection(InASmallProject):
                 self.setUp()
                 self.write(name)
                 self.assertEqual(self.result(), ("", [], ""))
-                self.assertTrue((self.root / "build/changes/python").exists())
+                self.assertEqual(python.read_text(encoding="utf-8"), "package\n")
+        for name in ("plugin/tetskin/io/io.cpp", "plugin/tetskin/io/CMakeLists.txt", "plugin/docs/python.md",
+                     "demos/view/page.html"):
+            with self.subTest(name):
+                self.setUp()
+                before = (self.root / name).read_text(encoding="utf-8") if (self.root / name).exists() else ""
+                self.write(name, before + "\n")
+                self.result()
+                self.assertEqual(python.read_text(encoding="utf-8"), "library\n")
         self.setUp()
-        self.write("plugin/tetskin/io/io.cpp")
+        self.write("README.md")
         self.result()
-        self.assertFalse((self.root / "build/changes/python").exists())
+        self.assertFalse(python.exists())
 
     def test_the_page_selects_its_own_tests_and_nothing_that_is_compiled(self):
         web = self.root / "build/changes/web"
@@ -231,15 +240,25 @@ class Selection(InASmallProject):
     ALL = "contact;core;io;threads"
 
     def test_the_machinery_of_the_tests_selects_all_libraries(self):
-        for name in ("CMakeLists.txt", "tests/CMakeLists.txt", "tests/style/layers.cmake", "tests/run", "demos/setup.sh",
-                     "tests/tiers/selection.py", ".clang-tidy", "tests/fuzz/corpus/obj/seed",
-                     "tests/pages/page.py", "tests/models/run", "plugin/packages/conan/conanfile.py"):
+        for name in ("CMakeLists.txt", "tests/CMakeLists.txt", "tests/run", "demos/setup.sh",
+                     "tests/tiers/selection.py", ".clang-tidy", "tests/configurations.cmake", "tests/without_sanitizers.txt",
+                     "tests/style/alone.py", "tests/style/tidy.py", "tests/support/sanitized.cmake"):
             with self.subTest(name):
                 self.setUp()
                 before = (self.root / name).read_text(encoding="utf-8") if (self.root / name).exists() else ""
                 self.write(name, before + "# more\n")
                 self.assertIn(f"{name} has changed, on which all tests depend", self.select().stdout)
                 self.assertEqual(self.result(), (self.ALL, [], ""))
+
+    def test_what_makes_other_tests_only_selects_nothing(self):
+        for name in ("tests/style/layers.cmake", "tests/style/comments.py", "tests/fuzz/corpus/obj/seed",
+                     "tests/pages/page.py", "tests/models/run", "tests/consumer/readme.py", "tests/platforms/msvc",
+                     "plugin/packages/conan/conanfile.py"):
+            with self.subTest(name):
+                self.setUp()
+                before = (self.root / name).read_text(encoding="utf-8") if (self.root / name).exists() else ""
+                self.write(name, before + "# more\n")
+                self.assertEqual(self.result(), ("", [], ""))
 
     def test_a_file_of_no_target_selects_all_libraries(self):
         for name, sources in (("plugin/tetskin/tetskin.h", ["plugin/tetskin/tetskin.h"]), ("new.cpp", [])):
@@ -375,7 +394,7 @@ class Script(InASmallProject):
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
-                      "style[.]alone_changes|python[.]beside_others|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
+                      "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""same_object.py COMPILER ARGUMENTS...: a compiler launcher for builds that compile what another one, in the folder
-TETSKIN_OBJECTS_OF of the environment, has compiled already. Copies that build's object if the same compiler made it by
-the same options of the same text; otherwise compiles, by ccache if there is one.
+"""same_object.py BUILD COMPILER ARGUMENTS...: a compiler launcher for builds that compile what another one, in the
+folder BUILD, has compiled already. Copies that build's object if the same compiler made it by the same options of the
+same text; otherwise compiles, by ccache if there is one.
 
 The text is what the preprocessor makes of the source, without the places that it comes from: by these, a compiler cache
-takes the same text in another folder for another one. Options that only the preprocessor reads are in the text. The
-other build has a compile_commands.json. With options for debugging, which put places into the object, everything is compiled."""
+takes the same text in another folder for another one. Options that only the preprocessor reads are in the text. BUILD
+has a compile_commands.json. With options for debugging, which put places into the object, everything is compiled."""
 import json
 import os
 import shlex
@@ -90,8 +90,8 @@ def copied(build, own):
 
 
 def main():
-    build, words = os.environ.get("TETSKIN_OBJECTS_OF"), sys.argv[1:]
-    if not build or not copied(build, Command(words, os.getcwd())):
+    build, words = sys.argv[1], sys.argv[2:]
+    if not copied(build, Command(words, os.getcwd())):
         cache = [shutil.which("ccache")] if shutil.which("ccache") else []
         os.execvp((cache + words)[0], cache + words)
 
