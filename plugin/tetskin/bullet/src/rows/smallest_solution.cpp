@@ -41,7 +41,7 @@ double makeReflection(Changed v) {
   return (length - first) / length;
 }
 
-/// v = (1 - factor (1, w) (1, w)^T) v,    w  all but the first of `by`
+/// v = (1 - factor (1, w) (1, w)^T) v, where w is all but the first of `by`.
 /// isRow  the order of the multiplications is that for a row
 void reflect(Read by, double factor, Changed v, bool isRow = false) {
   assert(by.count == v.count && v.count > 1);

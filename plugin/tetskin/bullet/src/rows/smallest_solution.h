@@ -17,6 +17,7 @@ namespace tetskin::bullet_detail {
 ///   reflections with pivoting, and the complete orthogonal decomposition)
 class SmallestSolution {
  public:
+  /// Of A: those of a joint between two rigid bodies, and its degrees of freedom.
   static constexpr std::size_t kRows = 12, kMaxColumns = 6;
   using Columns = std::array<double, kRows * kMaxColumns>;
 
