@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
 
+#include "dense_reference.h"
 #include "elastic_motion.h"
 #include "support/odd_meshes.h"
 
@@ -144,20 +144,16 @@ Mode modeOf(ElasticBody<double>& body, const TetMesh& cage, const std::vector<do
     body.positions()[static_cast<std::size_t>(changed / 3)][changed % 3] -= by;
     return all;
   };
-  MatrixXd scaled(size, size);
+  MatrixXd stiffness(size, size);
+  VectorXd massOf(size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    scaled.col(i) = (forces(i, -kShift) - forces(i, kShift)) / (2.0 * kShift);
-    for (Eigen::Index r = 0; r < size; ++r) {
-      scaled(r, i) /= std::sqrt(masses[static_cast<std::size_t>(r / 3)] * masses[static_cast<std::size_t>(i / 3)]);
-    }
+    stiffness.col(i) = (forces(i, -kShift) - forces(i, kShift)) / (2.0 * kShift);
+    massOf[i] = masses[static_cast<std::size_t>(i / 3)];
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen((scaled + scaled.transpose()) / 2.0);
+  const test::Spectrum spectrum = test::spectrumOf((stiffness + stiffness.transpose()) / 2.0, massOf);
   Mode mode;
-  mode.frequency = std::sqrt(eigen.eigenvalues()[6 + number]);  // after the rigid motions
-  for (std::size_t n = 0; n < cage.nodeCount(); ++n) {
-    const auto at = static_cast<Eigen::Index>(3 * n);
-    mode.shape.emplace_back(eigen.eigenvectors().col(6 + number).segment<3>(at) / std::sqrt(masses[n]));
-  }
+  mode.frequency = std::sqrt(spectrum.values[6 + number]);  // after the rigid motions
+  for (Eigen::Index at = 0; at < size; at += 3) mode.shape.emplace_back(spectrum.vectors.block<3, 1>(at, 6 + number));
   return mode;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/elastic/src/calibration/rest_body.h>
+#include <tetskin/elastic/src/modes/dense_factors.h>
 #include <tetskin/elastic/src/modes/start_vectors.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -62,9 +62,9 @@ Eigen::MatrixXd softestModes(const RestBody& body, const DirectSolver& solver, i
     const Eigen::MatrixXd forces = body.stiffness.selfadjointView<Eigen::Lower>() * modes;
     const Eigen::MatrixXd stiffness = modes.transpose() * forces;
     const Eigen::MatrixXd mass = modes.transpose() * body.masses.asDiagonal() * modes;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, mass);
-    modes *= ritz.eigenvectors();
-    const Eigen::VectorXd now = ritz.eigenvalues().head(wanted);
+    const Eigenpairs ritz = eigenpairsOf(stiffness, mass);
+    modes *= ritz.vectors;
+    const Eigen::VectorXd now = ritz.values.head(wanted);
     if (((now - before).array().abs() <= kConverged * now.array()).all()) break;
     before = now;
   }

@@ -8,11 +8,10 @@
 //   Andreas Stathopoulos, Kesheng Wu, "A Block Orthogonalization Procedure with Constant Synchronization Requirements",
 //     SIAM J. Sci. Comput. 23, 2002 (by the eigenvectors of the products)
 #include <tetskin/core/src/base/progress.h>
+#include <tetskin/elastic/src/modes/dense_factors.h>
 #include <tetskin/elastic/src/modes/softest_vibrations.h>
 #include <tetskin/elastic/src/modes/start_vectors.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -41,11 +40,11 @@ Fields orthonormal(Fields vectors) {
     Eigen::MatrixXd products = vectors.transpose() * vectors;
     const Eigen::VectorXd scale = products.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     products = scale.asDiagonal() * products * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(products);
-    const Eigen::Index dropped = (eigen.eigenvalues().array() < kDependent * eigen.eigenvalues().maxCoeff()).count();
+    const Eigenpairs eigen = eigenpairsOf(products);
+    const Eigen::Index dropped = (eigen.values.array() < kDependent * eigen.values.maxCoeff()).count();
     const Eigen::Index kept = vectors.cols() - dropped;
-    vectors = (vectors * (scale.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
-                          eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal()))
+    vectors = (vectors * (scale.asDiagonal() * eigen.vectors.rightCols(kept) *
+                          eigen.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal()))
                   .eval();
   }
   return vectors;
@@ -62,8 +61,7 @@ class Iteration {
   Iteration(const VibrationProblem& problem, int wanted)
       : problem_(problem), wanted_(wanted), width_(widthFor(problem, wanted)) {
     // By reflections, which keep all columns: those of slender bodies are nearly linearly dependent.
-    const Eigen::HouseholderQR<Eigen::MatrixXd> start(problem.precondition(startVectors(problem.size(), width_)));
-    space_.vectors = start.householderQ() * Eigen::MatrixXd::Identity(problem.size(), width_);
+    space_.vectors = orthonormalColumns(problem.precondition(startVectors(problem.size(), width_)));
     space_.images = problem.times(space_.vectors);
     rotate();
   }
@@ -98,8 +96,7 @@ class Iteration {
   /// Rayleigh-Ritz in the span of the first `width_` vectors.
   void rotate() {
     const Eigen::MatrixXd energies = space_.vectors.transpose() * space_.images;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(0.5 * (energies + energies.transpose()));
-    take(ritz, {});
+    take(eigenpairsOf(0.5 * (energies + energies.transpose())), {});
   }
 
   /// Finds the best vectors in the span of the present ones, of the directions of the last step, and of the new steps.
@@ -118,17 +115,16 @@ class Iteration {
     space_.vectors.rightCols(steps.cols()) = steps;
     space_.images.rightCols(steps.cols()) = images;
     const Eigen::MatrixXd energies = space_.vectors.transpose() * space_.images;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(0.5 * (energies + energies.transpose()));
-    take(ritz, active);
+    take(eigenpairsOf(0.5 * (energies + energies.transpose())), active);
   }
 
   /// The softest Ritz vectors become the present ones; for the active ones, their difference to the former ones is kept
   /// as the direction.
-  void take(const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& ritz, const std::vector<Eigen::Index>& active) {
+  void take(const Eigenpairs& ritz, const std::vector<Eigen::Index>& active) {
     const Eigen::Index all = space_.vectors.cols();
-    assert(ritz.eigenvectors().rows() == all && width_ <= all);
-    const Eigen::MatrixXd best = ritz.eigenvectors().leftCols(width_);
-    values_ = ritz.eigenvalues().head(width_);
+    assert(ritz.vectors.rows() == all && width_ <= all);
+    const Eigen::MatrixXd best = ritz.vectors.leftCols(width_);
+    values_ = ritz.values.head(width_);
     Eigen::MatrixXd came(all, static_cast<Eigen::Index>(active.size()));
     for (std::size_t k = 0; k < active.size(); ++k) came.col(static_cast<Eigen::Index>(k)) = best.col(active[k]);
     came.topRows(std::min(width_, all)).setZero();
@@ -157,13 +153,13 @@ Vibrations allAtOnce(const VibrationProblem& problem, int count) {
     problem.removeRigid(withoutRigid);
     matrix += 2.0 * matrix.norm() * (identity - withoutRigid);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+  const Eigenpairs eigen = eigenpairsOf(matrix);
   Fields vectors = Fields::Zero(problem.size(), count);
   const std::vector<Eigen::Index> rows = problem.freeRows();
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    vectors.row(rows[k]) = eigen.eigenvectors().row(static_cast<Eigen::Index>(k)).head(count);
+    vectors.row(rows[k]) = eigen.vectors.row(static_cast<Eigen::Index>(k)).head(count);
   }
-  return {eigen.eigenvalues().head(count), std::move(vectors), 0, true};
+  return {eigen.values.head(count), std::move(vectors), 0, true};
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ TwoLevelSolver::TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eig
   const SparseRows ofGroups = sparse * interpolation_;
   Eigen::MatrixXd coarse = Eigen::MatrixXd(SparseRows(interpolation_.transpose() * ofGroups));
   coarse.diagonal().array() += kGroupShift * coarse.diagonal().maxCoeff();
-  coarse_.compute(coarse);
+  factorise(coarse, coarse_);
 }
 
 void TwoLevelSolver::estimateLargest(const std::vector<double>& masses) {
@@ -198,7 +198,7 @@ Fields TwoLevelSolver::solve(const Fields& loads) const {
   smooth(loads, displacements, true);
   stiffness_.multiply(displacements, forces);
   const Eigen::MatrixXd ofGroups = interpolation_.transpose() * (loads - forces);
-  displacements += interpolation_ * coarse_.solve(ofGroups);
+  displacements += interpolation_ * solved(coarse_, ofGroups);
   smooth(loads, displacements, false);
   return displacements;
 }

@@ -6,8 +6,8 @@
 #pragma once
 
 #include <tetskin/elastic/src/matrix/block_rows.h>
+#include <tetskin/elastic/src/modes/dense_factors.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCore>
 #include <vector>
 
@@ -42,7 +42,7 @@ class TwoLevelSolver {
   double largest_ = 0.0;                ///< largest eigenvalue of the inverse diagonal times the stiffness
   double largestFrequency_ = 0.0;
   Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation_;  ///< 3 nodes x motions of groups
-  Eigen::LLT<Eigen::MatrixXd> coarse_;
+  DenseCholesky coarse_;
 };
 
 }  // namespace tetskin::elastic_detail
