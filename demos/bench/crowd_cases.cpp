@@ -23,8 +23,8 @@ namespace {
 
 using benchmark::State;
 
-constexpr int kSubsteps = 4;  ///< per frame
-constexpr int kFrames = 15;
+constexpr int kStepsOfCrowd = 4;  ///< per frame
+constexpr int kFramesOfCrowd = 15;
 
 enum class Left { Nothing, Sleepers, Hidden, Updates };
 
@@ -44,7 +44,7 @@ struct Crowd {
     scenes::putInWorld(model.mesh, model.cage);
     scenes::SceneOptions scene;
     scene.bodies = bodies;
-    scene.substeps = kSubsteps;
+    scene.substeps = kStepsOfCrowd;
     crowd = scenes::sceneNamed("crowd").make(model.cage, scene);
   }
 
@@ -96,7 +96,7 @@ void frameOf(State& state, Crowd& crowd, const CrowdCase& made) {
   const std::size_t before = scenes::heapBytes();
   CrowdSkins skins(crowd, made);
   state.counters["bytes"] = static_cast<double>(scenes::heapBytes() - before);
-  const int substeps = made.left == Left::Updates ? crowd.crowd->world().step(0.0) : kSubsteps;
+  const int substeps = made.left == Left::Updates ? crowd.crowd->world().step(0.0) : kStepsOfCrowd;
   for (auto _ : state) {
     skins.prepare();
     double seconds = 0.0;
@@ -114,7 +114,7 @@ void frameOf(State& state, Crowd& crowd, const CrowdCase& made) {
 
 const std::vector<CrowdCase>& crowdCases() {
   static const std::vector<CrowdCase> all = {
-      {"all/every_substep", true, Left::Nothing, kSubsteps},
+      {"all/every_substep", true, Left::Nothing, kStepsOfCrowd},
       {"all/once_per_frame", true},
       {"all/asleep", true, Left::Sleepers},
       {"all/hidden", true, Left::Hidden},
@@ -146,7 +146,7 @@ void registerCrowdCases(const scenes::ModelOptions& model, std::size_t bodies) {
     benchmark::RegisterBenchmark(("Crowd/" + one.name).c_str(),
                                  [crowd, &one](State& state) { frameOf(state, crowd(), one); })
         ->UseManualTime()
-        ->Iterations(kFrames)
+        ->Iterations(kFramesOfCrowd)
         ->Unit(benchmark::kMillisecond);
   }
 }
