@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "report/advice.h"
 #include "report/report_files.h"
 #include "report/report_view.h"
 #include "scenes/files.h"
+#include "scenes/input_error.h"
 #include "scenes/placement.h"
 #include "scenes/progress.h"
 #include "scenes/view_page.h"
@@ -71,6 +73,13 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
   return result;
 }
 
+void requireFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder, error)) return;
+  throw scenes::InputError(folder + ": cannot be created; check the path and its permissions");
+}
+
 using Runners = std::vector<std::unique_ptr<SceneRunner>>;
 
 const SceneRunner* runnerOf(const std::string& scene, const Runners& runners) {
@@ -84,6 +93,7 @@ ReportResult makeReport(const ReportOptions& desired) {
   ReportOptions options = desired;
   ReportModel model = loadReportModel(options);
   options.referenceTets = model.reference.tets;
+  requireFolder(options.out);
   scenes::requireWritable(options.json);
   if (!options.view.empty()) scenes::requireViewable();
   CageShelf cages(model.mesh);

@@ -17,7 +17,8 @@ TEST(Bench, UpdatesTheSkinsOfACrowdThatAreDueAndNoOthers) {
                                  "--benchmark_out=c.json", "--benchmark_out_format=json"});
   ASSERT_EQ(result.status, 0) << result.err;
   std::map<std::string, double> updates, bytes;
-  for (const auto& row : folder.json("c.json").at("benchmarks")) {
+  const auto json = folder.json("c.json");
+  for (const auto& row : json.at("benchmarks")) {
     const auto name = row.at("name").get<std::string>();
     EXPECT_FALSE(row.contains("error_occurred")) << row;
     updates[name.substr(0, name.find("/iterations"))] = row.value("updates", -1.0);
