@@ -17,9 +17,8 @@
 #include <functional>
 #include <memory>
 
-#include "bench/body_cases.h"
 #include "bench/contact_cases.h"
-#include "bench/deterministic_cases.h"
+#include "bench/crowd_cases.h"
 #include "bench/palette_cases.h"
 #include "bench/pile_cases.h"
 #include "bench/snapshot_cases.h"
@@ -341,6 +340,7 @@ int main(int argc, char** argv) {
   const bool help = std::any_of(argv, argv + argc, [](const char* text) { return std::string(text) == "--help"; });
   if (!help) benchmark::Initialize(&argc, argv);
   ModelOptions options;
+  std::size_t bodies = 500;
   CommandLine line(
       "Benchmarks embedding, updating, building and writing, each beside Bullet's own. Also takes the options of "
       "Google Benchmark: --benchmark_filter=REGEX, --benchmark_out=FILE, ...",
@@ -350,15 +350,15 @@ int main(int argc, char** argv) {
          "embedding your mesh, in three ways"}},
        ""});
   line.addModelOptions(options);
+  line.addCount("--bodies", bodies, "of Crowd/", 100000);
   return line.run(argc, argv, [&] {
     registerCases(std::make_shared<Bench>(loadModel(options)), options.tets);
+    bench::registerCrowdCases(options, bodies);
     if (options.mesh.empty()) {
       registerUpdateSizes(options.tets);
       registerBuildBodySizes();
-      bench::registerBodyCases();
       bench::registerStepCases();
       bench::registerSnapshotCases();
-      bench::registerDeterministicCases();
       bench::registerContactCases();
       bench::registerPileCases();
       bench::registerTouchCases();

@@ -286,6 +286,25 @@ void softSelf(State& state, std::size_t tets, bool sinks, bool itself) {
   timeSettled(state, world, model.cage);
 }
 
+/// A frame with four substeps, of bodies that float beside each other.
+void floating(State& state, int bodies, bool faceTree) {
+  scenes::SceneOptions options;
+  options.bodies = static_cast<std::size_t>(bodies);
+  options.body.faceTree = faceTree;
+  const auto scene = scenes::sceneNamed("float").make(worldCage(3000), options);
+  for (auto _ : state) scene->step(1);
+}
+
+void registerFaceTrees() {
+  for (const int bodies : {1, 2}) {
+    for (const bool faceTree : {true, false}) {
+      const std::string name = std::string("Step/face_tree:") + (faceTree ? "yes" : "no") + "/bodies:";
+      benchmark::RegisterBenchmark((name + std::to_string(bodies)).c_str(), floating, bodies, faceTree)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
 void registerHeld() {
   for (const std::size_t tets : {500, 3000, 30000}) {
     for (const int kilopascals : {3, 30, 300}) {
@@ -325,6 +344,7 @@ void registerSoftSelves() {
 void registerStepCases() {
   benchmark::RegisterBenchmark("Step/cloth/bullet", cloth, Force::NeoHookean)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("Step/cloth/tetskin", cloth, Force::Elastic)->Unit(benchmark::kMicrosecond);
+  registerFaceTrees();
   registerHeld();
   registerSoftPairs();
   registerSoftSelves();

@@ -4,26 +4,23 @@
 
 namespace tetskin::contact_demo {
 
-const ContactScenes& contactScenes() {
-  static const ContactScenes all = [] {
-    ContactScenes scenes;
-    addHitScenes(scenes);
-    addApplicationScenes(scenes);
-    addLoadScenes(scenes);
-    addFrictionScenes(scenes);
-    addEnergyScenes(scenes);
-    addMovedScenes(scenes);
-    addRestScenes(scenes);
-    addCoarseScenes(scenes);
-    addSleepScenes(scenes);
-    addSoftScenes(scenes);
-    addSlabScenes(scenes);
-    addSlidingScenes(scenes);
-    addJointScenes(scenes);
-    addCostScenes(scenes);
-    return scenes;
-  }();
-  return all;
+ContactScenes contactScenes() {
+  ContactScenes scenes;
+  addHitScenes(scenes);
+  addApplicationScenes(scenes);
+  addLoadScenes(scenes);
+  addFrictionScenes(scenes);
+  addEnergyScenes(scenes);
+  addMovedScenes(scenes);
+  addRestScenes(scenes);
+  addCoarseScenes(scenes);
+  addSleepScenes(scenes);
+  addSoftScenes(scenes);
+  addSlabScenes(scenes);
+  addSlidingScenes(scenes);
+  addJointScenes(scenes);
+  addCostScenes(scenes);
+  return scenes;
 }
 
 }  // namespace tetskin::contact_demo

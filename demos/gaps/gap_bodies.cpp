@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "gaps/gap_bodies.h"
+#include "gaps/gap_scenes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "scenes/caged_mesh.h"
-#include "scenes/input_error.h"
 #include "scenes/serpent.h"
 #include "scenes/stuffed_solid.h"
 
@@ -72,20 +71,14 @@ TriangleMesh meshOf(const ImplicitSolid& solid, std::size_t triangles) {
 
 TriangleMesh meshNamed(const std::string& name, std::size_t triangles) {
   if (name == "serpent") return scenes::makeSerpent({triangles});
-  if (name == "round") return meshOf(roundSolid(), triangles);
-  if (name == "legs") return meshOf(animalSolid(), triangles);
-  throw scenes::InputError("there is no body '" + name + "'; there are: serpent, round, legs");
+  return meshOf(name == "round" ? roundSolid() : animalSolid(), triangles);
 }
 
 }  // namespace
 
-const std::vector<std::string>& bodyNames() {
-  static const std::vector<std::string> names = {"serpent", "round", "legs"};
-  return names;
-}
-
-measure::ModelPtr makeGapBody(const std::string& name, std::size_t tets, std::size_t triangles) {
-  TriangleMesh mesh = meshNamed(name, triangles);
+measure::ModelPtr makeGapBody(const std::string& name, std::size_t tets) {
+  constexpr std::size_t kTriangles = 20000;
+  TriangleMesh mesh = meshNamed(name, kTriangles);
   mesh.groups.clear();
   scenes::CagedMesh body = scenes::inWorld(std::move(mesh), tets);
   return measure::makeModel(std::move(body.mesh), std::move(body.cage));

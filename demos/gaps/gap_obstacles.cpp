@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "gaps/gap_obstacles.h"
+#include "gaps/gap_scenes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-
-#include "scenes/input_error.h"
 
 namespace tetskin::gaps {
 namespace {
@@ -118,15 +116,6 @@ const std::vector<GapObstacle>& gapObstacles() {
        "mesh"},
       {smallBalls(), "ball", true}};
   return all;
-}
-
-const GapObstacle& obstacleNamed(const std::string& name) {
-  std::string names;
-  for (const GapObstacle& obstacle : gapObstacles()) {
-    if (obstacle.name == name) return obstacle;
-    names += (names.empty() ? "" : ", ") + obstacle.name;
-  }
-  throw scenes::InputError("there is no obstacle '" + name + "'; there are: " + names);
 }
 
 }  // namespace tetskin::gaps

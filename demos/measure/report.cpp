@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -15,7 +15,6 @@
 #include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/printed_table.h"
-#include "scenes/summary.h"
 #include "scenes/timer.h"
 
 namespace tetskin::measure {
@@ -33,24 +32,6 @@ std::string textOf(double value) {
   return formatted(value != 0.0 && std::abs(value) < 1e-3 ? "%.1e" : "%.4g", value);
 }
 
-/// A figure's present name, for results of versions in which it had another one.
-std::string presentFigure(const std::string& name) {
-  static const std::map<std::string, std::string> renamed = {
-      {"stretch over that by hand", "stretch over analytic value"},
-      {"below its place, m", "downward displacement, m"},
-      {"box leaves its place, S", "box displacement, S"},
-      {"top box below its place, S", "downward displacement of the top box, S"},
-      {"the same of 10,000 tets", "the same with 10,000 tets"},
-      {"inverted tets, at most", "most inverted tets"},
-      {"turn, rad", "rotation, rad"},
-      {"turn, rad/s", "angular speed, rad/s"},
-      {"10 of each: distance off", "10 of each: distance error"},
-      {"300 of each: distance off", "300 of each: distance error"},
-  };
-  const auto found = renamed.find(name);
-  return found == renamed.end() ? name : found->second;
-}
-
 SceneResult resultFrom(const nlohmann::json& json) {
   SceneResult result;
   result.scene = json.at("scene").get<std::string>();
@@ -58,7 +39,7 @@ SceneResult resultFrom(const nlohmann::json& json) {
     const auto& value = figure.at("value");
     // JSON has no other way to represent NaN.
     result.figures.push_back(
-        {presentFigure(figure.at("name").get<std::string>()), value.is_null() ? std::nan("") : value.get<double>()});
+        {figure.at("name").get<std::string>(), value.is_null() ? std::nan("") : value.get<double>()});
   }
   return result;
 }
@@ -116,55 +97,38 @@ SceneResult runScene(const MeasuredScene& scene, Kind kind) {
   const scenes::WallTimer timer;
   Run run(kind);
   scene.run(run);
-  const double iterations = static_cast<double>(run.iterations) / static_cast<double>(std::max(1L, run.steps));
-  return {scene.name, run.steps, iterations, timer.seconds(), std::move(run.figures)};
-}
-
-std::string faultOf(const std::string& scene, const Figure& figure) {
-  const Promise* promise = promiseFor(scene, figure.name);
-  return holds(promise, figure.value) ? "" : figure.name + ": " + textOf(figure.value) + ", not " + text(*promise);
-}
-
-std::string textOf(const std::vector<Figure>& figures, const std::string& name) {
-  const auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
-  return found == figures.end() ? "-" : textOf(found->value);
-}
-
-std::size_t brokenIn(const SceneResults& results) {
-  std::size_t broken = 0;
-  for (const SceneResult& result : results) {
-    for (const Figure& figure : result.figures) broken += !faultOf(result.scene, figure).empty();
+  SceneResult result;
+  result.scene = scene.name;
+  result.steps = run.steps;
+  result.iterationsPerStep = static_cast<double>(run.iterations) / static_cast<double>(std::max(1L, run.steps));
+  result.seconds = timer.seconds();
+  result.promised = run.promised.empty() ? scene.name : run.promised;
+  result.broken = std::move(run.broken);
+  for (const Figure& figure : run.figures) {
+    const Promise* promise = promiseFor(result.promised, figure.name);
+    if (!holds(promise, figure.value))
+      result.broken.push_back(figure.name + ": " + textOf(figure.value) + ", not " + text(*promise));
   }
-  return broken;
+  result.figures = std::move(run.figures);
+  result.status = std::move(run.status);
+  result.hash = run.hash;
+  return result;
 }
 
 void print(const SceneResult& result) {
-  std::printf("%-42s %6ld steps  %5.1f iterations per step  %6.2f s\n", result.scene.c_str(), result.steps,
-              result.iterationsPerStep, result.seconds);
+  std::printf("%-42s %6ld steps  %5.1f iterations per step  %6.2f s  %s\n", result.scene.c_str(), result.steps,
+              result.iterationsPerStep, result.seconds, result.status.c_str());
   PrintedTable table({{"", "", 34}, {"", "", 12}, {"", "", 14}, {}});
   for (const Figure& figure : result.figures) {
-    const Promise* promise = promiseFor(result.scene, figure.name);
+    const Promise* promise = promiseFor(result.promised, figure.name);
+    if (!result.status.empty() && !promise) continue;
     const char* verdict = holds(promise, figure.value) ? "passed" : "FAILED";
     table.add(
         {"  " + figure.name, formatted("%.6g", figure.value), promise ? text(*promise) : "", promise ? verdict : ""});
   }
   std::printf("%s", table.text().c_str());
+  for (const std::string& fault : result.broken) std::printf("    FAILED: %s\n", fault.c_str());
   std::fflush(stdout);
-}
-
-nlohmann::ordered_json toJson(const std::string& scene, const std::vector<Figure>& figures) {
-  auto all = nlohmann::ordered_json::array();
-  for (const Figure& figure : figures) {
-    const Promise* promise = promiseFor(scene, figure.name);
-    nlohmann::ordered_json json;
-    json["name"] = figure.name;
-    json["value"] = figure.value;
-    if (promise && std::isfinite(promise->minimum)) json["least"] = promise->minimum;
-    if (promise && std::isfinite(promise->maximum)) json["most"] = promise->maximum;
-    json["passed"] = holds(promise, figure.value);
-    all.push_back(std::move(json));
-  }
-  return all;
 }
 
 nlohmann::ordered_json toJson(const SceneResults& results) {
@@ -175,7 +139,24 @@ nlohmann::ordered_json toJson(const SceneResults& results) {
     one["steps"] = result.steps;
     one["iterations_per_step"] = result.iterationsPerStep;
     one["seconds"] = result.seconds;
-    one["figures"] = toJson(result.scene, result.figures);
+    one["figures"] = nlohmann::ordered_json::array();
+    for (const Figure& figure : result.figures) {
+      const Promise* promise = promiseFor(result.promised, figure.name);
+      nlohmann::ordered_json row;
+      row["name"] = figure.name;
+      row["value"] = figure.value;
+      if (promise && std::isfinite(promise->minimum)) row["least"] = promise->minimum;
+      if (promise && std::isfinite(promise->maximum)) row["most"] = promise->maximum;
+      row["passed"] = holds(promise, figure.value);
+      one["figures"].push_back(std::move(row));
+    }
+    one["broken"] = result.broken;
+    if (!result.status.empty()) {
+      one["status"] = result.status;
+      char hash[17];
+      std::snprintf(hash, sizeof hash, "%016" PRIx64, result.hash);
+      one["hash"] = hash;
+    }
     json.push_back(std::move(one));
   }
   return json;
@@ -189,7 +170,7 @@ SceneResults readResults(const std::string& path) {
     for (const auto& json : nlohmann::json::parse(*text)) results.push_back(resultFrom(json));
     return results;
   } catch (const nlohmann::json::exception& error) {
-    throw scenes::InputError(path + ": not a results file of tetskin_contact (--json): " + error.what());
+    throw scenes::InputError(path + ": not a results file of tetskin_measure (--json): " + error.what());
   }
 }
 
@@ -210,27 +191,6 @@ std::string toMarkdown(const std::vector<ResultColumn>& columns) {
     table.add(std::move(cells));
   }
   return table.markdown();
-}
-
-void addReportOptions(scenes::CommandLine& line, ReportOptions& options, const std::string& note) {
-  line.addSummaryOption(options.json);
-  line.addOutput("--markdown", options.markdown, note);
-  line.addQuietOption(options.quiet);
-}
-
-void write(const ReportOptions& options, const nlohmann::ordered_json& json, const std::string& markdown) {
-  if (!options.json.empty()) scenes::writeJson(json, options.json);
-  if (!options.markdown.empty()) scenes::writeFile(options.markdown, markdown);
-}
-
-int finish(const SceneResults& results, const std::string& markdown, const ReportOptions& options) {
-  write(options, toJson(results), markdown);
-  const std::size_t broken = brokenIn(results);
-  if (!options.quiet) {
-    std::printf("\n%zu scenes; %zu figures outside the limits promised for contact at the surface\n", results.size(),
-                broken);
-  }
-  return broken == 0 ? scenes::kDone : scenes::kRunFailed;
 }
 
 }  // namespace tetskin::measure

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,10 +37,21 @@ struct Run {
     figures.push_back({name, std::isnan(value) ? std::nan("") : value});
   }
 
+  /// In words; whatever is promised of figures.
+  void expect(bool condition, const std::string& what) {
+    if (!condition && std::count(broken.begin(), broken.end(), what) == 0) broken.push_back(what);
+  }
+
   Kind kind;
   std::vector<Figure> figures;
-  long steps = 0, iterations = 0;  ///< of all worlds; iterations are those of the library's solver
+  std::vector<std::string> broken;  ///< the expectations that were not met
+  long steps = 0, iterations = 0;   ///< of all worlds; iterations are those of the library's solver
+  std::string promised;             ///< the scene by whose name promises are found; empty: its own
+  std::string status;               ///< how it ended, in a word, where expectations count rather than figures
+  std::uint64_t hash = 0;           ///< of nodes, where it has one
 };
+
+enum class Often { Quick, Usual, Long };
 
 /// A function that makes its own world.
 struct MeasuredScene {
@@ -47,8 +59,10 @@ struct MeasuredScene {
   std::function<void(Run&)> run;
   /// the kinds with which it can be run
   std::vector<Kind> kinds = {Kind::Surface, Kind::Nodes, Kind::Bullet};
+  Often often = Often::Usual;  ///< Quick: also in small selections; Long: only where asked for
 
   bool isFor(Kind kind) const { return std::count(kinds.begin(), kinds.end(), kind) > 0; }
 };
+using MeasuredScenes = std::vector<MeasuredScene>;
 
 }  // namespace tetskin::measure

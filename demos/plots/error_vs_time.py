@@ -11,8 +11,7 @@ SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_substeps.pn
 substeps; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
 deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
 installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is. Of a comparison of solvers (--solvers): one
-table, which is SCENE_solvers.csv, too, and SCENE_solvers.png. Of a comparison of orders (--orders): SCENE_orders.csv and
-SCENE_orders.png; orders.py makes one table of several models.
+table, which is SCENE_solvers.csv, too, and SCENE_solvers.png.
 Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
 """
 import argparse
@@ -29,22 +28,18 @@ from matplotlib.lines import Line2D
 
 sys.dont_write_bytecode = True  # leaves nothing in the repository
 from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
-from orders import COLUMNS as ORDER_COLUMNS, draw_orders, is_of_orders, order_rows, orders_table, write_orders  # noqa: E402
 from solvers import draw_solvers, is_of_solvers, solvers_csv, solvers_text  # noqa: E402
 
-COLOURS = {"linear": BLUE, "quadratic": ORANGE, "bullet": GREY}
-MARKERS = {"linear": "o", "quadratic": "s", "bullet": "x"}
+COLOURS = {"linear": BLUE, "quadratic": ORANGE}
+MARKERS = {"linear": "o", "quadratic": "s"}
 STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":", "filled": "-.", "calibrated": "--",
-          "uncalibrated": ":", "quadratic": "-", "quadratic_calibrated": "-.", "reduced": (0, (1, 1.5))}
+          "reduced": (0, (1, 1.5))}
 # Kinds that only serve to separate causes of error, with one surface: distinguished by colour and marker as well.
-KIND_COLOURS = {"same_calibrated": SKY, "split": GREEN, "filled": PINK, "reduced": "#000000", "uncalibrated": GREY,
-                "quadratic": ORANGE, "quadratic_calibrated": GREEN}
-KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*", "uncalibrated": "x", "quadratic": "s",
-                "quadratic_calibrated": "^"}
+KIND_COLOURS = {"same_calibrated": SKY, "split": GREEN, "filled": PINK, "reduced": "#000000"}
+KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*"}
 # What follows a surface's name.
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
-         "calibrated": ", calibrated", "reduced": ", reduced", "uncalibrated": ", not calibrated",
-         "quadratic": ", quadratic tets", "quadratic_calibrated": ", quadratic tets, calibrated"}
+         "calibrated": ", calibrated", "reduced": ", reduced"}
 
 HEAD = ("| tets | duplicates | stiffness | surface | substeps | error, RMS | in space | in time | largest | embedding only | "
         "at the nodes | normals, degrees | simulation, ms | skin, µs | total, ms | speed-up | embedding, ms | memory, MB |"
@@ -79,7 +74,7 @@ def substeps_of(row):
 
 def is_choice(row):
     """Whether it is a setting that a user of the library may choose."""
-    return row["interpolation"] not in ("reference", "bullet") and row["finite"]
+    return row["interpolation"] != "reference" and row["finite"]
 
 
 def reference_line(row, scene, against):
@@ -196,9 +191,6 @@ def tables(results, target):
         if is_of_solvers(scene):
             text += solvers_text(scene)
             continue
-        if is_of_orders(scene):
-            text += orders_table(scene, results["model"])
-            continue
         text += HEAD.format(more=AGAINST if against else "", lines="---|---|" if against else "")
         text += "".join(table_line(row, scene, against) for row in scene["rows"])
         if against:
@@ -259,12 +251,11 @@ def draw_totals(axes, scene):
             rows = series(scene, interpolation, material)
             if not rows:
                 continue
-            bullet = interpolation == "bullet"
             if material == "reduced":
                 draw_reduced(axes, rows, look_of(interpolation, material))
                 continue
             axes.plot([r["total_ms"] for r in rows], [r["error_total_rms"] for r in rows], linewidth=1.4,
-                      linestyle="" if bullet else style, zorder=5 if bullet else 3, **look_of(interpolation, material))
+                      linestyle=style, zorder=3, **look_of(interpolation, material))
 
 
 def draw_reduced(axes, rows, look):
@@ -338,8 +329,6 @@ def legend_of(axes, scene):
                                           **look_of(interpolation, material)))
             entries.append(Line2D([], [], linewidth=0.7, alpha=0.4, label=f"{interpolation}, embedding only",
                                   color=COLOURS[interpolation], marker=MARKERS[interpolation], markersize=3))
-    if series(scene, "bullet", "same"):
-        entries.append(Line2D([], [], linestyle="", color=COLOURS["bullet"], marker="x", label="Bullet's render nodes"))
     if series_in_time(scene):
         entries.append(Line2D([], [], color="#888888", linewidth=0.8, marker=".", markersize=4, label="number: substeps"))
     entries.append(Line2D([], [], color="#F0E442", linewidth=7, alpha=0.75, label="Pareto-optimal: none faster and more accurate"))
@@ -398,7 +387,7 @@ def error_over_frames(scene, name, tets):
              for material in {r["material"] for r in rows}}
     figure, axes = plt.subplots(figsize=(6.4, 3.6))
     for row in rows:
-        if row["tets"] != shown[row["material"]] or row["interpolation"] == "bullet":
+        if row["tets"] != shown[row["material"]]:
             continue
         errors = row["error_total_rms_by_frame"]
         wide = row["interpolation"] == "linear" and row["material"] not in KIND_COLOURS
@@ -493,10 +482,6 @@ def draw(scene, model, arguments, folder):
     if is_of_solvers(scene):
         yield save(draw_solvers(scene, f"{title_of(scene)} ({model})"), folder, f"{scene['scene']}_solvers")
         return
-    if is_of_orders(scene):
-        rows = [dict(zip(ORDER_COLUMNS, row)) for row in order_rows(scene, model)]
-        yield save(draw_orders(rows), folder, f"{scene['scene']}_orders")
-        return
     yield save(error_against_time(scene, name), folder, base)
     if series_in_time(scene):
         yield save(error_over_substeps(scene, name), folder, f"{base}_substeps")
@@ -539,10 +524,6 @@ def main():
     for scene in filter(is_of_solvers, results["scenes"]):
         path = folder / f"{scene['scene']}_solvers.csv"
         path.write_text(solvers_csv(scene), encoding="utf-8")
-        said(path)
-    for scene in filter(is_of_orders, results["scenes"]):
-        path = folder / f"{scene['scene']}_orders.csv"
-        write_orders(path, [results])
         said(path)
     for scene in results["scenes"]:
         for path in draw(scene, Path(results["model"]).stem, arguments, folder):

@@ -20,7 +20,6 @@ from PIL.PngImagePlugin import PngInfo
 
 sys.dont_write_bytecode = True  # leaves nothing in the repository
 from look import BLUE, DPI, GREEN, GREY, ORANGE, PINK, SKY, plt  # noqa: E402
-from orders import draw_orders  # noqa: E402
 from solvers import draw_table  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "peers"))
@@ -274,10 +273,6 @@ def solvers(rows):
     return draw_table(rows, f"The serpent, pinned by its coil, sags: {int(rows[0]['tets']):,} tets, all the same")
 
 
-def orders(rows):
-    return draw_orders(rows)
-
-
 def peers_beam(rows):
     return peers.plot(peers.numbers(rows), "beam")
 
@@ -286,7 +281,7 @@ def peers_snake(rows):
     return peers.plot(peers.numbers(rows), "snake")
 
 
-PLOTS = (cage_kinds, orders, reduction, attach_update_build, crowd, solvers, step_time, landing, gaps, contact_checks,
+PLOTS = (cage_kinds, reduction, attach_update_build, crowd, solvers, step_time, landing, gaps, contact_checks,
          peers_beam, peers_snake)
 
 

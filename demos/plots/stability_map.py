@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""stability_map.py STRESS.json MAP.png: draws the stability maps of tetskin_stress --json: stiffness against time step,
+"""stability_map.py STRESS.json MAP.png: draws the stability maps of tetskin_measure --json: stiffness against time step,
 one cell a run, coloured by how large the body became, crossed out where it exploded. Bullet's force is in MAP.png, with
 both integrators; tetskin's is in MAP_tetskin.png, with a ring where Bullet's explodes with both. One of them may be
 missing in STRESS.json."""
@@ -44,7 +44,7 @@ def draw(axes, cells):
 def draw_bullets(cells, path):
     figure, both = plt.subplots(1, 2, figsize=(9.5, 3.8), sharey=True, layout="constrained")
     for axes, implicit in zip(both, (False, True)):
-        image = draw(axes, [cell for cell in cells if cell["implicit"] == implicit])
+        image = draw(axes, [cell for cell in cells if (cell["whose"] == "implicit") == implicit])
         axes.set_title("implicit: one Newton step" if implicit else "explicit, implicit damping")
     both[0].set_ylabel("Young's modulus, Pa")
     bar = figure.colorbar(image, ax=both, extend="max")
@@ -62,15 +62,36 @@ def draw_ours(cells, path):
     figure.savefig(path, dpi=110)
 
 
+def cell_of(scene):
+    """A cell of the map, map/WHOSE/E=STIFFNESS/dt=1/RATE."""
+    _, whose, stiffness, _, rate = scene["scene"].split("/")
+    figures = {figure["name"]: figure["value"] for figure in scene["figures"]}
+    return {"whose": whose, "stiffness": float(stiffness.removeprefix("E=")), "time_step": 1 / float(rate),
+            "extent_max": figures["largest extent"], "simulation_finite": figures["finite"] == 1,
+            "simulation_bounded": figures["bounded"] == 1}
+
+
+def mark_gains(cells):
+    """Says of each cell of tetskin's whether Bullet's force explodes there with both integrators."""
+    bullets = {}
+    for cell in cells:
+        if cell["whose"] != "tetskin":
+            bullets.setdefault((cell["stiffness"], cell["time_step"]), []).append(cell["simulation_bounded"])
+    for cell in cells:
+        there = bullets.get((cell["stiffness"], cell["time_step"]), [])
+        cell["bullet_cannot_tetskin_can"] = cell["whose"] == "tetskin" and there and not any(there)
+
+
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     with open(sys.argv[1], encoding="utf-8") as file:
-        cells = [case for case in json.load(file) if case["group"] == "map"]
+        cells = [cell_of(scene) for scene in json.load(file) if scene["scene"].startswith("map/")]
     if not cells:
-        sys.exit(f"{sys.argv[1]}: has no cases of the group 'map'; make it with tetskin_stress --only map/ --json")
-    bullets = [cell for cell in cells if cell["force"] == "neo_hookean"]
-    ours = [cell for cell in cells if cell["force"] == "tetskin"]
+        sys.exit(f"{sys.argv[1]}: has no stability map; make it with tetskin_measure --only map/ --elasticity both --json")
+    mark_gains(cells)
+    bullets = [cell for cell in cells if cell["whose"] != "tetskin"]
+    ours = [cell for cell in cells if cell["whose"] == "tetskin"]
     name, extension = os.path.splitext(sys.argv[2])
     if bullets:
         draw_bullets(bullets, sys.argv[2])

@@ -20,12 +20,7 @@ from pathlib import Path
 import nbformat
 
 FOLDER = Path(__file__).parent
-SCRIPTS = [
-    "drop",
-    "gripper",
-    "cage_from_scan",
-    "torus_of_pybullet",
-]
+SCRIPTS = ["drop", "gripper"]
 """The demos that are notebooks, too."""
 LARGEST = 200_000
 """Bytes of a notebook that is kept."""

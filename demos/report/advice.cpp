@@ -145,11 +145,11 @@ ReductionLimit reductionLimit(const std::vector<Row>& rows) {
 
 namespace {
 
-/// The most accurate cage of linear tets that costs no more; null if there is none.
+/// The most accurate cage that costs no more; null if there is none.
 const Row* cageBeside(const Row& other, const std::vector<Row>& rows) {
   const Row* best = nullptr;
   for (const Row& row : rows) {
-    if (!row.isChoice() || row.isReduced() || row.isQuadratic() || row.totalMs > other.totalMs) continue;
+    if (!row.isChoice() || row.isReduced() || row.totalMs > other.totalMs) continue;
     if (!best || row.errorTotalRms < best->errorTotalRms) best = &row;
   }
   return best;
@@ -158,8 +158,7 @@ const Row* cageBeside(const Row& other, const std::vector<Row>& rows) {
 std::string inWords(const Row& row) {
   char text[128];
   std::snprintf(text, sizeof text, " has an error of %.2e at %.3g ms per frame", row.errorTotalRms, row.totalMs);
-  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) +
-                           (row.isQuadratic() ? " tets, eight to a quadratic one, in " : " tets in ") +
+  const std::string cage = "a cage of " + std::to_string(std::lround(row.tets)) + " tets in " +
                            std::to_string(std::lround(row.substeps)) + (row.substeps == 1.0 ? " substep" : " substeps");
   return (row.isReduced() ? std::to_string(std::lround(row.modes)) + " modes in " + cage : cage) + text;
 }
@@ -184,24 +183,6 @@ std::string reductionAdvice(const std::vector<Row>& rows) {
   const char* winner = gain > 1.0 ? "Use a reduced body: " : "Use an embedding: ";
   const Row &better = gain > 1.0 ? *reduced : *cage, &worse = gain > 1.0 ? *cage : *reduced;
   return winner + inWords(better) + ", " + inWords(worse) + ".";
-}
-
-std::string orderAdvice(const std::vector<Row>& rows) {
-  struct Pair {
-    double gain;
-    const Row *quadratic, *linear;
-  };
-  std::vector<Pair> pairs;
-  for (const Row& row : rows) {
-    if (!row.isQuadratic() || !row.isChoice()) continue;
-    if (const Row* beside = cageBeside(row, rows))
-      pairs.push_back({beside->errorTotalRms / row.errorTotalRms, &row, beside});
-  }
-  if (pairs.empty()) return {};
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.gain < b.gain; });
-  const auto& [gain, quadratic, linear] = pairs[pairs.size() / 2];
-  if (gain > 1.0) return "Use quadratic tets: " + inWords(*quadratic) + ", " + inWords(*linear) + ".";
-  return "Use linear tets: " + inWords(*linear) + ", " + inWords(*quadratic) + ".";
 }
 
 double ownError(double edge, const std::vector<CoarserLevel>& coarser) {

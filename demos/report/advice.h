@@ -11,8 +11,7 @@
 
 namespace tetskin::report {
 
-/// Marks the rows that no other choice beats in both time and error. The reference and Bullet's own surface are left
-/// out.
+/// Marks the rows that no other choice beats in both time and error. The reference is left out.
 void markPareto(std::vector<Row>& rows);
 
 /// The exponent of the edge length with which an error falls, from each cage to the next finer one.
@@ -72,9 +71,5 @@ ReductionLimit reductionLimit(const std::vector<Row>& rows);
 /// What to use in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
 /// these cages. Empty without reduced rows.
 std::string reductionAdvice(const std::vector<Row>& rows);
-
-/// Which order of tets to use in this scene, in a sentence: quadratic ones if most of their cages have less error than
-/// the linear ones that cost no more. Empty unless both orders were compared.
-std::string orderAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

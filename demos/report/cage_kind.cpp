@@ -7,33 +7,24 @@
 namespace tetskin::report {
 
 const char* nameOf(CageKind kind) {
-  constexpr const char* kNames[] = {"same",       "same_calibrated", "split",     "filled",
-                                    "calibrated", "uncalibrated",    "quadratic", "quadratic_calibrated"};
+  constexpr const char* kNames[] = {"same", "same_calibrated", "split", "filled", "calibrated"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 bool isSplit(CageKind kind) {
-  return kind == CageKind::Split || kind >= CageKind::Calibrated;
+  return kind == CageKind::Split || kind == CageKind::Calibrated;
 }
 
 bool isFilled(CageKind kind) {
-  return kind == CageKind::Filled || kind >= CageKind::Calibrated;
+  return kind == CageKind::Filled || kind == CageKind::Calibrated;
 }
 
 bool isCalibrated(CageKind kind) {
-  return kind == CageKind::SameCalibrated || kind == CageKind::Calibrated || kind == CageKind::QuadraticCalibrated;
-}
-
-bool isQuadratic(CageKind kind) {
-  return kind == CageKind::Quadratic || kind == CageKind::QuadraticCalibrated;
+  return kind == CageKind::SameCalibrated || kind == CageKind::Calibrated;
 }
 
 std::vector<CageKind> cageKindsOf(const std::vector<std::string>& names) {
   return choicesOf("--cages", "kind", kCageKinds, names);
-}
-
-std::vector<CageKind> ordersOf(const std::vector<std::string>& names) {
-  return choicesOf("--orders", "order", kOrders, names);
 }
 
 }  // namespace tetskin::report

@@ -11,32 +11,22 @@ namespace tetskin::report {
 /// How much a cage knows of the mesh in it. Tets of bare cages are full of material; those of the others are as heavy
 /// as the material that they contain, and as stiff as their volume fraction says.
 enum class CageKind {
-  Same,                 ///< bare, without duplicate elements: tets of the reference's material
-  SameCalibrated,       ///< as `Same`, and softened by calibration
-  Split,                ///< bare, with a duplicate of a tet for each component of the mesh in it
-  Filled,               ///< with volume fractions, without duplicate elements
-  Calibrated,           ///< with duplicate elements, volume fractions and calibration: the library's recommended cage
-  Uncalibrated,         ///< with duplicate elements and volume fractions alone
-  Quadratic,            ///< as `Uncalibrated`, of quadratic tets
-  QuadraticCalibrated,  ///< as `Calibrated`, of quadratic tets
+  Same,            ///< bare, without duplicate elements: tets of the reference's material
+  SameCalibrated,  ///< as `Same`, and softened by calibration
+  Split,           ///< bare, with a duplicate of a tet for each component of the mesh in it
+  Filled,          ///< with volume fractions, without duplicate elements
+  Calibrated,      ///< with duplicate elements, volume fractions and calibration: the library's recommended cage
 };
 /// What a cage knows, and what it does not.
 constexpr std::array<CageKind, 5> kCageKinds = {CageKind::Same, CageKind::SameCalibrated, CageKind::Split,
                                                 CageKind::Filled, CageKind::Calibrated};
-/// Both orders of tets.
-constexpr std::array<CageKind, 4> kOrders = {CageKind::Uncalibrated, CageKind::Calibrated, CageKind::Quadratic,
-                                             CageKind::QuadraticCalibrated};
-
-/// "same", "same_calibrated", "split", "filled", "calibrated", "uncalibrated", "quadratic", "quadratic_calibrated".
+/// "same", "same_calibrated", "split", "filled", "calibrated".
 const char* nameOf(CageKind kind);
 bool isSplit(CageKind kind);
 bool isFilled(CageKind kind);
 bool isCalibrated(CageKind kind);
-bool isQuadratic(CageKind kind);
 
 /// The kinds with these names, in the order above and without repetitions; "all" means all of them. Throws InputError.
 std::vector<CageKind> cageKindsOf(const std::vector<std::string>& names);
-/// The same for kOrders.
-std::vector<CageKind> ordersOf(const std::vector<std::string>& names);
 
 }  // namespace tetskin::report

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <set>
 
-#include "report/quadratic_cage.h"
 #include "scenes/caged_mesh.h"
 #include "scenes/input_error.h"
 
@@ -57,14 +56,12 @@ Filling fillingFor(const scenes::ModelOptions& model, const scenes::Placement& p
 }
 
 Cage CageShelf::made(std::size_t tets, CageKind kind) const {
-  const std::size_t elements = isQuadratic(kind) ? std::max<std::size_t>(1, tets / kSubTets) : tets;
   CageOptions options;
-  options.targetTets = elements;
+  options.targetTets = tets;
   options.duplicateElements = isSplit(kind);
-  options.fit = !isQuadratic(kind);
-  Cage cage = filling_ ? filling_(elements) : scenes::builtCage(mesh_, options);
+  Cage cage = scenes::builtCage(mesh_, options);
   if (!isFilled(kind)) makeBare(cage);
-  return isQuadratic(kind) ? quadraticCage(cage, mesh_) : cage;
+  return cage;
 }
 
 const ShelvedCage& CageShelf::at(std::size_t tets, CageKind kind) {

@@ -40,9 +40,8 @@ Filling fillingFor(const scenes::ModelOptions& model, const scenes::Placement& p
 /// Throws InputError.
 class CageShelf {
  public:
-  /// mesh     outlives this object
-  /// filling  not empty: cages are such tets, instead of built ones, which the mesh cuts
-  explicit CageShelf(const TriangleMesh& mesh, Filling filling = {}) : mesh_(mesh), filling_(std::move(filling)) {}
+  /// mesh  outlives this object
+  explicit CageShelf(const TriangleMesh& mesh) : mesh_(mesh) {}
 
   const ShelvedCage& at(std::size_t tets, CageKind kind);
 
@@ -50,7 +49,6 @@ class CageShelf {
   Cage made(std::size_t tets, CageKind kind) const;
 
   const TriangleMesh& mesh_;
-  Filling filling_;
   std::map<std::pair<std::size_t, CageKind>, ShelvedCage> cages_;
 };
 

@@ -39,30 +39,24 @@ double landingStiffness(const Cage& cage, double wish, double substep) {
 
 }  // namespace
 
-const char* nameOf(Elasticity elasticity) {
-  constexpr const char* kNames[] = {"tetskin", "explicit", "implicit"};
-  return kNames[static_cast<std::size_t>(elasticity)];
-}
-
 double stableDamping(double substep) {
   return kDampingSubsteps * substep;
 }
 
 scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& reference, double relativeStiffness,
-                                Elasticity elasticity) {
+                                bool bullets) {
   scenes::SceneOptions options;
   SoftBodyOptions& body = options.body;
   body.mass.reset();
   body.density = densityOf(reference);
   body.margin = kMarginFraction * scenes::kSize;
-  body.implicit = elasticity == Elasticity::BulletImplicit;
   const double relative = relativeStiffness > 0.0 ? relativeStiffness : scene.lands ? kLandingStiffness : kStiffness;
   const double wanted = relative * body.density * scenes::kEarth * scenes::kSize;
   body.youngsModulus = wanted;
   if (!scene.lands) {
     options.force = scenes::Force::LinearElasticity;
     body.stiffnessDamping = stableDamping(options.substep());
-    if (elasticity == Elasticity::Tetskin) options.force = scenes::Force::Elastic;
+    if (!bullets) options.force = scenes::Force::Elastic;
     return options;
   }
   options.force = scenes::Force::NeoHookean;
@@ -73,7 +67,7 @@ scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& ref
     stiffness = landingStiffness(reference, wanted, options.substep());
   }
   body.youngsModulus = stiffness;
-  if (elasticity == Elasticity::Tetskin) {
+  if (!bullets) {
     options.force = scenes::Force::Elastic;
     options.substeps = scenes::SceneOptions().substeps;
   }

@@ -6,21 +6,18 @@
 
 namespace tetskin::report {
 
-/// Which elastic forces bodies have, and how they are stepped.
-enum class Elasticity { Tetskin, BulletExplicit, BulletImplicit };
-/// The name of an integrator: "tetskin", "explicit", "implicit".
-const char* nameOf(Elasticity elasticity);
-
 /// The material of every cage of a comparison, and how it is stepped. Both follow from the reference, which is the
-/// least stable. Bodies that do not land have linear elasticity, which Bullet rotates with each tet, and whose damping
-/// then keeps any stiffness stable. Bodies that land would sink into the ground with it, so they have neo-Hookean
-/// elasticity, with as many substeps as its stiffness needs in a landing.
+/// least stable.
 /// The density is that of the mesh's volume, where the reference knows it: all cages that know it have the same mass.
 /// Bare tets are heavier, as they are larger than the mesh.
-/// elasticity: with the library's, the same material is stepped as scenes are by default, which is stable.
 /// relativeStiffness  Young's modulus over density x gravity x size; 0: the scene's own
+/// bullets            with Bullet's explicit forces. Bodies that do not land have linear elasticity, which Bullet
+///                    rotates with each tet, and whose damping then keeps any stiffness stable. Bodies that land would
+///                    sink into the ground with it, so they have neo-Hookean elasticity, with as many substeps as its
+///                    stiffness needs in a landing. With the library's force, the same material is stepped as scenes
+///                    are by default, which is stable
 scenes::SceneOptions materialOf(const scenes::SceneEntry& scene, const Cage& reference, double relativeStiffness,
-                                Elasticity elasticity);
+                                bool bullets);
 
 /// Seconds of damping at which Bullet's explicit steps of this length are stable at any stiffness.
 double stableDamping(double substep);

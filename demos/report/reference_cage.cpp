@@ -10,7 +10,6 @@
 
 #include "report/quadratic_cage.h"
 #include "scenes/caged_mesh.h"
-#include "scenes/files.h"
 
 namespace tetskin::report {
 namespace {
@@ -22,20 +21,6 @@ void requireFit(const TriangleMesh& mesh, const Cage& cage, const ReportOptions&
   EmbedReport report;
   const auto embedded = embed(cage.mesh, viewOf(mesh.positions), {}, &report);
   scenes::requireFit(embedded.status(), report, model);
-}
-
-template <class Value>
-std::uint64_t hashOf(const std::vector<Value>& values, std::uint64_t seed) {
-  return scenes::hashOf(values.data(), values.size() * sizeof(Value), seed);
-}
-
-std::uint64_t hashOf(const Cage& cage) {
-  std::uint64_t hash = hashOf(cage.mesh.tets, hashOf(cage.mesh.nodes, scenes::kNoHash));
-  hash = hashOf(cage.vertexTets, hash);
-  hash = hashOf(cage.quadraticTet, hash);
-  for (const std::vector<double>* values : {&cage.volumeFraction, &cage.stiffnessFactor, &cage.masses})
-    hash = hashOf(*values, hash);
-  return hash;
 }
 
 }  // namespace
@@ -51,15 +36,13 @@ ReferenceSource referenceFor(const TriangleMesh& mesh, const ReportOptions& opti
     source.from = options.reference;
     source.cage = placement.toWorld(std::move(cage));
     source.tets = source.cage->mesh.tetCount();
-    source.hash = hashOf(*source.cage);
   } else if (Filling filling = fillingFor(options.model, placement)) {
     source.fewest = scenes::fewestConformingTets(options.model.builtIn);
     if (options.referenceTets >= source.fewest) {
       source.from = kFormula;
       source.filling = std::move(filling);
-      const Cage elements = source.filling(std::max(options.referenceTets / kSubTets, source.fewest));
-      source.tets = kSubTets * elements.mesh.tetCount();
-      source.hash = hashOf(elements);
+      source.tets =
+          kSubTets * source.filling(std::max(options.referenceTets / kSubTets, source.fewest)).mesh.tetCount();
     }
   }
   requireFiner(options, source.tets);

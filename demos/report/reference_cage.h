@@ -5,7 +5,6 @@
 #include <tetskin/core/cage.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,7 +24,6 @@ constexpr const char *kBuilt = "built", *kFormula = "formula";
 struct ReferenceSource {
   std::string from = kBuilt;  ///< kBuilt: as the other cages; kFormula: by formula; otherwise the file
   std::size_t tets = 0;       ///< requested number if built, otherwise the actual number; eight for each quadratic tet
-  std::uint64_t hash = 0;     ///< of everything that the cage holds; 0 for a built one
   Filling filling;            ///< kFormula: in the space where cages are compared
   std::size_t fewest = 0;     ///< tets that the formula makes
   std::optional<Cage> cage;   ///< of a file, in the same space

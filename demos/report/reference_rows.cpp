@@ -4,7 +4,6 @@
 // The reference of a scene, and how far it can be trusted.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "report/advice.h"
 #include "report/scene_runner.h"
@@ -19,7 +18,7 @@ constexpr int kAllRuns = ReferenceShelf::kLevels;
 }  // namespace
 
 ReferenceTets SceneRunner::referenceTets(bool bullets) const {
-  return bullets || elasticity_ != Elasticity::Tetskin ? ReferenceTets::Linear : ReferenceTets::Quadratic;
+  return bullets ? ReferenceTets::Linear : ReferenceTets::Quadratic;
 }
 
 Row SceneRunner::referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done,
@@ -28,7 +27,7 @@ Row SceneRunner::referenceRow(const Job& job, const scenes::SceneOptions& option
   Simulation simulation = simulate(entry_, shelved.cage, options, model_.mesh, {}, done);
   Row row = rowOf(job, shelved);
   row.interpolation = "reference";
-  if (job.bullets) row.integrator = nameOf(Elasticity::BulletExplicit);
+  if (job.bullets) row.integrator = "explicit";
   row.substeps = options.substeps;
   row.simulationMs = row.totalMs = simulation.milliseconds;
   row.memoryBytes = static_cast<double>(simulation.bytes);
@@ -52,7 +51,6 @@ std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<
   Trajectory& right = right_[job.bullets].trajectory;
   const scenes::SceneOptions own = finest > 0 ? converged(withSubsteps(usual, finest)) : usual;
   std::vector<Row> rows = {referenceRow(job, own, count(own), right)};
-  store_.keep(settings(job), right);
   if (own.substeps != usual.substeps) {
     Trajectory nodes;
     Row row = referenceRow(job, usual, count(usual), nodes);
@@ -63,7 +61,6 @@ std::vector<Row> SceneRunner::referenceRows(const Job& job, const std::function<
   } else if (!job.bullets) {
     estimateOwnErrors(job, usual, right, count(usual), rows.back());
   }
-  store_.keep(settings(job), rows);
   return rows;
 }
 
@@ -76,13 +73,7 @@ Reference& SceneRunner::reference(bool bullets) {
     return *right.reference;
   }
   const Job& job = *referenceJob(bullets);
-  if (right.trajectory.empty()) {
-    if (std::optional<Trajectory> kept = store_.trajectory(settings(job))) {
-      right.trajectory = std::move(*kept);
-    } else {
-      (void)referenceRows(job, [](double) {});
-    }
-  }
+  if (right.trajectory.empty()) (void)referenceRows(job, [](double) {});
   right.reference = std::make_unique<SimulatedReference>(model_.mesh, referenceCage(bullets), right.trajectory);
   return *right.reference;
 }
@@ -91,7 +82,7 @@ void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& 
                                     const FrameDone& done, Row& row) {
   SimulatedReference own(model_.mesh, referenceCage(), motion);
   const ReferenceTets kind = referenceTets(job.bullets);
-  std::vector<CoarserLevel> space, rest, frequencies;
+  std::vector<CoarserLevel> space;
   std::vector<double> amplitudes;
   for (int level = 1; level < references_.levelCount(kind); ++level) {
     const Cage& cage = references_.at(kind, level).cage;
@@ -101,30 +92,9 @@ void SceneRunner::estimateOwnErrors(const Job& job, const scenes::SceneOptions& 
     const SurfaceErrors errors = surfaceErrors(own, model_.mesh, cage, SurfaceKind::Quadratic, nodes);
     space.push_back({edge, errors.rms});
     amplitudes = errors.amplitudeByFrame;
-    if (!options_.measuresOrders) continue;
-    Row still;
-    compareStill(cage, SurfaceKind::Quadratic, still);
-    rest.push_back({edge, still.errorAtRest});
-    frequencies.push_back({edge, still.frequencyError});
   }
   row.errorSpaceRms = ownError(row.edge, space);
   if (row.errorSpaceRms > 0.0) row.errorOfMotion = row.errorSpaceRms / scenes::rms(amplitudes);
-  row.errorAtRest = ownError(row.edge, rest);
-  row.frequencyError = ownError(row.edge, frequencies);
-}
-
-const StillBody& SceneRunner::stillReference() {
-  if (!still_) still_ = stillBody(entry_, referenceCage(), converged(material()));
-  return *still_;
-}
-
-void SceneRunner::compareStill(const Cage& cage, SurfaceKind kind, Row& row) {
-  const StillBody &right = stillReference(), body = stillBody(entry_, cage, converged(material()));
-  SimulatedReference atRest(model_.mesh, referenceCage(), right.rest);
-  const SurfaceErrors errors = surfaceErrors(atRest, model_.mesh, cage, kind, body.rest);
-  row.errorAtRest = errors.rms / errors.amplitudeByFrame.front();
-  row.sagExcess = errors.excess;
-  row.frequencyError = frequencyError(body.frequencies, right.frequencies);
 }
 
 }  // namespace tetskin::report

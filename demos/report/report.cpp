@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "report/advice.h"
 #include "report/report_files.h"
 #include "report/report_view.h"
 #include "scenes/files.h"
+#include "scenes/input_error.h"
 #include "scenes/placement.h"
 #include "scenes/progress.h"
 #include "scenes/view_page.h"
@@ -28,10 +30,6 @@ ReportModel loadReportModel(const ReportOptions& options) {
   model.reference = referenceFor(model.mesh, options, model.placement);
   model.placement.toWorld(model.mesh.positions);
   model.diagonal = boundingBox(model.mesh.positions).diagonal().norm();
-  const auto& positions = model.mesh.positions;
-  const auto& triangles = model.mesh.triangles;
-  model.hash = scenes::hashOf(positions.data(), positions.size() * sizeof(positions[0]));
-  model.hash = scenes::hashOf(triangles.data(), triangles.size() * sizeof(triangles[0]), model.hash);
   return model;
 }
 
@@ -41,10 +39,7 @@ class JobProgress {
   JobProgress(double cost, bool quiet) : cost_(cost), bar_("measuring", kSteps, quiet, stderr) {}
 
   void share(double jobCost, double fraction) { bar_.show(stepsAt(done_ + fraction * jobCost)); }
-  void finish(double jobCost, bool wasStored) {
-    done_ += jobCost;
-    wasStored ? bar_.skip(stepsAt(done_)) : bar_.show(stepsAt(done_));
-  }
+  void finish(double jobCost) { bar_.show(stepsAt(done_ += jobCost)); }
 
  private:
   static constexpr int kSteps = 1000;
@@ -58,11 +53,9 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
   SceneResult result{runner.scene(), runner.integrator(), {}};
   for (const Job& job : runner.jobs()) {
     const double cost = runner.costOf(job);
-    std::optional<std::vector<Row>> rows = runner.stored(job);
-    const bool wasStored = rows.has_value();
-    if (!wasStored) rows = runner.run(job, [&](double fraction) { progress.share(cost, fraction); });
-    progress.finish(cost, wasStored);
-    result.rows.insert(result.rows.end(), rows->begin(), rows->end());
+    const std::vector<Row> rows = runner.run(job, [&](double fraction) { progress.share(cost, fraction); });
+    progress.finish(cost);
+    result.rows.insert(result.rows.end(), rows.begin(), rows.end());
   }
   const Row& first = result.rows.front();
   const auto bullets = std::find_if(result.rows.begin(), result.rows.end(), [&](const Row& row) {
@@ -80,6 +73,13 @@ SceneResult runScene(SceneRunner& runner, JobProgress& progress) {
   return result;
 }
 
+void requireFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder, error)) return;
+  throw scenes::InputError(folder + ": cannot be created; check the path and its permissions");
+}
+
 using Runners = std::vector<std::unique_ptr<SceneRunner>>;
 
 const SceneRunner* runnerOf(const std::string& scene, const Runners& runners) {
@@ -93,27 +93,19 @@ ReportResult makeReport(const ReportOptions& desired) {
   ReportOptions options = desired;
   ReportModel model = loadReportModel(options);
   options.referenceTets = model.reference.tets;
-  const ResultStore store(options.out + "/rows");
+  requireFolder(options.out);
   scenes::requireWritable(options.json);
   if (!options.view.empty()) scenes::requireViewable();
-  CageShelf cages(model.mesh, options.filled ? fillingFor(options.model, model.placement) : Filling());
+  CageShelf cages(model.mesh);
   ReferenceShelf references(model.mesh, model.reference);
   Runners runners;
   double cost = 0.0;
   for (const std::string& scene : options.scenes) {
-    for (const Elasticity elasticity :
-         {options.bullet ? Elasticity::BulletExplicit : Elasticity::Tetskin, Elasticity::BulletImplicit}) {
-      if (elasticity == Elasticity::BulletImplicit && (!options.implicit || scene == kExact)) continue;
-      runners.push_back(std::make_unique<SceneRunner>(model, cages, references, store, options, scene, elasticity));
-      for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
-    }
+    runners.push_back(std::make_unique<SceneRunner>(model, cages, references, options, scene));
+    for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
   }
   const SceneRunner* shown = options.view.empty() ? nullptr : runnerOf(shownScene(options), runners);
-  ReportResult result{model.name + (options.filled ? ", filled" : ""),
-                      model.mesh.vertexCount(),
-                      model.mesh.triangleCount(),
-                      model.reference,
-                      {}};
+  ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
     result.scenes.push_back(runScene(*runner, progress));

@@ -12,10 +12,9 @@
 //   quadratic_cage     a cage of quadratic tets
 // driven_nodes       where it would take the nodes of other cages
 // surface_errors     errors of surfaces and nodes against it
-// still_body         a cage at rest, and its frequencies
 // solver             what else simulates the same cage
 //   xpbd_fit           the constants that suit XPBD best
-// scene_runner       all cages of a scene, or the results of an earlier run (result_store)
+// scene_runner       all cages of a scene
 //   advice             orders, Pareto front, the reference's own errors
 //   report_files       results for programs
 // plot_program       runs demos/plots, which makes tables and plots of them

@@ -96,7 +96,6 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
     one["reference_time_error"] = scene.referenceTimeError;
     one["orders"] = ordersOf(scene);
     one["time_orders"] = timeOrdersOf(scene);
-    one["order_advice"] = orderAdvice(scene.rows);
     one["reduction_advice"] = reductionAdvice(scene.rows);
     const ReductionLimit limit = reductionLimit(scene.rows);
     one["reduction_limit"] = {{"modes", limit.modes}, {"amplitude", limit.amplitude}};

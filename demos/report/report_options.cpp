@@ -13,9 +13,6 @@ namespace {
 
 constexpr std::size_t kFullTets = 300000;
 constexpr int kMaxReferenceSubsteps = 1024;
-/// Of a comparison of orders: a swing and a half, in which errors in time of four substeps still show.
-constexpr std::size_t kSubstepsOfOrders = 32;
-constexpr int kFramesOfOrders = 90;
 
 void sortUniquely(std::vector<std::size_t>& counts) {
   std::sort(counts.begin(), counts.end());
@@ -74,11 +71,7 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
                 scenes::CommandLine::Need::Optional, "by formula for a built-in model that has one, else a built cage");
   line.addFlag("--full", full_, "Use a reference of 300,000 tets");
   line.addFlag("--quick", quick_, "a small report, in half a minute");
-  line.addWord("--interpolation", interpolation_, {"all", "linear", "quadratic"},
-               "all: linear, quadratic and Bullet's own");
-  line.addWord("--elasticity", force_, {"tetskin", "bullet"},
-               "bullet: neo-Hookean force; tetskin is compared with references of both");
-  line.addFlag("--implicit", o.implicit, "With --elasticity bullet: also measure Bullet's implicit elasticity");
+  line.addWord("--interpolation", interpolation_, {"all", "linear", "quadratic"});
   line.addWords(
       "--cages", cages_,
       "Kinds of cages, a list of: same (bare tets), same_calibrated, split (bare tets, elements duplicated), "
@@ -90,12 +83,6 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
       "Compare solvers in calibrated cages, in sag, instead of kinds of cages; a list of: tetskin, xpbd, "
       "xpbd_unfitted, bullet_neo_hookean, bullet_linear, bullet_neo_hookean_implicit, bullet_linear_implicit, all",
       "none");
-  line.addWords(
-      "--orders", orders_,
-      "Compare linear and quadratic tets, in sag (the beam: cantilever), instead of kinds of cages, also at "
-      "rest and by their frequencies; a list of: uncalibrated, calibrated, quadratic, quadratic_calibrated, all",
-      "none");
-  line.addFlag("--formula", o.filled, "With --orders: cages are tets by formula that fill a built-in model");
   line.addCounts("--xpbd-substeps", o.xpbdSubsteps, "a list, for --solvers");
   line.addCounts("--bullet-substeps", o.bulletSubsteps, "a list, for --solvers; of those that explode, rows say so");
   line.addCount("--repetitions", o.repetitions, "How often each variant is timed; the median is printed", 1000);
@@ -109,7 +96,7 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
                    "Print the cheapest setting with a smaller error, as a fraction of the box's diagonal", "none");
   line.addCount("--show-tets", o.shownTets, "Write a mesh coloured by the errors of the cage nearest to this size");
   line.addOutput("--view", o.view, "the cage of --show-tets beside the reference, in sag or else the first scene");
-  line.addFolder("--out", o.out, "also holds what an interrupted run had finished",
+  line.addFolder("--out", o.out, "",
                  [&o](const std::string& name) {  // all files, except results that --json names
                    return name.rfind("error_", 0) == 0 && (o.json.empty() || name != "error_vs_time.json");
                  });
@@ -135,7 +122,7 @@ void ReportCommandLine::chooseSolvers() {
   }
   o.solvers = solversOf(solvers_);
   if (o.solvers.empty()) throw scenes::InputError("--solvers: name at least one solver");
-  for (const char* option : {"--elasticity", "--cages", "--no-calibration", "--modes", "--no-reduction", "--view"}) {
+  for (const char* option : {"--cages", "--no-calibration", "--modes", "--no-reduction", "--view"}) {
     if (line_.given(option)) throw scenes::InputError(std::string(option) + " cannot be used with --solvers");
   }
   if (!line_.given("--scenes")) o.scenes = {"sag"};
@@ -151,39 +138,8 @@ void ReportCommandLine::chooseSolvers() {
   }
 }
 
-void ReportCommandLine::chooseOrders() {
-  ReportOptions& o = options_;
-  if (!line_.given("--orders")) {
-    if (o.filled) throw scenes::InputError("--formula needs --orders");
-    return;
-  }
-  o.measuresOrders = true;
-  o.cages = ordersOf(orders_);
-  if (o.cages.empty()) throw scenes::InputError("--orders: name at least one order");
-  for (const char* option : {"--solvers", "--elasticity", "--cages", "--no-calibration", "--modes", "--no-reduction"}) {
-    if (line_.given(option)) throw scenes::InputError(std::string(option) + " cannot be used with --orders");
-  }
-  const bool isBeam = o.model.mesh.empty() && o.model.builtIn == scenes::BuiltIn::Beam;
-  if (!line_.given("--scenes")) o.scenes = {isBeam ? "cantilever" : "sag"};
-  if (o.scenes != std::vector<std::string>{"sag"} && o.scenes != std::vector<std::string>{"cantilever"})
-    throw scenes::InputError("--orders: orders are compared in one scene that comes to rest: sag or cantilever");
-  if (o.filled && (!o.model.mesh.empty() || scenes::fewestConformingTets(o.model.builtIn) == 0))
-    throw scenes::InputError("--formula: only beam, slotted_beam and hand have tets by formula");
-  if (!line_.given("--tets")) o.tets = {1000, 3000, 10000};
-  if (!line_.given("--substeps")) o.substeps = {4};
-  if (!line_.given("--reference-substeps")) o.referenceSubsteps = kSubstepsOfOrders;
-  if (!line_.given("--frames")) o.frames = kFramesOfOrders;
-  o.modes.clear();
-  if (o.surfaces.size() > 1) o.surfaces = {SurfaceKind::Quadratic};
-}
-
 void ReportCommandLine::chooseSubsteps() {
   ReportOptions& o = options_;
-  if (o.bullet && (line_.given("--substeps") || line_.given("--reference-substeps"))) {
-    throw scenes::InputError(
-        "--substeps and --reference-substeps cannot be used with --elasticity bullet: Bullet's forces have as many as "
-        "they need to be stable");
-  }
   if (o.substeps.empty()) throw scenes::InputError("--substeps: name at least one number");
   sortUniquely(o.substeps);
   if (o.substeps.back() <= o.referenceSubsteps) return;
@@ -223,9 +179,6 @@ const ReportOptions& ReportCommandLine::finish() {
     throw scenes::InputError("--view: none of the scenes in --scenes is simulated; add sag, for example");
   sortUniquely(o.modes);
   chooseSolvers();
-  chooseOrders();
-  o.bullet = force_ == "bullet";
-  if (o.implicit && !o.bullet) throw scenes::InputError("--implicit needs --elasticity bullet");
   chooseSubsteps();
   sortUniquely(o.tets);
   if (o.tets.empty()) throw scenes::InputError("--tets: name at least one number");

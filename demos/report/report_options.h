@@ -20,23 +20,18 @@ struct ReportOptions {
   std::vector<std::size_t> tets = {300, 1000, 3000, 10000};
   std::size_t referenceTets = 30000;
   /// Per frame, ascending: the recommended kind of cage is simulated with all of these, everything else with one of
-  /// them (see usualSubsteps). Bodies with Bullet's forces have as many as these need to be stable.
+  /// them (see usualSubsteps). The reference with Bullet's forces has as many as these need to be stable.
   std::vector<std::size_t> substeps = {1, 2, 4, 8};
   std::size_t referenceSubsteps = 64;
   std::string reference;  ///< file of tets that count as exact, in the mesh's space; empty: they are made
-  std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
+  std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
   std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; empty: no reduced bodies
   /// Not empty: these solvers in the recommended kind of cage, instead of kinds of cages. `substeps` are tetskin's.
   std::vector<Solver> solvers;
-  /// Cages of both orders of tets, in sag or cantilever, also at rest and by their frequencies; `cages` says which.
-  bool measuresOrders = false;
-  bool filled = false;  ///< cages are tets by formula that fill a built-in model, instead of built ones
   std::vector<std::size_t> xpbdSubsteps = {4, 10, 20, 50};
   std::vector<std::size_t> bulletSubsteps = {1, 2, 4, 8};
   std::size_t repetitions = 3;   ///< of each run of a solver that is timed
-  bool bullet = false;           ///< bodies with Bullet's forces instead of the library's
-  bool implicit = false;         ///< with Bullet's forces: implicit rows beside the explicit ones
   int frames = 0;                ///< 0: the scene's own
   double stiffness = 0.0;        ///< Young's modulus over density x gravity x size; 0: the scene's own
   std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
@@ -67,11 +62,10 @@ class ReportCommandLine {
   scenes::CommandLine& line_;
   void chooseCages();
   void chooseSolvers();
-  void chooseOrders();
   void chooseSubsteps();
 
-  std::vector<std::string> cages_, solvers_, orders_;
-  std::string interpolation_ = "all", force_ = "tetskin";
+  std::vector<std::string> cages_, solvers_;
+  std::string interpolation_ = "all";
   bool quick_ = false, full_ = false, noCalibration_ = false, noReduction_ = false;
 };
 

@@ -24,9 +24,6 @@ const std::vector<Column>& columns() {
       {"error_embedding_rms", &Row::errorEmbeddingRms},
       {"error_simulation_rms", &Row::errorSimulationRms},
       {"normal_error_mean_deg", &Row::normalErrorMeanDeg},
-      {"error_at_rest", &Row::errorAtRest},
-      {"sag_excess", &Row::sagExcess},
-      {"frequency_error", &Row::frequencyError},
       {"resolved", &Row::resolved},
       {"simulation_ms", &Row::simulationMs},
       {"skin_us", &Row::skinUs},
@@ -61,19 +58,6 @@ nlohmann::ordered_json toJson(const Row& row) {
   json["error_total_rms_by_frame"] = row.errorByFrame;
   json["amplitude_rms_by_frame"] = row.amplitudeByFrame;
   return json;
-}
-
-Row rowFrom(const nlohmann::ordered_json& json) {
-  Row row;
-  row.scene = json.at("scene");
-  row.integrator = json.at("integrator");
-  row.material = json.at("material");
-  row.interpolation = json.at("interpolation");
-  for (const Column& column : columns()) row.*column.value = json.at(column.name);
-  row.pareto = json.at("pareto");
-  row.errorByFrame = json.at("error_total_rms_by_frame").get<std::vector<double>>();
-  row.amplitudeByFrame = json.at("amplitude_rms_by_frame").get<std::vector<double>>();
-  return row;
 }
 
 }  // namespace tetskin::report

@@ -17,7 +17,7 @@ struct Row {
                            ///< simulated; or the name of a Solver
   std::string material;    ///< kind of the cage: see CageKind; same for the reference, whatever it is;
                            ///< reduced: a reduced body's
-  std::string interpolation;  ///< linear, quadratic, bullet; reference for the reference itself
+  std::string interpolation;  ///< linear, quadratic; reference for the reference itself
 
   double tets = 0, nodes = 0;
   double edge = 0;    ///< mean length of the cage's edges
@@ -37,12 +37,7 @@ struct Row {
   double errorEmbeddingRms = 0;   ///< if the nodes were where the reference would take them
   double errorSimulationRms = 0;  ///< of the nodes, against where the reference would take them: in space and in time
   double normalErrorMeanDeg = 0;
-  // In rows of orders that are compared, otherwise 0. The reference's own row has estimates of its own errors here, in
-  // `errorSpaceRms` and in `errorOfMotion`.
-  double errorAtRest = 0;     ///< RMS, over the RMS distance of the reference's surface at rest from its unloaded one
-  double sagExcess = 0;       ///< share by which the surface at rest sags more than the reference's; below 0: less
-  double frequencyError = 0;  ///< RMS of the relative errors of the lowest frequencies of the free body
-  double resolved = 1;        ///< 0: the total error is less than three times that of the reference, as far as is known
+  double resolved = 1;  ///< 0: the total error is less than three times that of the reference, as far as is known
   double simulationMs = 0, skinUs = 0, totalMs = 0;  ///< per frame
   double attachMs = 0, calibrateMs = 0;              ///< once
   double dampingMs = 0;                              ///< in rows of solvers: that of the material
@@ -63,10 +58,9 @@ struct Row {
   bool pareto = false;                   ///< nothing in the same scene is both faster and more accurate
 
   bool isReduced() const { return modes != 0; }
-  bool isQuadratic() const { return material == "quadratic" || material == "quadratic_calibrated"; }
   bool isReference() const { return interpolation == "reference"; }
   /// True for a setting that a user of the library may choose.
-  bool isChoice() const { return !isReference() && interpolation != "bullet" && finite != 0; }
+  bool isChoice() const { return !isReference() && finite != 0; }
 };
 
 /// A column of numbers: its name, which ends in the unit if it has one, and the member of Row that it shows.
@@ -78,6 +72,5 @@ struct Column {
 const std::vector<Column>& columns();
 
 nlohmann::ordered_json toJson(const Row& row);
-Row rowFrom(const nlohmann::ordered_json& json);
 
 }  // namespace tetskin::report

@@ -7,29 +7,15 @@
 #include <cmath>
 #include <set>
 
-#include <nlohmann/json.hpp>
-
-#include "report/build_id.h"
 #include "report/coloured_mesh.h"
 #include "scenes/statistics.h"
 
 namespace tetskin::report {
 namespace {
 
-/// Version of the stored results: raise it when older rows are no longer comparable.
-constexpr int kVersion = 7;
-/// Bullet tests all pairs of vertices and tets, and takes minutes if there are more than this.
-constexpr double kMaxBulletPairs = 1e9;
-
-std::vector<SurfaceKind> ours(std::vector<SurfaceKind> kinds) {
-  kinds.erase(std::remove(kinds.begin(), kinds.end(), SurfaceKind::Bullet), kinds.end());
-  return kinds;
-}
-
 /// Kinds that only serve to separate causes of error get one surface.
-std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options, bool bullet) {
-  if (kind == CageKind::Same && bullet) return options.surfaces;
-  if (kind == CageKind::Same || kind == CageKind::Calibrated) return ours(options.surfaces);
+std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options) {
+  if (kind == CageKind::Same || kind == CageKind::Calibrated) return options.surfaces;
   return {options.surfaces.front()};
 }
 
@@ -45,7 +31,7 @@ void appendOthers(const std::vector<std::size_t>& all, std::vector<int>& substep
   }
 }
 
-std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOptions& options, bool tetskin) {
+std::vector<Job> jobsOf(bool exact, const ReportOptions& options) {
   std::vector<Job> jobs;
   std::vector<std::size_t> sizes = options.tets;
   if (exact) sizes.push_back(options.referenceTets);
@@ -54,11 +40,11 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   };
   const std::size_t shown = *std::min_element(options.tets.begin(), options.tets.end(),
                                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-  const int usual = tetskin ? usualSubsteps(options) : 0;
+  const int usual = usualSubsteps(options);
   if (!exact) jobs.push_back({options.referenceTets, CageKind::Same, {}, {usual}});
-  const bool bullets = options.solvers.empty() ? !options.measuresOrders
-                                               : std::any_of(options.solvers.begin(), options.solvers.end(), isBullets);
-  if (!exact && tetskin && bullets) jobs.push_back({options.referenceTets, CageKind::Same, {}, {0}, false, true});
+  const bool bullets =
+      options.solvers.empty() || std::any_of(options.solvers.begin(), options.solvers.end(), isBullets);
+  if (!exact && bullets) jobs.push_back({options.referenceTets, CageKind::Same, {}, {0}, false, true});
   if (!options.solvers.empty()) {
     for (const std::size_t tets : options.tets)
       jobs.push_back({tets, CageKind::Calibrated, options.surfaces, {usual}, false, false, 0, true});
@@ -67,12 +53,10 @@ std::vector<Job> jobsOf(bool exact, const ReportModel& model, const ReportOption
   // Where nothing is simulated, the material does not matter.
   const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
   for (const std::size_t tets : sizes) {
-    const bool bullet = static_cast<double>(tets) * static_cast<double>(model.mesh.vertexCount()) <= kMaxBulletPairs;
     for (const CageKind kind : kinds) {
       const bool coloured = tets == shown && kind == kinds.front();
-      jobs.push_back({tets, kind, surfacesOf(kind, options, bullet), {usual}, coloured});
-      const bool isRecommended = kind == kinds.back() || options.measuresOrders;
-      if (tetskin && !exact && isRecommended) appendOthers(options.substeps, jobs.back().substeps);
+      jobs.push_back({tets, kind, surfacesOf(kind, options), {usual}, coloured});
+      if (!exact && kind == kinds.back()) appendOthers(options.substeps, jobs.back().substeps);
     }
   }
   return jobs;
@@ -87,7 +71,7 @@ void appendReduced(const ReportOptions& options, std::vector<Job>& jobs) {
     for (const std::size_t modes : options.modes) {
       jobs.push_back({tets,
                       CageKind::Calibrated,
-                      {ours(options.surfaces).front()},
+                      {options.surfaces.front()},
                       {usualSubsteps(options)},
                       false,
                       false,
@@ -106,36 +90,27 @@ void addFindings(const Job& job, const Simulation& simulation, const scenes::Red
 }  // namespace
 
 SceneRunner::SceneRunner(const ReportModel& model, CageShelf& cages, ReferenceShelf& references,
-                         const ResultStore& store, const ReportOptions& options, const std::string& scene,
-                         Elasticity elasticity)
+                         const ReportOptions& options, const std::string& scene)
     : model_(model),
       cages_(cages),
       references_(references),
-      store_(store),
       options_(options),
       entry_(scenes::sceneNamed(scene)),
       frames_(options.frames > 0 && !isExact() ? options.frames : entry_.frames),
       modes_(options.modes.empty() ? 1 : static_cast<int>(options.modes.back())),
-      elasticity_(elasticity),
-      jobs_(jobsOf(isExact(), model, options, elasticity == Elasticity::Tetskin)) {
-  if (isReducible(scene) && elasticity == Elasticity::Tetskin && !ours(options.surfaces).empty()) {
-    appendReduced(options, jobs_);
-  }
+      jobs_(jobsOf(isExact(), options)) {
+  if (isReducible(scene)) appendReduced(options, jobs_);
 }
 
 std::string SceneRunner::integrator() const {
-  if (isExact()) return "none";
-  return nameOf(elasticity_);
+  return isExact() ? "none" : "tetskin";
 }
 
 double SceneRunner::costOf(const Job& job) const {
   constexpr double kImplicit = 5.0, kTetskin = 0.15, kCompareOneFrame = 30000.0;  // in tets stepped once by Bullet
   const auto tets = static_cast<double>(job.tets);
   if (isExact()) return kCompareOneFrame;
-  const double step = job.bullets                                 ? 1.0
-                      : elasticity_ == Elasticity::BulletImplicit ? kImplicit
-                      : elasticity_ == Elasticity::Tetskin        ? kTetskin
-                                                                  : 1.0;
+  const double step = job.bullets ? 1.0 : kTetskin;
   if (job.solvers)
     return frames_ * (tets * kSolvers.size() * kImplicit * static_cast<double>(options_.repetitions + 1));
   int substeps = referenceSubsteps(job);
@@ -146,54 +121,12 @@ double SceneRunner::costOf(const Job& job) const {
 }
 
 int SceneRunner::referenceSubsteps(const Job& job) const {
-  return elasticity_ == Elasticity::Tetskin && !job.bullets && !isExact() ? static_cast<int>(options_.referenceSubsteps)
-                                                                          : 0;
-}
-
-nlohmann::ordered_json SceneRunner::settings(const Job& job) const {
-  nlohmann::ordered_json json;
-  json["version"] = kVersion;
-  json["build"] = buildId();
-  json["mesh"] = model_.hash;
-  json["scene"] = scene();
-  json["frames"] = frames_;
-  json["integrator"] = integrator();
-  json["stiffness"] = options_.stiffness;
-  json["reference_tets"] = isExact() ? 0 : options_.referenceTets;
-  json["reference"] = model_.reference.hash;
-  json["tets"] = job.tets;
-  json["cage"] = nameOf(job.kind);
-  json["substeps"] = job.substeps;
-  json["reference_substeps"] = referenceSubsteps(job);
-  json["coloured"] = job.coloured;
-  json["bullets"] = job.bullets;
-  json["modes"] = job.modes;
-  json["filled"] = options_.filled;
-  json["still"] = options_.measuresOrders;
-  if (job.solvers) {
-    for (const Solver solver : options_.solvers) json["solvers"].push_back(nameOf(solver));
-    for (const auto& counts : {options_.substeps, options_.xpbdSubsteps, options_.bulletSubsteps})
-      json["solver_substeps"].push_back(counts);
-    json["repetitions"] = options_.repetitions;
-  }
-  json["surfaces"] = nlohmann::ordered_json::array();
-  for (const SurfaceKind kind : job.surfaces) json["surfaces"].push_back(nameOf(kind));
-  return json;
-}
-
-std::optional<std::vector<Row>> SceneRunner::stored(const Job& job) const {
-  if (job.coloured && !store_.text(settings(job))) return {};
-  return store_.rows(settings(job));
+  return job.bullets || isExact() ? 0 : static_cast<int>(options_.referenceSubsteps);
 }
 
 const Job* SceneRunner::colouredJob() const {
   const auto job = std::find_if(jobs_.begin(), jobs_.end(), [](const Job& j) { return j.coloured; });
   return job == jobs_.end() ? nullptr : &*job;
-}
-
-std::optional<std::string> SceneRunner::colouredMesh() const {
-  const Job* job = colouredJob();
-  return job ? store_.text(settings(*job)) : std::nullopt;
 }
 
 ShownMotion SceneRunner::shownMotion() {
@@ -216,8 +149,7 @@ const scenes::SceneOptions& SceneRunner::material(bool bullets) {
   std::optional<scenes::SceneOptions>& made = right_[bullets].material;
   if (!made) {
     // What lands is as stiff as Bullet's forces can be, in all references.
-    made = materialOf(entry_, referenceCage(bullets || entry_.lands), options_.stiffness,
-                      bullets ? Elasticity::BulletExplicit : elasticity_);
+    made = materialOf(entry_, referenceCage(bullets || entry_.lands), options_.stiffness, bullets);
     made->frames = frames_;
     made->box = boundingBox(model_.mesh.positions);
   }
@@ -241,9 +173,9 @@ Row SceneRunner::rowOf(const Job& job, const ShelvedCage& shelved) const {
   return row;
 }
 
-void SceneRunner::colour(const Job& job, const SurfaceErrors& errors, int frame) {
+void SceneRunner::colour(const SurfaceErrors& errors, int frame) {
   const Points& positions = reference().surfaceAt(frame).positions;
-  store_.keep(settings(job), colouredPly(model_.mesh, positions, errors.rmsByVertex, maxOf(errors.rmsByVertex)));
+  coloured_ = colouredPly(model_.mesh, positions, errors.rmsByVertex, maxOf(errors.rmsByVertex));
 }
 
 scenes::SceneOptions SceneRunner::optionsOf(const Job& job, const Cage& cage, int substeps) {
@@ -300,8 +232,6 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
   const Trajectory fine = convergedMotion(job, cage, motions.front().nodes);
   std::vector<Row> rows;
   for (const SurfaceKind kind : job.surfaces) {
-    Row still;
-    if (options_.measuresOrders) compareStill(cage, kind, still);
     const double space = surfaceErrors(reference(), model_.mesh, cage, kind, fine).rms;
     const double embedding = surfaceErrors(reference(), model_.mesh, cage, kind, driven).rms;
     for (const Motion& motion : motions) {
@@ -310,14 +240,10 @@ std::vector<Row> SceneRunner::run(const Job& job, const std::function<void(doubl
       row.errorSpaceRms = space;
       row.errorTimeRms = surfaceDistance(model_.mesh, cage, kind, motion.nodes, fine);
       row.errorEmbeddingRms = embedding;
-      row.errorAtRest = still.errorAtRest;
-      row.sagExcess = still.sagExcess;
-      row.frequencyError = still.frequencyError;
     }
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.substeps < b.substeps; });
   progress(1.0);
-  store_.keep(settings(job), rows);
   return rows;
 }
 
@@ -348,7 +274,7 @@ Row SceneRunner::compared(const Job& job, const Cage& cage, SurfaceKind kind, co
   row.attachMs = cost.attachMs;
   row.memoryBytes += static_cast<double>(cost.bytes);
   const bool isFirst = kind == job.surfaces.front() && motion.substeps == job.substeps.front();
-  if (job.coloured && isFirst) colour(job, total, static_cast<int>(motion.nodes.size()) - 1);
+  if (job.coloured && isFirst) colour(total, static_cast<int>(motion.nodes.size()) - 1);
   return row;
 }
 

@@ -14,9 +14,7 @@
 #include "report/reference_cage.h"
 #include "report/report_options.h"
 #include "report/report_row.h"
-#include "report/result_store.h"
 #include "report/solver.h"
-#include "report/still_body.h"
 #include "report/surface_errors.h"
 #include "report/xpbd_fit.h"
 #include "scenes/table.h"
@@ -38,10 +36,9 @@ struct Job {
 /// The mesh of the report.
 struct ReportModel {
   std::string name;
-  TriangleMesh mesh;           ///< of kSize, centred at the origin
-  double diagonal = 0.0;       ///< diagonal of the mesh's box
-  double modelDiagonal = 0.0;  ///< the same diagonal in the unit of the mesh's file
-  std::uint64_t hash = 0;
+  TriangleMesh mesh;            ///< of kSize, centred at the origin
+  double diagonal = 0.0;        ///< diagonal of the mesh's box
+  double modelDiagonal = 0.0;   ///< the same diagonal in the unit of the mesh's file
   scenes::Placement placement;  ///< from the space of the mesh's file
   ReferenceSource reference;
 };
@@ -58,12 +55,12 @@ struct ShownMotion {
 /// The scene in which nothing is simulated, as a control.
 constexpr const char* kExact = "exact";
 
-/// Measures the cages of one scene with one integrator, or takes what an earlier run had measured.
+/// Measures the cages of one scene.
 class SceneRunner {
  public:
   /// All arguments must outlive this object.
-  SceneRunner(const ReportModel& model, CageShelf& cages, ReferenceShelf& references, const ResultStore& store,
-              const ReportOptions& options, const std::string& scene, Elasticity elasticity);
+  SceneRunner(const ReportModel& model, CageShelf& cages, ReferenceShelf& references, const ReportOptions& options,
+              const std::string& scene);
 
   const std::string& scene() const { return entry_.name; }
   std::string integrator() const;
@@ -72,12 +69,10 @@ class SceneRunner {
   /// A relative measure of the time that a job takes.
   double costOf(const Job& job) const;
 
-  /// The rows of a job, if an earlier run has stored them.
-  std::optional<std::vector<Row>> stored(const Job& job) const;
   /// progress  called with the finished share of the job, from 0 to 1
   std::vector<Row> run(const Job& job, const std::function<void(double)>& progress);
-  /// The coloured mesh of the job that makes one; valid after its rows are made.
-  std::optional<std::string> colouredMesh() const;
+  /// The coloured mesh of the job that makes one, after its rows are made.
+  const std::optional<std::string>& colouredMesh() const { return coloured_; }
   /// The motion of that job, simulated again; not available for the exact scene. Valid as long as this object.
   ShownMotion shownMotion();
   /// The surface of the mesh in the reference.
@@ -94,7 +89,6 @@ class SceneRunner {
 
   bool isExact() const { return entry_.name == kExact; }
   bool isReference(const Job& job) const { return job.surfaces.empty(); }
-  nlohmann::ordered_json settings(const Job& job) const;
   /// A reference, and the material of everything that is compared with it.
   struct Right {
     std::optional<scenes::SceneOptions> material;
@@ -136,25 +130,19 @@ class SceneRunner {
                          const FrameDone& done, Row& row);
   ReferenceTets referenceTets(bool bullets) const;
   const Cage& referenceCage(bool bullets = false) { return references_.at(referenceTets(bullets)).cage; }
-  /// The reference at rest under the scene's loads, and its frequencies.
-  const StillBody& stillReference();
-  /// A body's errors at rest and of its frequencies, of the surface of this kind.
-  void compareStill(const Cage& cage, SurfaceKind kind, Row& row);
   Row rowOf(const Job& job, const ShelvedCage& shelved) const;
-  void colour(const Job& job, const SurfaceErrors& errors, int frame);
+  void colour(const SurfaceErrors& errors, int frame);
 
   const ReportModel& model_;
   CageShelf& cages_;
   ReferenceShelf& references_;
-  const ResultStore& store_;
   const ReportOptions& options_;
   const scenes::SceneEntry& entry_;
   int frames_;
   ModeShelf modes_;
-  Elasticity elasticity_;
   std::vector<Job> jobs_;
-  std::optional<StillBody> still_;
-  Right right_[2];  ///< with the elasticity of the cages; with Bullet's, if that is a different one
+  std::optional<std::string> coloured_;
+  Right right_[2];  ///< with the library's elasticity; with Bullet's
 };
 
 }  // namespace tetskin::report

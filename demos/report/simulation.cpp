@@ -6,9 +6,7 @@
 #include <tetskin/reduced/reduced_body.h>
 
 #include <algorithm>
-#include <optional>
 
-#include "report/bullet_surface.h"
 #include "scenes/input_error.h"
 #include "scenes/placement.h"
 #include "scenes/statistics.h"
@@ -33,12 +31,6 @@ class TimedSurfaces {
       : kinds_(kinds) {
     for (const SurfaceKind kind : kinds) {
       SurfaceCost& cost = costs_[indexOf(kind)];
-      if (kind == SurfaceKind::Bullet) {
-        bullet_.emplace(cage, mesh);
-        cost.attachMs = bullet_->attachMs();
-        cost.bytes = bullet_->bytes();
-        continue;
-      }
       SkinOptions options;
       options.interpolation = interpolationOf(kind);
       const std::size_t before = scenes::heapBytes();
@@ -50,10 +42,12 @@ class TimedSurfaces {
   }
 
   /// The order changes every frame, as the first one finds the nodes in slower memory.
-  void update(int frame, int substeps) {
+  void update(int frame) {
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
-      const SurfaceKind kind = kinds_[(k + static_cast<std::size_t>(frame)) % kinds_.size()];
-      times_[indexOf(kind)].push_back(timeOf(kind, substeps));
+      const std::size_t kind = indexOf(kinds_[(k + static_cast<std::size_t>(frame)) % kinds_.size()]);
+      const scenes::CpuTimer timer;
+      (void)skins_[kind].update();
+      times_[kind].push_back(timer.microseconds());
     }
   }
 
@@ -69,28 +63,16 @@ class TimedSurfaces {
   }
 
  private:
-  double timeOf(SurfaceKind kind, int substeps) {
-    const scenes::CpuTimer timer;
-    if (kind == SurfaceKind::Bullet) {
-      bullet_->interpolate();
-      return substeps * timer.microseconds();
-    }
-    (void)skins_[indexOf(kind)].update();
-    return timer.microseconds();
-  }
-
   std::vector<SurfaceKind> kinds_;
-  std::optional<BulletSurface> bullet_;
   std::array<SoftBodySkin, 2> skins_;
   SurfaceCosts costs_;
-  std::array<std::vector<double>, kSurfaceKinds.size()> times_;
+  std::array<std::vector<double>, 2> times_;
 };
 
 }  // namespace
 
 const char* nameOf(SurfaceKind kind) {
-  constexpr const char* kNames[] = {"linear", "quadratic", "bullet"};
-  return kNames[static_cast<std::size_t>(kind)];
+  return kind == SurfaceKind::Linear ? "linear" : "quadratic";
 }
 
 Interpolation interpolationOf(SurfaceKind kind) {
@@ -117,7 +99,7 @@ Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const sce
     if (frame == 1) result.bytes = scenes::heapBytes() - before - surfaces.bytes();
     result.finite = !scene->check().exploded;
     if (!result.finite) break;
-    surfaces.update(frame, options.substeps);
+    surfaces.update(frame);
     result.trajectory.push_back(scenes::nodesOf<float>(scene->body()));
     done();
   }
@@ -132,7 +114,7 @@ SurfaceCosts surfaceCosts(const Cage& cage, const TriangleMesh& mesh, const std:
   scenes::require(body.status());
   const std::unique_ptr<btSoftBody> owned(std::move(body).value());
   TimedSurfaces surfaces(*owned, cage, mesh, kinds);
-  for (int frame = 0; frame < kTimedFrames; ++frame) surfaces.update(frame, 1);
+  for (int frame = 0; frame < kTimedFrames; ++frame) surfaces.update(frame);
   return surfaces.costs();
 }
 

@@ -14,15 +14,9 @@
 namespace tetskin::report {
 
 /// How a render mesh is carried by a cage.
-enum class SurfaceKind {
-  Linear,
-  Quadratic,
-  Bullet,  ///< Bullet's own render nodes, which it updates in every substep
-};
-constexpr std::array<SurfaceKind, 3> kSurfaceKinds = {SurfaceKind::Linear, SurfaceKind::Quadratic, SurfaceKind::Bullet};
-/// "linear", "quadratic", "bullet".
+enum class SurfaceKind { Linear, Quadratic };
+/// "linear", "quadratic".
 const char* nameOf(SurfaceKind kind);
-/// The interpolation of a surface by tetskin.
 Interpolation interpolationOf(SurfaceKind kind);
 
 /// Node positions by frame; the first frame is at rest.
@@ -36,7 +30,7 @@ struct SurfaceCost {
 };
 
 /// Costs indexed by SurfaceKind.
-using SurfaceCosts = std::array<SurfaceCost, kSurfaceKinds.size()>;
+using SurfaceCosts = std::array<SurfaceCost, 2>;
 
 struct Simulation {
   Trajectory trajectory;

@@ -4,7 +4,6 @@
 // The comparison of solvers: each in its substeps, with the constants that suit it best, in one cage.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "report/scene_runner.h"
 #include "scenes/statistics.h"
@@ -112,7 +111,6 @@ std::vector<Row> SceneRunner::solverRows(const Job& job, const std::function<voi
     row.errorTimeRms = surfaceDistance(model_.mesh, cage, kind, motion.nodes, fine);
     row.errorEmbeddingRms = embedding;
   }
-  store_.keep(this->settings(job), rows);
   return rows;
 }
 

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "report/bullet_surface.h"
 #include "report/cage_skin.h"
 #include "scenes/input_error.h"
 
@@ -21,15 +19,10 @@ double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// A surface carried by a cage, of any kind.
+/// A surface carried by a cage.
 class CarriedSurface {
  public:
   CarriedSurface(const Cage& cage, const TriangleMesh& mesh, SurfaceKind kind) {
-    if (kind == SurfaceKind::Bullet) {
-      bullet_ = std::make_unique<BulletSurface>(cage, mesh);
-      staleNormals_ = restNormals(mesh);
-      return;
-    }
     BindingOptions options;
     options.interpolation = interpolationOf(kind);
     options.normals = Normals::Transformed;
@@ -37,23 +30,17 @@ class CarriedSurface {
   }
 
   void update(const std::vector<Eigen::Vector3f>& nodes) {
-    if (bullet_) return bullet_->update(nodes);
     const Points current = toDouble(nodes);
     if (skin_.update(viewOf(current)) != StatusCode::Ok)
       throw scenes::InputError("a cage has node positions that are not finite");
   }
-  Eigen::Vector3d position(std::size_t v) const {
-    return bullet_ ? bullet_->position(v) : Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(skin_.positions()[v]));
-  }
-  /// Bullet never updates its normals.
+  Eigen::Vector3d position(std::size_t v) const { return Eigen::Map<const Eigen::Vector3d>(skin_.positions()[v]); }
   Eigen::Vector3d normal(std::size_t v) const {
-    return bullet_ ? staleNormals_[v] : Eigen::Map<const Eigen::Vector3f>(skin_.normals()[v]).cast<double>();
+    return Eigen::Map<const Eigen::Vector3f>(skin_.normals()[v]).cast<double>();
   }
 
  private:
   MeshSkin<double> skin_;
-  std::unique_ptr<BulletSurface> bullet_;
-  Points staleNormals_;
 };
 
 }  // namespace
@@ -65,30 +52,25 @@ SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, cons
   CarriedSurface surface(cage, mesh, kind);
   SurfaceErrors errors;
   std::vector<double> squaredByVertex(count, 0.0);
-  double squared = 0.0, degrees = 0.0, along = 0.0, all = 0.0;
+  double squared = 0.0, degrees = 0.0;
   for (std::size_t frame = 1; frame < nodes.size(); ++frame) {
     const ReferenceSurface& right = reference.surfaceAt(static_cast<int>(frame));
     surface.update(nodes[frame]);
     double squaredInFrame = 0.0, moved = 0.0;
     for (std::size_t v = 0; v < count; ++v) {
-      const Eigen::Vector3d off = (surface.position(v) - right.positions[v]) / diagonal;
-      const Eigen::Vector3d way = (right.positions[v] - mesh.positions[v]) / diagonal;
-      const double distance = off.norm();
+      const double distance = (surface.position(v) - right.positions[v]).norm() / diagonal;
       squaredInFrame += distance * distance;
       squaredByVertex[v] += distance * distance;
-      moved += way.squaredNorm();
-      along += off.dot(way);
+      moved += ((right.positions[v] - mesh.positions[v]) / diagonal).squaredNorm();
       errors.max = std::max(errors.max, distance);
       degrees += angle(surface.normal(v), right.normals[v]);
     }
     squared += squaredInFrame;
-    all += moved;
     errors.amplitudeByFrame.push_back(std::sqrt(moved / static_cast<double>(count)));
     errors.rmsByFrame.push_back(std::sqrt(squaredInFrame / static_cast<double>(count)));
   }
   const auto frames = static_cast<double>(std::max<std::size_t>(nodes.size(), 2) - 1);
   errors.rms = std::sqrt(squared / (frames * static_cast<double>(count)));
-  if (all > 0.0) errors.excess = along / all;
   errors.normalMeanDeg = degrees / (frames * static_cast<double>(count));
   for (const double s : squaredByVertex) errors.rmsByVertex.push_back(static_cast<float>(std::sqrt(s / frames)));
   return errors;

@@ -14,8 +14,6 @@ namespace tetskin::report {
 struct SurfaceErrors {
   double rms = 0.0, max = 0.0;
   double normalMeanDeg = 0.0;
-  double excess =
-      0.0;  ///< by which share it moves farther than the reference, along the reference's way; least squares
   std::vector<double> rmsByFrame;
   std::vector<double> amplitudeByFrame;  ///< RMS distance of the reference itself from rest
   std::vector<float> rmsByVertex;        ///< RMS over the frames

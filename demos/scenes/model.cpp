@@ -9,9 +9,7 @@
 #include <cstdio>
 
 #include "scenes/bar.h"
-#include "scenes/beam.h"
 #include "scenes/hand.h"
-#include "scenes/hoop_and_star.h"
 #include "scenes/input_error.h"
 #include "scenes/serpent.h"
 #include "scenes/slotted_beam.h"
@@ -38,11 +36,8 @@ TriangleMesh makeSerpentOf(std::size_t triangles) {
 const Maker& makerOf(BuiltIn model) {
   static const Maker makers[] = {{"serpent", makeSerpentOf},
                                  {"bar", makeBar},
-                                 {"beam", makeBeam, makeBeamTets, kMinBeamTets},
                                  {"slotted_beam", makeSlottedBeam, makeSlottedBeamTets, kMinSlottedBeamTets},
-                                 {"hand", makeHand, makeHandTets, kMinHandTets},
-                                 {"hoop", makeHoop},
-                                 {"star", makeStar}};
+                                 {"hand", makeHand, makeHandTets, kMinHandTets}};
   return makers[static_cast<std::size_t>(model)];
 }
 
@@ -54,8 +49,7 @@ void warn(const std::string& path, const std::string& what) {
 }  // namespace
 
 const std::vector<BuiltIn>& builtInModels() {
-  static const std::vector<BuiltIn> all = {BuiltIn::Serpent, BuiltIn::Bar,  BuiltIn::Beam, BuiltIn::SlottedBeam,
-                                           BuiltIn::Hand,    BuiltIn::Hoop, BuiltIn::Star};
+  static const std::vector<BuiltIn> all = {BuiltIn::Serpent, BuiltIn::Bar, BuiltIn::SlottedBeam, BuiltIn::Hand};
   return all;
 }
 

@@ -18,10 +18,10 @@
 
 namespace tetskin::scenes {
 
-enum class BuiltIn { Serpent, Bar, Beam, SlottedBeam, Hand, Hoop, Star };
+enum class BuiltIn { Serpent, Bar, SlottedBeam, Hand };
 /// All built-in models, in the order of the enumeration.
 const std::vector<BuiltIn>& builtInModels();
-/// "serpent", "bar", "beam", "slotted_beam", "hand", "hoop", "star".
+/// "serpent", "bar", "slotted_beam", "hand".
 std::string nameOf(BuiltIn model);
 
 /// About this many tets that fill a built-in model, made by formula and not by the cage builder: parts of the model

@@ -23,7 +23,9 @@ void PrintedTable::add(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
-std::string PrintedTable::aligned(const Lines& lines) const {
+std::string PrintedTable::text() const {
+  std::vector<std::vector<std::string>> lines = header_;
+  lines.insert(lines.end(), rows_.begin(), rows_.end());
   std::vector<std::size_t> widths = widths_;
   for (const std::vector<std::string>& line : lines) {
     for (std::size_t k = 0; k < widths.size(); ++k) widths[k] = std::max(widths[k], line[k].size());
@@ -39,21 +41,6 @@ std::string PrintedTable::aligned(const Lines& lines) const {
     if (end != std::string::npos) text += row.substr(0, end + 1) + "\n";
   }
   return text;
-}
-
-std::string PrintedTable::text() const {
-  Lines lines = header_;
-  lines.insert(lines.end(), rows_.begin(), rows_.end());
-  return aligned(lines);
-}
-
-std::string PrintedTable::header() const {
-  return aligned(header_);
-}
-
-std::string PrintedTable::latest() const {
-  assert(!rows_.empty());
-  return aligned({rows_.back()});
 }
 
 std::string PrintedTable::markdown() const {

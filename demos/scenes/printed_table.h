@@ -17,8 +17,8 @@ struct TableColumn {
   std::size_t width = 0;  ///< at least so many characters
 };
 
-/// Rows are gathered. They are printed at the end, so that they do not mix with the progress of the run; or one by one,
-/// where the columns have widths; or written as Markdown.
+/// Rows are gathered. They are printed at the end, so that they do not mix with the progress of the run, or written as
+/// Markdown.
 class PrintedTable {
  public:
   explicit PrintedTable(std::vector<TableColumn> columns);
@@ -27,18 +27,12 @@ class PrintedTable {
   /// A line of titles, one of units, then the rows, each indented by two blanks. The first column is aligned to the
   /// left, all others to the right. Header lines without any text are left out.
   std::string text() const;
-  /// The same, header and latest row, in the columns' own widths.
-  std::string header() const;
-  std::string latest() const;
   /// Each column's unit is behind its title.
   std::string markdown() const;
 
  private:
-  using Lines = std::vector<std::vector<std::string>>;
-  std::string aligned(const Lines& lines) const;
-
   std::vector<std::size_t> widths_;
-  Lines header_, rows_;
+  std::vector<std::vector<std::string>> header_, rows_;
 };
 
 /// A number in a format of printf.

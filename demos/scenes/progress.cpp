@@ -13,7 +13,6 @@ Progress::Progress(std::string what, int total, bool quiet, std::FILE* stream)
     : what_(std::move(what)), total_(total), quiet_(quiet), stream_(stream), terminal_(isTerminal(stream)) {}
 
 void Progress::show(int done) {
-  shown_ = done;
   if (quiet_) return;
   constexpr int kWidth = 40;
   const auto share = [&](int components) {
@@ -31,16 +30,10 @@ void Progress::show(int done) {
   std::fflush(stream_);
 }
 
-void Progress::skip(int done) {
-  skipped_ += done - shown_;
-  show(done);
-}
-
 std::string Progress::timeLeft(int done) const {
   const double elapsed = timer_.seconds();
-  const int worked = done - skipped_;
-  if (elapsed < 1.0 || worked <= 0 || done == total_) return {};
-  const auto seconds = static_cast<long long>(elapsed * (total_ - done) / worked + 0.5);
+  if (elapsed < 1.0 || done <= 0 || done == total_) return {};
+  const auto seconds = static_cast<long long>(elapsed * (total_ - done) / done + 0.5);
   char text[48];
   std::snprintf(text, sizeof text, ", %lld:%02lld left", seconds / 60, seconds % 60);
   return text;

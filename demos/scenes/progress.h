@@ -17,9 +17,6 @@ class Progress {
   Progress(std::string what, int total, bool quiet, std::FILE* stream = stdout);
   /// Call after step `done` of `total`.
   void show(int done);
-  /// Call after step `done` of `total` if the steps since the last call took no time: they had been done before, and
-  /// say nothing about the time of the rest.
-  void skip(int done);
 
  private:
   std::string timeLeft(int done) const;
@@ -30,8 +27,6 @@ class Progress {
   std::FILE* stream_;
   bool terminal_;
   WallTimer timer_;
-  int shown_ = 0;
-  int skipped_ = 0;
   int lastTenth_ = 0;
 };
 

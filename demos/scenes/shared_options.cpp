@@ -67,11 +67,11 @@ const SharedOption* sharedOption(const std::string& names) {
 }
 
 std::string presentName(const std::string& earlier, const std::vector<std::string>& known) {
-  static const std::pair<const char*, const char*> renamed[] = {
-      {"--force", "--elasticity"}, {"--whole", "--no-duplicate-elements"},
-      {"--loose", "--no-fit"},     {"--frames", "--repetitions"},  // of tetskin_crowd
-      {"--bodies", "--shapes"},                                    // of tetskin_gaps
-      {"--scene", "--scenes"},     {"--stiffness", "--spring-stiffness"}};
+  static const std::pair<const char*, const char*> renamed[] = {{"--force", "--elasticity"},
+                                                                {"--whole", "--no-duplicate-elements"},
+                                                                {"--loose", "--no-fit"},
+                                                                {"--scene", "--scenes"},
+                                                                {"--stiffness", "--spring-stiffness"}};
   const auto isKnown = [&](const std::string& name) { return std::count(known.begin(), known.end(), name) > 0; };
   for (const auto& [before, now] : renamed) {
     if (before == earlier && !isKnown(before) && isKnown(now)) return now;

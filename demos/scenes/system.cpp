@@ -16,9 +16,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #endif
-#ifdef __linux__
-#include <link.h>
-#endif
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -50,24 +47,6 @@ std::size_t lastLevelCacheBytes() {
   if (const long bytes = sysconf(_SC_LEVEL3_CACHE_SIZE); bytes > 0) return static_cast<std::size_t>(bytes);
 #endif
   return 0;
-}
-
-std::vector<std::string> loadedCode() {
-  std::vector<std::string> paths;
-#ifdef __linux__
-  paths.emplace_back("/proc/self/exe");
-  dl_iterate_phdr(
-      [](dl_phdr_info* info, std::size_t, void* into) {
-        const std::string path = info->dlpi_name;
-        const auto has = [&](const char* name) { return path.find(name) != std::string::npos; };
-        if (has("tetskin") || has("Bullet") || has("LinearMath")) {
-          static_cast<std::vector<std::string>*>(into)->push_back(path);
-        }
-        return 0;
-      },
-      &paths);
-#endif
-  return paths;
 }
 
 #ifdef _WIN32

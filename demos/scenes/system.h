@@ -20,9 +20,6 @@ bool mayWriteInto(const std::filesystem::path& folder);
 std::size_t heapBytes();
 /// Size of the last-level cache; 0 where the system does not report it.
 std::size_t lastLevelCacheBytes();
-/// Paths of this program and of the shared libraries of tetskin and Bullet that it has loaded; empty where the system
-/// does not tell.
-std::vector<std::string> loadedCode();
 /// Runs a command found in the path, and waits for it. Returns its exit status; below 0: it could not be run, or was
 /// killed.
 /// silent  without its output

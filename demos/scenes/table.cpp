@@ -12,7 +12,6 @@ namespace tetskin::scenes {
 // description.
 #define TETSKIN_SCENES(SCENE)                                                                                       \
   SCENE(Sag, "sag", 60, false, "pinned at its lower end, under gravity")                                            \
-  SCENE(Cantilever, "cantilever", 90, false, "held at its left end, under gravity")                                 \
   SCENE(Twist, "twist", 60, false, "pinned at both ends, of which the upper is turned")                             \
   SCENE(Drop, "drop", 48, true, "falls on a box")                                                                   \
   SCENE(Exact, "exact", 1, false, "nodes moved by a smooth map, without Bullet")                                    \

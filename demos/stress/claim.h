@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-namespace tetskin::stress {
+#include "measure/run.h"
 
-struct Verdict;
+namespace tetskin::stress {
 
 /// What happens to the body.
 enum class ClaimEvent {
@@ -41,6 +41,6 @@ std::vector<Claim> chosenClaims(std::size_t count);
 
 /// Runs the combination for one second. Energies are relative to the initial one and the work put in, those of landings
 /// without elastic energy; momentum is that of free bodies.
-void runClaim(const Claim& claim, Verdict& verdict);
+void runClaim(const Claim& claim, measure::Run& run);
 
 }  // namespace tetskin::stress

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "stress/run_case.h"
+#include "stress/stress_scenes.h"
 
 #include <cmath>
 
 #include "scenes/table.h"
-#include "scenes/timer.h"
+#include "stress/skin_judge.h"
 
 namespace tetskin::stress {
 namespace {
+
+using measure::Run;
 
 /// RMS in diagonals, under gravity or shortly after an event, of a shape that counts as recovered.
 constexpr double kRecovered = 0.02;
@@ -109,14 +111,43 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
   expectOfBody(stressCase, verdict);
 }
 
+void report(const Verdict& verdict, bool ours, Run& run) {
+  run.steps = verdict.solve.steps;
+  run.iterations = verdict.solve.iterations;
+  run.status = verdict.status;
+  run.hash = verdict.hash;
+  run.broken = verdict.broken;
+  run.report("finite", verdict.simulationFinite);
+  run.report("bounded", verdict.simulationBounded);
+  run.report("largest extent", verdict.extentMax);
+  run.report("surface is finite", verdict.skinFinite);
+  run.report("amplification", verdict.amplification);
+  run.report("rest error", verdict.restError);
+  run.report("shape error", verdict.shapeError);
+  run.report("lowest", verdict.lowest);
+  run.report("speed at the end", verdict.restSpeed);
+  if (ours) run.report("steps that did not converge", verdict.solve.unconverged);
+}
+
+void runCase(const StressCase& stressCase, Run& run) {
+  if (stressCase.claim) return runClaim(*stressCase.claim, run);
+  Verdict verdict;
+  bindAndRun(stressCase, verdict);
+  report(verdict, isOurs(stressCase.force), run);
+}
+
 }  // namespace
 
-Verdict runCase(const StressCase& stressCase) {
-  const scenes::WallTimer timer;
-  Verdict verdict;
-  stressCase.claim ? runClaim(*stressCase.claim, verdict) : bindAndRun(stressCase, verdict);
-  verdict.milliseconds = timer.milliseconds();
-  return verdict;
+measure::MeasuredScenes stressScenes() {
+  measure::MeasuredScenes scenes;
+  for (const StressCase& stressCase : stressCases()) {
+    const measure::Kind kind = isOurs(stressCase.force) ? measure::Kind::Surface : measure::Kind::Bullet;
+    const measure::Often often = stressCase.lasts   ? measure::Often::Long
+                                 : stressCase.quick ? measure::Often::Quick
+                                                    : measure::Often::Usual;
+    scenes.push_back({stressCase.name, [stressCase](Run& run) { runCase(stressCase, run); }, {kind}, often});
+  }
+  return scenes;
 }
 
 }  // namespace tetskin::stress

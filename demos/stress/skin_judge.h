@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "measure/run.h"
 #include "scenes/files.h"
 #include "scenes/scene.h"
 #include "stress/models.h"
@@ -34,13 +33,9 @@ struct Verdict {
   double normalError = 0.0;  ///< largest deviation of a normal's length from 1
   double weightError = 0.0;  ///< largest deviation of the sum of a vertex's weights from 1, over the largest weight
   std::uint64_t hash = scenes::kNoHash;  ///< of all bodies' nodes after each checked step
-  double milliseconds = 0.0;
   scenes::SolveTotals solve;
-  std::vector<measure::Figure> figures;  ///< of a claim
-  std::string promised;                  ///< name of the scene by which the figures' promises are found
-  std::vector<std::string> broken;       ///< the expectations that were not met, in words
+  std::vector<std::string> broken;  ///< the expectations that were not met, in words
 
-  bool passed() const { return broken.empty(); }
   void expect(bool condition, const std::string& what);
 };
 

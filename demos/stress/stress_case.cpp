@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "stress/stress_case.h"
 
-#include <iterator>
-#include <tuple>
+#include <cstddef>
 
 namespace tetskin::stress {
 namespace {
@@ -21,23 +20,10 @@ bool isOurs(scenes::Force force) {
   return force == scenes::Force::Elastic;
 }
 
-bool areTwins(const StressCase& ours, const StressCase& bullets) {
-  const auto felt = [](const StressCase& c) {
-    return std::tie(c.stiffness, c.poisson, c.damping, c.timeStep, c.substeps, c.frames, c.scene, c.harshness, c.cage,
-                    c.touchesBySurface);
-  };
-  return isOurs(ours.force) && bullets.force == scenes::Force::NeoHookean && felt(ours) == felt(bullets);
-}
-
 const char* toString(scenes::Force force) {
   static const char* const kNames[] = {"mass_spring", "linear_elasticity", "neo_hookean",
                                        "corotated",   "tetskin",           "reduced"};
   return nameIn(kNames, force);
-}
-
-const char* toString(Simulation simulation) {
-  static const char* const kNames[] = {"bounded", "unbounded", "either"};
-  return nameIn(kNames, simulation);
 }
 
 const char* toString(Cage cage) {

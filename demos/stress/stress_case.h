@@ -87,13 +87,8 @@ struct StressCase {
 /// True if the force is the library's own.
 bool isOurs(scenes::Force force);
 
-/// True if a case with Bullet's neo-Hookean force and one with the library's are the same in everything that a body
-/// feels except force and integrator. The skins may differ, and so may default stiffnesses.
-bool areTwins(const StressCase& ours, const StressCase& bullets);
-
 /// Names used in reports.
 const char* toString(scenes::Force force);
-const char* toString(Simulation simulation);
 const char* toString(Cage cage);
 const char* toString(Surface surface);
 const char* toString(Interpolation interpolation);

@@ -22,23 +22,6 @@ namespace tetskin::test {
 
 using Map = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
-struct Error {
-  double rms = 0.0, max = 0.0;  ///< relative to the box's diagonal
-};
-
-/// Distances between two surfaces, relative to the diagonal of the first one's bounding box.
-inline Error distances(const std::vector<Eigen::Vector3d>& exact, const std::vector<std::array<double, 3>>& surface,
-                       double diagonal) {
-  Error error;
-  for (std::size_t v = 0; v < exact.size(); ++v) {
-    const double distance = (exact[v] - Eigen::Vector3d(surface[v].data())).norm() / diagonal;
-    error.rms += distance * distance / static_cast<double>(exact.size());
-    error.max = std::max(error.max, distance);
-  }
-  error.rms = std::sqrt(error.rms);
-  return error;
-}
-
 class DeformRun : public testing::Test {
  protected:
   /// Writes m.obj, the serpent, and rest.vtk, its cage.
@@ -73,29 +56,6 @@ class DeformRun : public testing::Test {
   }
   CommandResult deform(const std::vector<std::string>& others = {}) const {
     return folder.run(TETSKIN_DEFORM, with(others));
-  }
-
-  /// How far the written surface is from where a map takes the mesh.
-  Error errorOf(const Map& map, const std::string& interpolation) const {
-    writeDeformed(map);
-    const CommandResult result = deform({"--interpolation", interpolation});
-    EXPECT_EQ(result.status, 0) << result.err;
-    std::vector<Eigen::Vector3d> exact;
-    for (const Eigen::Vector3d& p : mesh.positions) exact.push_back(map(p));
-    return distances(exact, test::objPositions(folder.read("o.obj")), boundingBox(mesh.positions).diagonal().norm());
-  }
-
-  void expectGain(const Map& map, double gain) const {
-    const Error linear = errorOf(map, "linear"), quadratic = errorOf(map, "quadratic");
-    EXPECT_LT(gain * quadratic.rms, linear.rms) << "gain " << linear.rms / quadratic.rms;
-    EXPECT_LE(quadratic.max, linear.max);
-  }
-
-  /// The origin of the maps: bend, twist and so on.
-  Eigen::Vector3d centre() const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& p : cage.nodes) sum += p;
-    return sum / static_cast<double>(cage.nodeCount());
   }
 
   /// Expects exit status 2, one line on standard error that mentions the words, and no files written.

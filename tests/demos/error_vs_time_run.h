@@ -27,12 +27,12 @@ class ErrorVsTimeRun : public testing::Test {
     arguments.insert(arguments.begin(), {"PYTHONPATH=" + folder.path("python"), program});
     return folder.run("env", arguments);
   }
-  /// Options for the small scene of the tests below, with Bullet's explicit forces.
+  /// Options for the small scene of the tests below.
   std::vector<std::string> small(const std::string& scene, const std::vector<std::string>& more = {},
                                  const std::string& out = "out") const {
     std::vector<std::string> all = {
-        "--quick",     "--quiet", "--scenes", scene, "--tets", "300,900", "--reference-tets", "2700",
-        "--triangles", "2000",    "--frames", "6",   "--out",  out,       "--elasticity",     "bullet"};
+        "--quick", "--quiet",     "--scenes", scene,      "--tets", "300,900", "--reference-tets",
+        "2700",    "--triangles", "2000",     "--frames", "6",      "--out",   out};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }

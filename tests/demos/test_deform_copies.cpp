@@ -50,20 +50,6 @@ TEST_F(DeformCopies, OnlyThePlateWhoseCopyOfTheTetsMovesMoves) {
   }
 }
 
-TEST_F(DeformCopies, DumpsTheTetsOfTheMap) {
-  const test::TwoPlates plates = writePlates(folder);
-  ASSERT_EQ(deform({"--deformed", "rest.vtk", "--dump-embedding", "e.csv", "--json", "s.json"}).status, 0);
-  std::istringstream lines(folder.read("e.csv"));
-  std::string line;
-  std::getline(lines, line);
-  for (std::size_t v = 0; v < plates.mesh.vertexCount(); ++v) {
-    ASSERT_TRUE(std::getline(lines, line));
-    const std::string start = std::to_string(v) + "," + std::to_string(plates.cage.vertexTets[v]) + ",";
-    EXPECT_EQ(line.substr(0, start.size()), start);
-  }
-  EXPECT_EQ(folder.json("s.json")["inside"], plates.mesh.vertexCount());
-}
-
 TEST_F(DeformCopies, TakesADeformedCageWithItsTetsInAnotherOrder) {
   test::TwoPlates plates = writePlates(folder);
   std::reverse(plates.cage.mesh.tets.begin(), plates.cage.mesh.tets.end());

@@ -119,25 +119,6 @@ TEST_F(Drop, WritesCurrentUnitNormalsIfAskedFor) {
   }
 }
 
-TEST_F(Drop, QuadraticSurfaceFollowsTheSameCage) {
-  for (const std::string kind : {"linear", "quadratic"}) {
-    ASSERT_EQ(drop({"--triangles", "4000", "--tets", "300", "--frames", "40", "--every", "39", "--interpolation", kind,
-                    "--write-cage", "--out", kind})
-                  .status,
-              0);
-  }
-  EXPECT_EQ(folder.read("linear/cage_0039.vtk"), folder.read("quadratic/cage_0039.vtk"));
-  const auto linear = test::objPositions(folder.read("linear/frame_0039.obj"));
-  const auto quadratic = test::objPositions(folder.read("quadratic/frame_0039.obj"));
-  double farthest = 0.0;
-  for (std::size_t v = 0; v < linear.size(); ++v) {
-    farthest =
-        std::max(farthest, (Eigen::Vector3d(linear[v].data()) - Eigen::Vector3d(quadratic[v].data())).norm() / 2.0);
-  }
-  EXPECT_GT(farthest, 1e-4);
-  EXPECT_LT(farthest, 0.1);
-}
-
 TEST_F(Drop, TouchesTheFloorAsDrawnOrByItsCage) {
   double above[2] = {};
   for (const bool surface : {true, false}) {
@@ -181,42 +162,6 @@ TEST_F(Drop, ABodyOfBulletsForcesIsTouchedByItsCage) {
   EXPECT_GT(summary.at("stages_ms_per_frame").at("bullet"), 0.0);
   EXPECT_TRUE(summary.at("iterations_per_step").is_null()) << "nobody counts Bullet's";
   EXPECT_EQ(result.out.find("converge"), std::string::npos) << result.out;
-}
-
-TEST_F(Drop, TellsThatACageIsBuiltBeforeAllElse) {
-  folder.write("box.obj", boxObj());
-  const auto run = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"--mesh", "box.obj", "--frames", "1", "--out", "o"});
-    return drop(more).out;
-  };
-  EXPECT_EQ(run({"--tets", "60"}).find("building a cage of about 60 tets\n"), 0u);
-  EXPECT_EQ(run({"--tets", "60", "--quiet"}), "");
-  ASSERT_EQ(folder.run(TETSKIN_CAGE, {"--mesh", "box.obj", "--tets", "60", "-o", "c.vtk"}).status, 0);
-  EXPECT_EQ(run({"--cage", "c.vtk"}).find("building"), std::string::npos) << "there is none to build";
-}
-
-TEST_F(Drop, NamesTheFarthestVertexOutside) {
-  folder.write("box.obj", boxObj(0.45, "-0.56"));
-  folder.write("cube.vtk", cubeVtk());
-  const CommandResult result = drop({"--mesh", "box.obj", "--cage", "cube.vtk", "--frames", "2", "--out", "o"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto json = folder.json("o/summary.json");
-  EXPECT_EQ(json["outside"], 1);
-  EXPECT_EQ(json["worst_vertex"], 0);
-  EXPECT_NEAR(json["worst_distance"], 0.06, 1e-6);
-  EXPECT_NE(result.out.find("vertex 0, at a distance of 0.06"), std::string::npos) << result.out;
-}
-
-TEST_F(Drop, TellsTheToleranceByWhichItJudgesTheFloor) {
-  folder.write("box.obj", boxObj());
-  const CommandResult result = drop({"--mesh", "box.obj", "--tets", "60", "--every", "240", "--out", "o"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const auto json = folder.json("o/summary.json");
-  const double tolerance = json["floor_tolerance"], floor = json["floor_y"], lowest = json["lowest_y"];
-  EXPECT_GT(tolerance, json["margin"]);
-  EXPECT_LT(tolerance, json["margin"].get<double>() + 0.02);
-  EXPECT_EQ(json["above_floor"].get<bool>(), lowest >= floor - tolerance);
-  EXPECT_NE(result.out.find("tolerance"), std::string::npos) << result.out;
 }
 
 TEST_F(Drop, HashTellsRunsApart) {

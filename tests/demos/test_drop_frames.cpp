@@ -17,19 +17,6 @@ using test::CommandResult;
 
 class DropFrames : public test::DropRun {};
 
-TEST_F(DropFrames, WritesEveryKthFrameAndTheCageBesideIt) {
-  folder.write("box.obj", boxObj());
-  ASSERT_EQ(
-      drop({"--mesh", "box.obj", "--tets", "60", "--frames", "9", "--every", "4", "--write-cage", "--out", "o"}).status,
-      0);
-  for (const char* name : {"o/frame_0000.obj", "o/frame_0004.obj", "o/frame_0008.obj", "o/cage_0000.vtk",
-                           "o/cage_0008.vtk", "o/obstacles.obj"}) {
-    EXPECT_TRUE(folder.exists(name)) << name;
-  }
-  EXPECT_EQ(folder.count("o", ".vtk"), 3u);
-  EXPECT_EQ(folder.json("o/summary.json")["frames_written"], 3);
-}
-
 TEST_F(DropFrames, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
   folder.write("box.obj", boxObj());
   const auto run = [&](std::vector<std::string> more) {

@@ -171,7 +171,7 @@ TEST(BuiltInModels, HaveNamesSurfacesAndSomeHaveTets) {
     const Surface surface = loadSurface(options);
     EXPECT_EQ(surface.name, nameOf(model));
     EXPECT_NEAR(static_cast<double>(surface.mesh.triangleCount()), static_cast<double>(kSmall), 0.05 * kSmall);
-    const bool isBeam = model == BuiltIn::SlottedBeam || model == BuiltIn::Beam;
+    const bool isBeam = model == BuiltIn::SlottedBeam;
     EXPECT_EQ(conformingTets(model, 15000).has_value(), isBeam || model == BuiltIn::Hand) << surface.name;
     EXPECT_EQ(conformingTets(model, 1000).has_value(), isBeam) << surface.name;
     EXPECT_EQ(fewestConformingTets(model) > 0, conformingTets(model, 15000).has_value());

@@ -29,12 +29,11 @@ struct Program {
   Arguments required = {};
 };
 
-const Program kDrop{TETSKIN_DROP}, kTwist{TETSKIN_TWIST}, kCrowd{TETSKIN_CROWD}, kErrorVsTime{TETSKIN_ERROR_VS_TIME},
+const Program kDrop{TETSKIN_DROP}, kErrorVsTime{TETSKIN_ERROR_VS_TIME},
     kDeform{TETSKIN_DEFORM, {"--deformed", "d.vtk", "-o", "o.obj"}};
 
-const char* const kAllPrograms[] = {TETSKIN_DROP,  TETSKIN_PILE,   TETSKIN_DRAG,  TETSKIN_TWIST,
-                                    TETSKIN_CROWD, TETSKIN_STRESS, TETSKIN_GAPS,  TETSKIN_CONTACT,
-                                    TETSKIN_CAGE,  TETSKIN_DEFORM, TETSKIN_BENCH, TETSKIN_ERROR_VS_TIME};
+const char* const kAllPrograms[] = {TETSKIN_DROP, TETSKIN_PILE,   TETSKIN_DRAG,  TETSKIN_MEASURE,
+                                    TETSKIN_CAGE, TETSKIN_DEFORM, TETSKIN_BENCH, TETSKIN_ERROR_VS_TIME};
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -91,10 +90,10 @@ TEST_F(Options, ASummaryThatCannotBeWrittenIsRefusedBeforeTheWork) {
 TEST_F(Options, TheTrialWhetherASummaryCanBeWrittenChangesNoFile) {
   folder.write("s.json", "earlier");
   for (const char* name : {"s.json", "new.json"}) {
-    expectRefused(folder.run(TETSKIN_CROWD, {"--mesh", "nowhere.obj", "--json", name}), "nowhere.obj");
+    expectRefused(folder.run(TETSKIN_DROP, {"--mesh", "nowhere.obj", "--json", name}), "nowhere.obj");
   }
   std::filesystem::create_symlink("target.json", folder.path("link.json"));
-  expectRefused(folder.run(TETSKIN_CROWD, {"--mesh", "nowhere.obj", "--json", "link.json"}), "nowhere.obj");
+  expectRefused(folder.run(TETSKIN_DROP, {"--mesh", "nowhere.obj", "--json", "link.json"}), "nowhere.obj");
   EXPECT_EQ(folder.read("s.json"), "earlier");
   EXPECT_FALSE(folder.exists("new.json"));
   EXPECT_FALSE(folder.exists("target.json"));
@@ -106,8 +105,7 @@ TEST_F(Options, ACageOfAnotherModelIsRefusedWithTheNamesOfBoth) {
   folder.write("other.vtk",
                "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0.05\n1 0 0.05\n"
                "0 1 0.05\n0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
-  for (const Program& program :
-       {kDrop, kTwist, kCrowd, Program{TETSKIN_DEFORM, {"--deformed", "other.vtk", "-o", "o.obj"}}}) {
+  for (const Program& program : {kDrop, Program{TETSKIN_DEFORM, {"--deformed", "other.vtk", "-o", "o.obj"}}}) {
     for (const char* word : {"m.obj", "other.vtk", "3 of 4 vertices"}) {
       Arguments all = program.required;
       all.insert(all.end(), {"--mesh", "m.obj", "--cage", "other.vtk"});
@@ -174,21 +172,16 @@ TEST_F(Options, OneOfSeveralProgramsHasTheSameDescriptionAndPlaceInAll) {
       }
     }
   }
-  for (const char* shared :
-       {"--mesh", "--tets", "--triangles", "--frames", "--out", "--every", "--json", "--quiet", "--elasticity",
-        "--contact", "--self-contact", "--only", "--hash", "--markdown", "--view"}) {
+  for (const char* shared : {"--mesh", "--tets", "--triangles", "--frames", "--out", "--every", "--json", "--quiet",
+                             "--elasticity", "--contact", "--self-contact", "--hash", "--view", "--quick"}) {
     EXPECT_GT(programs[shared], 1) << shared;
   }
 }
 
 TEST_F(Options, AnEarlierNameIsAnsweredByThePresentOne) {
   const std::array<const char*, 3> renamed[] = {{TETSKIN_DROP, "--force", "--elasticity"},
-                                                {TETSKIN_STRESS, "--force", "--elasticity"},
-                                                {TETSKIN_CONTACT, "--force", "--elasticity"},
-                                                {TETSKIN_ERROR_VS_TIME, "--force", "--elasticity"},
+                                                {TETSKIN_MEASURE, "--force", "--elasticity"},
                                                 {TETSKIN_ERROR_VS_TIME, "--scene", "--scenes"},
-                                                {TETSKIN_CROWD, "--frames", "--repetitions"},
-                                                {TETSKIN_GAPS, "--bodies", "--shapes"},
                                                 {TETSKIN_DRAG, "--stiffness", "--spring-stiffness"},
                                                 {TETSKIN_DRAG, "--whole", "--no-duplicate-elements"},
                                                 {TETSKIN_CAGE, "--loose", "--no-fit"}};
@@ -198,7 +191,7 @@ TEST_F(Options, AnEarlierNameIsAnsweredByThePresentOne) {
                     std::string(before) + ": this option is now called " + now + "\n");
     }
   }
-  expectRefused(folder.run(TETSKIN_STRESS, {"--frames", "3"}), "--frames");  // this program never had this option
+  expectRefused(folder.run(TETSKIN_MEASURE, {"--frames", "3"}), "--frames");  // this program never had this option
 }
 
 // The tests of the pages run the examples themselves.

@@ -137,23 +137,6 @@ TEST(Pile, CubesInABinTouchEachOtherAndStayInside) {
   EXPECT_LT(std::max(box.max().x(), box.max().z()), 1.26);
 }
 
-TEST(Pile, BallsAndCubesStartApartWhereTheSeedPutsThem) {
-  const CommandFolder folder;
-  for (const std::string scene : {"pit", "bin"}) {
-    const auto start = [&](const std::string& seed) {
-      const CommandResult result =
-          folder.run(TETSKIN_PILE, {"--scene", scene, "--bodies", "40", "--tets", "60", "--seed", seed, "--frames", "1",
-                                    "--format", "obj", "--out", "o"});
-      EXPECT_EQ(result.status, 0) << result.err;
-      EXPECT_EQ(folder.json("o/summary.json")["vertices_inside_at_end"], 0) << scene << seed;
-      return folder.read("o/frame_0000.obj");
-    };
-    const std::string one = start("1"), two = start("2");
-    EXPECT_NE(one, two) << scene;
-    EXPECT_EQ(start("2"), two) << scene;
-  }
-}
-
 TEST(Pile, RefusesWhatASceneCannotHave) {
   const CommandFolder folder;
   folder.write("box.obj", test::boxObj());

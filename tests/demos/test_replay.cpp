@@ -27,8 +27,7 @@ struct Demo {
 const std::vector<Demo>& demos() {
   static const std::vector<Demo> all = {{"drop", TETSKIN_DROP, {"--tets", "300", "--triangles", "2000", "--no-view"}},
                                         {"pile", TETSKIN_PILE, {"--bodies", "3", "--tets", "200"}},
-                                        {"drag", TETSKIN_DRAG, {"--tets", "300"}},
-                                        {"twist", TETSKIN_TWIST, {}}};
+                                        {"drag", TETSKIN_DRAG, {"--tets", "300"}}};
   return all;
 }
 

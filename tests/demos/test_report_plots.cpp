@@ -39,7 +39,7 @@ TEST_F(ReportPlots, APlotProgramThatFailsIsAWarning) {
 }
 
 TEST_F(ReportPlots, HasTablesAndPlotsMade) {
-  std::vector<std::string> arguments = small("sag,exact", {"--target-error", "0.5", "--elasticity", "tetskin"});
+  std::vector<std::string> arguments = small("sag,exact", {"--target-error", "0.5"});
   arguments.erase(arguments.begin() + 1);  // removes --quiet
   const CommandResult result = folder.run(TETSKIN_ERROR_VS_TIME, arguments);
   ASSERT_EQ(result.status, 0) << result.err;

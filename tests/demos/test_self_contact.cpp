@@ -97,16 +97,5 @@ TEST_F(SelfContact, IsRefusedWhereItIsAskedForAndCannotBe) {
   EXPECT_FALSE(folder.exists("o"));
 }
 
-TEST_F(SelfContact, IsThereInPileAndDrag) {
-  for (const std::string program : {TETSKIN_PILE, TETSKIN_DRAG}) {
-    for (const std::string wish : {"", "on", "off"}) {
-      std::vector<std::string> arguments = {"--tets", "100", "--triangles", "3000", "--frames", "1", "--out", "o"};
-      if (!wish.empty()) arguments.insert(arguments.end(), {"--self-contact", wish});
-      ASSERT_EQ(folder.run(program, arguments).status, 0);
-      EXPECT_EQ(folder.json("o/summary.json")["self_contact"], wish.empty() ? "on" : wish) << program;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace tetskin

@@ -116,37 +116,6 @@ TEST(Serpent, RepeatsVerticesAtTheTextureSeamBitForBit) {
   }
 }
 
-TEST(Serpent, HasTexcoordsInTheUnitSquareAndUnitNormals) {
-  const TriangleMesh mesh = makeSerpent({kDetailed});
-  ASSERT_EQ(mesh.normals.size(), mesh.vertexCount());
-  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-    EXPECT_GE(mesh.texcoords[v].minCoeff(), 0.0f);
-    EXPECT_LE(mesh.texcoords[v].maxCoeff(), 1.0f);
-    EXPECT_NEAR(mesh.normals[v].norm(), 1.0f, 1e-5f);
-  }
-}
-
-TEST(Serpent, HasGroupsThatCoverAllTriangles) {
-  const TriangleMesh mesh = makeSerpent({kDetailed});
-  std::size_t next = 0;
-  for (const TriangleGroup& group : mesh.groups) {
-    EXPECT_EQ(group.firstTriangle, next) << group.name;
-    EXPECT_GT(group.triangleCount, 0u) << group.name;
-    EXPECT_FALSE(group.material.empty()) << group.name;
-    next += group.triangleCount;
-  }
-  EXPECT_EQ(next, mesh.triangleCount());
-}
-
-TEST(Serpent, IsTwoUnitsWideAndStandsAtTheOrigin) {
-  const Box3 box = boundingBox(makeSerpent({kDetailed}).positions);
-  EXPECT_NEAR(box.sizes().maxCoeff(), 2.0, 0.1);
-  EXPECT_NEAR(box.center().x(), 0.0, 0.05);
-  EXPECT_NEAR(box.center().z(), 0.0, 0.05);
-  EXPECT_NEAR(box.min().y(), 0.0, 0.05);
-  EXPECT_NEAR(box.max().y(), 1.1, 0.1);
-}
-
 TEST(Serpent, BendsLessThanItIsThick) {
   constexpr double kStep = 1e-3;
   const SerpentShape shape;

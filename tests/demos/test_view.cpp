@@ -92,16 +92,6 @@ TEST(ViewPage, Of240FramesOfThirtyThousandVerticesIsBelow12Megabytes) {
   EXPECT_GT(bytes, 1'000'000u);
 }
 
-TEST(ViewPage, HoldsASurfaceByItsVertices) {
-  const TriangleMesh mesh = loadSurface(smallSerpent()).mesh;
-  ViewPage page("title", {}, Interpolation::Linear);
-  page.addBody({page.addSurface(mesh), "", ""});
-  for (const double along : {0.0, 0.5}) page.keep({{shifted(mesh.positions, along)}, {}});
-  const std::string html = page.html(viewFiles());
-  EXPECT_EQ(html.find("\"cage\":"), std::string::npos);
-  EXPECT_NE(html.find("\"vertices\":" + std::to_string(mesh.vertexCount())), std::string::npos);
-}
-
 TEST(ViewPage, GrowsByTheNodesOfAFrameAndNoFurtherThanItsRoom) {
   const auto bytes = [](int frames) { return risingPage(smallSerpent(), frames, 0.01).html(viewFiles()).size(); };
   const auto nodes = static_cast<double>(loadModel(smallSerpent()).cage.mesh.nodeCount());
@@ -135,21 +125,6 @@ TEST(View, IsWrittenByDropUnlessItIsLeftOut) {
   test::expectRefused(drop({"--view", "a.html", "--no-view"}), "--no-view");
 }
 
-TEST(View, IsEntitledByTheNameOfTheMeshAloneAndSaysWhatTouches) {
-  const CommandFolder folder;
-  std::filesystem::create_directories(folder.path("some/folder"));
-  folder.write("some/folder/tet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
-  const auto pageOf = [&](const std::string& contact) {
-    const CommandResult result = folder.run(TETSKIN_DROP, {"--mesh", folder.path("some/folder/tet.obj"), "--tets", "60",
-                                                           "--frames", "2", "--contact", contact, "--out", "o"});
-    EXPECT_EQ(result.status, 0) << result.err;
-    return folder.read("o/view.html");
-  };
-  EXPECT_NE(pageOf("surface").find("\"title\":\"tet.obj\""), std::string::npos);
-  EXPECT_NE(pageOf("surface").find("\"contact at the surface, self-contact\""), std::string::npos);
-  EXPECT_NE(pageOf("cage").find("\"contact at the cage's nodes\""), std::string::npos);
-}
-
 TEST(View, IsWrittenByTheOthersWhereAskedFor) {
   const CommandFolder folder;
   const auto run = [&](const char* demo, std::vector<std::string> more) {
@@ -164,9 +139,6 @@ TEST(View, IsWrittenByTheOthersWhereAskedFor) {
   EXPECT_NE(pile.find("4 soft bodies"), std::string::npos);
   const std::string drag = run(TETSKIN_DRAG, {"--tets", "100"});
   EXPECT_NE(drag.find("\"places\":"), std::string::npos) << "of its hat, ring and pointer";
-  const std::string twist = run(TETSKIN_TWIST, {"--tets", "60"});
-  EXPECT_NE(twist.find("\"skin\":\"linear\""), std::string::npos);
-  EXPECT_NE(twist.find("\"skin\":\"quadratic\""), std::string::npos);
 }
 
 TEST(View, ShowsACoarseCageBesideTheReference) {

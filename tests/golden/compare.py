@@ -8,11 +8,12 @@
 BEFORE and AFTER are build folders with demos, of two commits on one machine: processors with other vector instructions
 round differently, and so do compilers, which is why no hashes are kept here. One line per scene that differs, that only
 one of them has, or that failed; exit status 1 if there is any. Without --quick a minute and a half, and every case of
-tetskin_stress --force tetskin; the same folder twice shows that runs repeat themselves.
+stress by tetskin's force; the same folder twice shows that runs repeat themselves.
 """
 import argparse
 import concurrent.futures
 import hashlib
+import json
 import pathlib
 import subprocess
 import sys
@@ -36,7 +37,6 @@ RUNS = {  # name: program and arguments; (of all runs, of --quick)
     "cubes in a bin": (["tetskin_pile", "--scene", "bin", "--bodies", "25", "--frames", "180"],
                        ["tetskin_pile", "--scene", "bin", "--bodies", "17", "--tets", "40", "--frames", "90"]),
     "drag": (["tetskin_drag"], ["tetskin_drag", *SERPENT, "--tets", "300", "--frames", "90"]),
-    "twist": (["tetskin_twist"], ["tetskin_twist", "--triangles", "4000", "--tets", "200", "--frames", "60"]),
 }
 CAGES = {
     "serpent": (["--tets", "3000"], ["--triangles", "20000", "--tets", "1000"]),
@@ -84,13 +84,14 @@ def hash_of_cage(build, arguments):
 
 def hashes_of_stress(build, quick):
     """The hashes of the cases, by name."""
-    result = run(build, ["tetskin_stress", "--elasticity", "tetskin", "--hash", *(["--quick"] if quick else [])])
-    found = {}
-    for line in result.stdout.splitlines():
-        words = line.split()
-        hashes = [word for word in words if len(word) == 16 and all(c in "0123456789abcdef" for c in word)]
-        if words and "/" in words[0]:
-            found["stress " + words[0]] = hashes[0] if hashes else "no hash"
+    now = (pathlib.Path(build) / "demos" / "tetskin_measure").exists()  # earlier, a program of their own
+    program = ["tetskin_measure", "--group", "stress"] if now else ["tetskin_stress"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "stress.json"
+        result = run(build, [*program, "--elasticity", "tetskin", "--quiet", "--json", str(file),
+                             *(["--quick"] if quick else [])])
+        cases = json.loads(file.read_text()) if file.exists() else []
+    found = {"stress " + case.get("scene", case.get("name")): case["hash"] for case in cases}
     return found or {"stress": f"exit status {result.returncode}: {result.stderr.strip()[-200:]}"}
 
 

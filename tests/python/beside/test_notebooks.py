@@ -15,8 +15,6 @@ FOLDER = Path(__file__).parents[3] / "demos" / "python"
 sys.path.insert(0, str(FOLDER))
 import notebooks  # noqa: E402
 
-FILMS = [name for name in notebooks.SCRIPTS if not name.endswith("_of_pybullet")]  # of worlds of tetskin's own
-
 
 def sources(notebook):
     return [(cell.cell_type, cell.source) for cell in notebook.cells]
@@ -33,7 +31,7 @@ def test_a_kept_notebook_is_that_of_its_script_and_small(name):
     assert not any(output.output_type == "error" or "text/html" in output.get("data", {}) for output in outputs)
 
 
-@pytest.mark.parametrize("name", FILMS)
+@pytest.mark.parametrize("name", notebooks.SCRIPTS)
 def test_a_notebook_runs_and_plays_its_film(name, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     notebook = notebooks.notebook_of(name, ("--quick", "--output", str(tmp_path / "written")))
@@ -43,17 +41,6 @@ def test_a_notebook_runs_and_plays_its_film(name, tmp_path, monkeypatch):
              if "text/html" in output.get("data", {})]
     assert len(pages) == 1 and "<iframe srcdoc=" in pages[0] and "class Stage" in pages[0]
     assert list((tmp_path / "written").glob("*.html"))
-
-
-def test_the_notebook_beside_pybullet_runs_and_draws(tmp_path):
-    pytest.importorskip("pybullet")
-    pytest.importorskip("trimesh")
-    notebook = notebooks.notebook_of("torus_of_pybullet", ("--quick", "--output", str(tmp_path / "written")))
-    notebooks.run(notebook, tmp_path)
-    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
-    assert any("image/png" in output.get("data", {}) for output in outputs)
-    assert any("landed" in output.get("text", "") for output in outputs)
-    assert (tmp_path / "written" / "torus.obj").exists()
 
 
 def test_the_interrupt_button_cancels_a_long_call(tmp_path):

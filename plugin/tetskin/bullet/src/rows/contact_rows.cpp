@@ -13,7 +13,7 @@ namespace tetskin::bullet_detail {
 namespace {
 
 /// D over effective masses: gaps are violated by a twentieth of what the nodes alone would move. With 0.01, a box of
-/// `tetskin_contact` (stop/equal steps/k50) stops 3 % too early.
+/// `tetskin_measure` (stop/equal steps/k50) stops 3 % too early.
 constexpr double kStiffness = 20.0;
 /// By how much of the body's size an impact may violate a gap: D is so much higher where a twentieth of the way towards
 /// the object in this step is more. Otherwise fast bodies sink in by 5 % of their way, and pass through thin walls.
@@ -23,7 +23,7 @@ constexpr double kMostStiffening = 100.0;
 /// The way that gravity adds in a step is left out, times this number: a small body at rest falls by a visible part of
 /// its size in each step, and jumps on contacts that are stiff to that.
 constexpr btScalar kFallsAtRest = 2;
-/// T over D. Slopes and stops keep their promises in `tetskin_contact` with 0.0003 and with 100, too, as the
+/// T over D. Slopes and stops keep their promises in `tetskin_measure` with 0.0003 and with 100, too, as the
 /// offset of what sticks grows until it suffices. But 100 takes 19 iterations per step in stop/equal steps/k50, where
 /// this value takes 4.
 constexpr btScalar kTangentShare = btScalar(0.3);

@@ -51,7 +51,7 @@ void DeformableSolver::Impl::searchWaiting() {
 /// prediction may let one fall although neither will. A fraction of the body's own path is added: stopping some points
 /// of a body turns others towards the obstacle.
 void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest) const {
-  // Boxes and balls that land, rest or stop keep their promises in `tetskin_contact` with 0, too: it is for bodies that
+  // Boxes and balls that land, rest or stop keep their promises in `tetskin_measure` with 0, too: it is for bodies that
   // tip over what stops them. More would cost searches of points that do not arrive.
   constexpr btScalar kPathFraction = btScalar(0.2);
   auto* own = bodyWithTrees(*body.body);

@@ -15,7 +15,7 @@ namespace tetskin::bullet_detail {
 namespace {
 
 /// A bound that few steps reach. It must not be one that most do, as each pass that is missing adds energy: with 3, in
-/// `tetskin_contact` rest/box/k50 never rests (nodes at 0.03 m/s), and stop/equal steps slides 8 % too far.
+/// `tetskin_measure` rest/box/k50 never rests (nodes at 0.03 m/s), and stop/equal steps slides 8 % too far.
 constexpr int kMaxPasses = 30;
 /// Passes from which on the derivative of sliding is used, up to a tenth, and the length of a step from which on it is.
 constexpr int kPassesBeforeDerivative = 2;

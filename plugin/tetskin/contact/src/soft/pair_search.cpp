@@ -18,7 +18,7 @@ constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
 /// resting body is supported by other samples in each step, and jitters.
 constexpr btScalar kKeptCubes = btScalar(0.1);
 /// In mean edges: two samples of a node that are this far apart may both be contacts. At 2, which leaves one, light
-/// parts swing between the two: in `tetskin_contact` soft stack/1 to 100 to 1 never rests (nodes at 0.01 of its size
+/// parts swing between the two: in `tetskin_measure` soft stack/1 to 100 to 1 never rests (nodes at 0.01 of its size
 /// per second, where 0.005 is promised); at 0.2, nodes of light corners in a bin of 100 cubes swing at 1 m/s.
 constexpr btScalar kBesideEdges = btScalar(0.1);
 /// Most contacts of a node beside the deepest one, in a direction. With 1, a light end in the heap of `tetskin_pile`
@@ -30,7 +30,7 @@ constexpr btScalar kSunkCubes = btScalar(0.05);
 /// Steps for which a sample is remembered that has touched: samples that take turns do so within fewer.
 constexpr int kRememberedSteps = 16;
 /// Cosine between normals from which on two contacts of a node count as one: a node in a fold is pushed several ways.
-/// The soft scenes of `tetskin_contact`, which have no folds, hold with -1, too.
+/// The soft scenes of `tetskin_measure`, which have no folds, hold with -1, too.
 constexpr btScalar kOneWay = btScalar(0.7);
 /// Cosine between the normals of two surfaces below which they can touch, for a sample on an edge, and for one on a
 /// face.
@@ -39,7 +39,7 @@ constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8)
 /// holds comes and goes with it.
 constexpr btScalar kKeptOpposing = btScalar(0.15);
 /// Depth, in cubes of the grid, beyond which a sample is a contact even if the normals are as if its surface slid along
-/// the other one, unless the normals agree by this cosine. The overlaps of `tetskin_contact` hold with 0.95 and with
+/// the other one, unless the normals agree by this cosine. The overlaps of `tetskin_measure` hold with 0.95 and with
 /// -1, too.
 constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
 /// In cubes of the grid: relative motion up to which touches are followed instead of searched for. With 0.1, a pile of

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "gaps/gap_run.h"
+#include "gaps/gap_scenes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include "measure/extremes.h"
 #include "measure/measuring_world.h"
@@ -36,8 +38,9 @@ std::string byWhat(const Run& run) {
   return run.kind == Kind::Surface ? " by surface" : " by nodes";
 }
 
-}  // namespace
-
+/// Reports how a body lies after this many seconds, starting from just above the obstacle: the gap, unless it has
+/// fallen off, which is the least one of the surface's vertices, and the value farthest from 0 in the last half second;
+/// and the root mean square of the nodes' speeds in that time.
 void rest(Run& run, const GapObstacle& obstacle, const ModelPtr& body, double seconds) {
   constexpr double kLast = 0.5, kBetween = 1.0 / 60;
   MeasuringWorld world(run);
@@ -56,6 +59,7 @@ void rest(Run& run, const GapObstacle& obstacle, const ModelPtr& body, double se
   run.report("speed at rest" + byWhat(run), std::sqrt(squaredSpeed / std::max(1, count)));
 }
 
+/// Reports the least gap over all steps of a body that hits the obstacle at this speed.
 void hit(Run& run, const GapObstacle& obstacle, const ModelPtr& body, double speed) {
   MeasuringWorld world(run);
   SoftObject& soft = addAbove(world, obstacle, body);
@@ -66,6 +70,40 @@ void hit(Run& run, const GapObstacle& obstacle, const ModelPtr& body, double spe
     lower(deepest, soft.gap(obstacle.distance) / kSize);
   }
   run.report("least gap in impact" + byWhat(run), deepest);
+}
+
+/// By the surface, and by the cage's nodes.
+void measureGaps(Run& run, const GapObstacle& obstacle, const ModelPtr& body) {
+  constexpr double kSeconds = 6.0, kSpeed = 15.0;
+  for (const Kind kind : {Kind::Surface, Kind::Nodes}) {
+    run.kind = kind;
+    rest(run, obstacle, body, kSeconds);
+    hit(run, obstacle, body, kSpeed);
+  }
+}
+
+}  // namespace
+
+measure::MeasuredScenes gapScenes() {
+  measure::MeasuredScenes scenes;
+  for (const std::string name : {"serpent", "round", "legs"}) {
+    for (const std::size_t tets : {300, 1000, 3000}) {
+      const auto body = [name, tets, made = std::make_shared<ModelPtr>()] {
+        if (!*made) *made = makeGapBody(name, tets);
+        return *made;
+      };
+      for (const GapObstacle& obstacle : gapObstacles()) {
+        if (obstacle.roundOnly && name != "round") continue;
+        const auto scene = [&obstacle, body](Run& run) { measureGaps(run, obstacle, body()); };
+        const bool quick = name == "round" && tets == 300 && obstacle.name == "floor";
+        scenes.push_back({"gap/" + std::to_string(tets) + "/" + obstacle.name + "/" + name,
+                          scene,
+                          {Kind::Surface},
+                          quick ? measure::Often::Quick : measure::Often::Usual});
+      }
+    }
+  }
+  return scenes;
 }
 
 }  // namespace tetskin::gaps

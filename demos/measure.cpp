@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Scenes in which something is measured, beside what is promised of it: contact and joints compared with analytic
+// results, gaps between surfaces and obstacles, stiff and extreme cases.
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "contact/scene_list.h"
+#include "gaps/gap_scenes.h"
+#include "measure/report.h"
+#include "scenes/command_line.h"
+#include "scenes/files.h"
+#include "scenes/input_error.h"
+#include "scenes/summary.h"
+#include "stress/stress_scenes.h"
+
+using namespace tetskin;
+using namespace tetskin::measure;
+using namespace tetskin::scenes;
+
+namespace {
+
+struct MeasureOptions {
+  std::string group = "all", elasticity = "tetskin", only, before, bullet, json, markdown;
+  Contact contact = Contact::Surface;
+  bool quick = false, lasting = false, quiet = false;
+
+  std::vector<Kind> kinds() const {
+    if (elasticity == "bullet") return {Kind::Bullet};
+    const Kind ours = contact == Contact::Surface ? Kind::Surface : Kind::Nodes;
+    return elasticity == "both" ? std::vector<Kind>{ours, Kind::Bullet} : std::vector<Kind>{ours};
+  }
+};
+
+/// The heading of this run's column.
+const char* titleOf(Kind kind) {
+  if (kind == Kind::Bullet) return "bullet";
+  return kind == Kind::Surface ? "tetskin-surface" : "tetskin-nodes";
+}
+
+MeasuredScenes scenesOf(const std::string& group) {
+  MeasuredScenes all;
+  const auto append = [&](const char* name, MeasuredScenes (*make)()) {
+    if (group != "all" && group != name) return;
+    for (MeasuredScene& scene : make()) all.push_back(std::move(scene));
+  };
+  append("contact", contact_demo::contactScenes);
+  append("gaps", gaps::gapScenes);
+  append("stress", stress::stressScenes);
+  return all;
+}
+
+struct Results {
+  SceneResults scenes;
+  std::size_t broken = 0;  ///< what is outside its promised limits, or not as expected
+};
+
+/// Each scene is run once, of the kinds that are asked for by the first one that it has. Figures are promised of
+/// contact at the surface, expectations are those of their scene.
+Results runScenes(const MeasureOptions& options) {
+  Results results;
+  for (const MeasuredScene& scene : scenesOf(options.group)) {
+    const bool wanted = options.lasting ? scene.often == Often::Long
+                        : options.quick ? scene.often == Often::Quick
+                                        : scene.often != Often::Long;
+    if (!wanted || scene.name.find(options.only) == std::string::npos) continue;
+    const std::vector<Kind> kinds = options.kinds();
+    const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](Kind one) { return scene.isFor(one); });
+    if (kind == kinds.end()) continue;
+    results.scenes.push_back(runScene(scene, *kind));
+    const SceneResult& result = results.scenes.back();
+    if (*kind == Kind::Surface || !result.status.empty()) results.broken += result.broken.size();
+    if (!options.quiet) print(result);
+  }
+  if (!results.scenes.empty()) return results;
+  throw InputError("--only " + options.only + ": no scene that can be run with these options has this in its name");
+}
+
+int run(const MeasureOptions& options) {
+  std::vector<ResultColumn> columns;
+  if (!options.before.empty()) columns.push_back({"before", readResults(options.before)});
+  if (!options.bullet.empty()) columns.push_back({"Bullet", readResults(options.bullet)});
+  const Results results = runScenes(options);
+  columns.insert(columns.begin(), {titleOf(options.kinds().front()), results.scenes});
+  if (!options.json.empty()) writeJson(toJson(results.scenes), options.json);
+  if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(columns));
+  if (!options.quiet) {
+    std::printf("\n%zu scenes; %zu figures or expectations are not as promised\n", results.scenes.size(),
+                results.broken);
+  }
+  return results.broken == 0 ? kDone : kRunFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  MeasureOptions options;
+  CommandLine line(
+      "Measures bodies in many scenes, beside what is promised of them: contact and joints compared with analytic "
+      "results, gaps between bodies and the obstacles that they rest on or hit, and stiff and extreme cases. S is the "
+      "body's size, the largest side of its bounding box.",
+      {{{"tetskin_measure --group contact --json contact.json", "all scenes of contact, in two minutes"},
+        {"tetskin_measure --only copies", "the scenes with this in their names"},
+        {"tetskin_measure --only stop --elasticity bullet", "the same with Bullet's own solver"},
+        {"tetskin_measure --only gap/300/floor/round", "one body on the floor"},
+        {"tetskin_measure --group stress --quick --elasticity both", "extreme cases, with Bullet's forces, too"}},
+       "a figure is outside its promised limits, or a case is not as expected"});
+  line.addWord("--group", options.group, {"all", "contact", "gaps", "stress"}, "Scenes of one kind");
+  line.addFlag("--quick", options.quick, "of the stress, about 20 s");
+  line.addFlag("--long", options.lasting,
+               "Run the long scenes instead: one minute of simulated time each, and all claims (about 25 minutes)");
+  line.addWord(
+      "--elasticity", options.elasticity, {"tetskin", "bullet", "both"},
+      "bullet: linear elasticity, explicit, with contact at the cage's nodes, and of the stress cases those of "
+      "Bullet's forces; both: these beside tetskin's");
+  line.addContactOption(options.contact);
+  line.addText("--only", options.only);
+  line.addInput("--before", options.before,
+                "Results of an earlier version (its --json file), for a column of the Markdown table");
+  line.addInput("--bullet", options.bullet,
+                "Results of --elasticity bullet (its --json file), for a column of the Markdown table");
+  line.addSummaryOption(options.json);
+  line.addOutput("--markdown", options.markdown, "one row per promise, with its worst figure");
+  line.addQuietOption(options.quiet);
+  return line.run(argc, argv, [&] {
+    if (options.elasticity == "bullet" && line.given("--contact") && options.contact == Contact::Surface) {
+      throw InputError(
+          "--contact surface: with --elasticity bullet a body has contact at its cage's nodes only; use "
+          "--contact cage, or --elasticity tetskin");
+    }
+    if (options.quick && options.lasting) throw InputError("--quick and --long cannot be used together");
+    return run(options);
+  });
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#pragma once
+
+#include "measure/run.h"
+
+namespace tetskin::stress {
+
+/// Stiff and extreme cases, in which it is judged whether the simulation stays bounded, and whether the skin does what
+/// it promises. Those of Bullet's forces are for Kind::Bullet alone, all others for Kind::Surface.
+measure::MeasuredScenes stressScenes();
+
+}  // namespace tetskin::stress
