@@ -97,16 +97,6 @@ const std::shared_ptr<const ContactShape>& coarseBall() {
   return shape;
 }
 
-TEST(DroppedCandidates, OfBallsThatFallOnAPlateChangeNothing) {
-  expectSameBits(
-      [](DroppingScene& scene) {
-        addFloor(scene, 0.0);
-        scene.add(movedCage(ball().cage, Vector3d(0.05, 0.1, 0)), coarseBall(), 3000);
-        scene.add(movedCage(ball().cage, Vector3d(0.1, 0.98, 0.1), 0.4), coarseBall(), 3000);
-      },
-      240);
-}
-
 TEST(DroppedCandidates, OfFastBallsChangeNothing) {
   expectSameBits(
       [](DroppingScene& scene) {

@@ -137,26 +137,6 @@ TEST_F(SoftSearch, TellsDepthAndNormalOfTwoBalls) {
   EXPECT_LT(deep->normal.x(), -0.97) << "out of the second";
 }
 
-/// Both balls also tumble, as one: candidates live longer, and must still be complete.
-TEST_F(SoftSearch, FindsWhatASearchFromNothingFindsWhileBothTumble) {
-  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.85, 0.2, 0.1));
-  FollowingSearch search;
-  int oldest = 0;
-  const btQuaternion turn(btVector3(1, 2, 0).normalized(), btScalar(0.03));
-  for (int step = 0; step < 80; ++step) {
-    SCOPED_TRACE(step);
-    const btVector3 together = bodies_[0]->m_nodes[0].m_x - bodies_[1]->m_nodes[0].m_x;
-    bodies_[1]->translate(together.normalized() * btScalar(0.001));
-    for (const auto& body : bodies_) body->transform(btTransform(turn, btVector3(btScalar(0.02), 0, 0)));
-    for (ContactBody* body : {first.get(), second.get()}) body->read();
-    search.find(*first, *second, btScalar(0.004));
-    oldest = std::max(oldest, search.age());
-  }
-  EXPECT_GT(search.found().wanted, 100u);
-  EXPECT_GT(search.found().searched, 20);
-  EXPECT_GT(oldest, 5);
-}
-
 /// A ball that sinks into another, turns and is squeezed slightly in each step, so that most candidates are skipped.
 TEST_F(SoftSearch, FindsInEachStepWhatASearchFromNothingFinds) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.8, 0.2, 0.1));

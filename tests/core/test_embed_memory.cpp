@@ -52,7 +52,7 @@ TEST(EmbedMemory, IsBoundedPerVertexOutside) {
 TEST(EmbedMemory, IsBoundedPerVertexRescued) {
   const TetMesh cage = test::thinLayerCage(0.001);  // the nearest tets carry none of these vertices
   const auto vertices =
-      test::randomPoints(100000, {Eigen::Vector3d(0.0, 0.52, 0.0), Eigen::Vector3d(1.0, 0.55, 1.0)}, 45);
+      test::randomPoints(600000, {Eigen::Vector3d(0.0, 0.52, 0.0), Eigen::Vector3d(1.0, 0.55, 1.0)}, 45);
   EXPECT_LE(peakPerVertex(cage, vertices, OutsideRule::Nearest), kMaxBytes);
 }
 #endif

@@ -92,29 +92,6 @@ TEST(TouchLifetime, SpringsLeaveNothingInTheWorld) {
   EXPECT_TRUE(isFinite(body.body()));
 }
 
-TEST(TouchLifetime, BodiesMayGoBeforeTheirSpringsAndWelds) {
-  auto world = deformableWorld(10);
-  auto first = std::make_unique<TouchedBody>(*world),
-       second = std::make_unique<TouchedBody>(*world, TouchModel(0.38, 3));
-  RigidBox box(*world, 1, btVector3(0, 6, 0));
-  auto spring = SurfaceSpring::add(world->deformable(), first->vertex(5)).value();
-  auto weld = SurfaceWeld::add(world->deformable(), first->vertex(50), *box).value();
-  auto kept = SurfaceSpring::add(world->deformable(), second->vertex(50)).value();
-  ASSERT_EQ(first->vertex(9).applyForce(btVector3(1, 0, 0), 100), StatusCode::Ok);
-  substep(*world);
-  first.reset();
-  EXPECT_EQ(spring->status(), StatusCode::BodyDeleted);
-  EXPECT_EQ(weld->status(), StatusCode::BodyDeleted);
-  EXPECT_EQ(weld->separation(), 0);
-  EXPECT_EQ(kept->status(), StatusCode::Ok);
-  for (int s = 0; s < 3; ++s) substep(*world);
-  spring.reset();
-  weld.reset();
-  for (int s = 0; s < 3; ++s) substep(*world);
-  second.reset();
-  for (int s = 0; s < 3; ++s) substep(*world);
-}
-
 TEST(TouchLifetime, ARigidBodyAtTheAddressOfOneThatWasWeldedIsFree) {
   auto world = deformableWorld(10);
   TouchedBody body(*world);
