@@ -31,9 +31,9 @@ SceneOptions withReduction(const Model& model, const Placement& position, const 
 Player::Player(const ModelOptions& options, const std::string& scene, const SceneOptions& how)
     : options_(options),
       model_(loadModel(options)),
-      placement_(placementOf(boundingBox(model_.cage.mesh.nodes))),
-      scene_(sceneNamed(scene).make(placement_.toWorld(model_.cage), withReduction(model_, placement_, options, how))) {
-  placement_.offset = scene_->offset;
+      position_(placementOf(boundingBox(model_.cage.mesh.nodes))),
+      scene_(sceneNamed(scene).make(position_.toWorld(model_.cage), withReduction(model_, position_, options, how))) {
+  position_.offset = scene_->offset;
 }
 
 /// Embeds the mesh in the model's space, whose unit the options and the report use. Quadratic skinning measures its
@@ -42,8 +42,8 @@ SoftBodyBinding::Pointer Player::bind(const SkinOptions& options) {
   const Result<Embedding> embedding = embed(model_.cage, model_.mesh, {options.outside, options.maxDistance}, &fit_);
   requireFit(embedding.status(), fit_, options_);
   TriangleMesh mesh = model_.mesh;
-  placement_.toWorld(mesh.positions);
-  const auto binding = SoftBodyBinding::create(placement_.toWorld(model_.cage), mesh, options, embedding.value());
+  position_.toWorld(mesh.positions);
+  const auto binding = SoftBodyBinding::create(position_.toWorld(model_.cage), mesh, options, embedding.value());
   require(binding.status());
   return binding.value();
 }
@@ -60,7 +60,7 @@ Carried& Player::carry(const SkinOptions& options) {
     assert(options.normals == bound.normals && options.order == bound.order);
     require(added.skin.bind(scene_->body(), carried_.front().skin.binding(), instance));
   }
-  placement_.readSurface(added.skin, added.surface);
+  position_.readSurface(added.skin, added.surface);
   return added;
 }
 
@@ -70,7 +70,7 @@ void Player::touchBySurface() {
 }
 
 void Player::touchItself(SelfContactWish wish) {
-  Placement atRest = placement_;  // the rest position of the cage, which the scene has moved
+  Placement atRest = position_;  // the rest position of the cage, which the scene has moved
   atRest.offset.setZero();
   TriangleMesh mesh = model_.mesh;
   atRest.toWorld(mesh.positions);
@@ -89,14 +89,14 @@ bool Player::step(int frame, Playback& run) {
     const StatusCode status = carried.skin.update();
     carried.microseconds += timer.microseconds();
     followed = followed && (status == StatusCode::Ok || status == StatusCode::Asleep);
-    placement_.readSurface(carried.skin, carried.surface);
+    position_.readSurface(carried.skin, carried.surface);
   }
   return followed;
 }
 
 std::vector<Eigen::Vector3d> Player::nodes() const {
   std::vector<Eigen::Vector3d> nodes = nodesOf(scene_->body());
-  placement_.toModel(nodes);
+  position_.toModel(nodes);
   return nodes;
 }
 

@@ -95,7 +95,7 @@ View velocities(BodyHandle& body) {
       alive(*body.state).body(), body.velocities, [](const btSoftBody::Node& n) -> auto& { return n.m_v; });
 }
 
-/// Checks that there are three numbers for each of `count` nodes.
+/// Three numbers for each of so many nodes.
 PointView<const double> checked(const Doubles& numbers, std::size_t count, const char* name) {
   if (numbers.count != 3 * count)
     fail(StatusCode::SizeMismatch,

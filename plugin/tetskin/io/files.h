@@ -80,7 +80,7 @@ struct TETSKIN_IO_API TetFileReport {
 ///
 /// Nodes and tets are in the file's order and unit. Cells that are no tets are skipped. Tets of second order (VTK types
 /// 24, 71 and 79, Gmsh type 11, 10 nodes of TetGen, TetrahedraP2 of Medit) become eight tets each, with the nodes on
-/// their edges, wherever these are. So do tets of higher order: their corners are read, and nodes made at the
+/// their edges, wherever these are. So do tets of higher order, of which the corners are read, and nodes made at the
 /// middles of the edges; and tets of first order, if one of them shares an edge with those. All is counted in `report`.
 /// In the result, every index names a node and no coordinate is beyond Limits::kMaxCoordinate; for other faults see
 /// `checkTetMesh`.

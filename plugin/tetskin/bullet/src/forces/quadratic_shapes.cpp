@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/forces/quadratic_shapes.h>
-#include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,17 +27,17 @@ Gradients gradientsOf(const std::array<double, 9>& ofOthers) {
   return all;
 }
 
-/// The barycentric weights of a quadratic tet at one of its nodes; empty if the node is not one of them.
+/// The barycentric weights of a quadratic tet at one of its nodes; empty if it is none of them.
 std::optional<Eigen::Vector4d> weightsAt(const QuadraticTet& tet, int node) {
+  constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   const auto at = std::find(tet.nodes.begin(), tet.nodes.end(), node) - tet.nodes.begin();
   if (at < 4) return Eigen::Vector4d(Eigen::Vector4d::Unit(at));
   if (at == kQuadraticNodes) return {};
-  const auto& edge = kTetEdges[static_cast<std::size_t>(at - 4)];
-  return Eigen::Vector4d(0.5 * (Eigen::Vector4d::Unit(static_cast<Eigen::Index>(edge[0])) +
-                                Eigen::Vector4d::Unit(static_cast<Eigen::Index>(edge[1]))));
+  const int* edge = kEdges[at - 4];
+  return Eigen::Vector4d(0.5 * (Eigen::Vector4d::Unit(edge[0]) + Eigen::Vector4d::Unit(edge[1])));
 }
 
-/// The gradients of the quadratic tet's weights by the rest shape of one of its parts; empty if it is not its part.
+/// The gradients of the quadratic tet's weights by the rest shape of one of its parts; empty if it is none.
 std::optional<Gradients> gradientsBy(const RestTets& linear, std::size_t part, const QuadraticTet& tet) {
   const Gradients own = gradientsOf(linear.gradients[part]);
   Gradients whole = Gradients::Zero();

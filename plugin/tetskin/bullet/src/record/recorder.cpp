@@ -56,7 +56,7 @@ void Recorder::Impl::writeBuildUp() {
   if (status.ok()) write(ChunkKind::BuildUp, buildUp.toBytes());
 }
 
-/// Writes what has changed since the last step, or a full snapshot when one is due.
+/// What has changed since the last step; or the whole state, where it is time for that.
 void Recorder::Impl::before(StepChunk& step) {
   save(now);
   if (!status.ok()) return;

@@ -212,7 +212,7 @@ const typename Classes::value_type* classOf(const Classes& classes, const Base& 
   return nullptr;
 }
 
-/// For joints between rigid bodies, also how to make one, whose settings are then replaced.
+/// Of joints between rigid bodies, also how one is made; its settings are replaced.
 struct RigidJointClass : JointClass<btTypedConstraint> {
   btTypedConstraint* (*make)(btRigidBody& a, btRigidBody& b);
 };

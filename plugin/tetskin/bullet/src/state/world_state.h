@@ -24,7 +24,7 @@ bool isSaved(const btTypedConstraint& joint);
 bool isSaved(const btMultiBodyConstraint& joint);
 /// Number of the joint's class, for `makeJoint`. `isSaved(joint)` must be true.
 int classOfJoint(const btTypedConstraint& joint);
-/// A joint of a class, with settings that a snapshot replaces; null if no class has this number.
+/// A joint of a class, with settings that a snapshot replaces; null for a number that is none.
 std::unique_ptr<btTypedConstraint> makeJoint(int ofClass, btRigidBody& a, btRigidBody& b);
 /// Boxes, trees and ids of the broadphase. broadphase_state.cpp
 void visitBroadphase(WorldStream& stream);

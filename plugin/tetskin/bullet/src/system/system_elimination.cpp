@@ -29,7 +29,7 @@ Eigen::Matrix3d toEigenMatrix(const btMatrix3x3& m) {
   return to;
 }
 
-/// In one place, and into a separate vector: the compiler takes seconds for each kind of vector that Eigen solves
+/// In one place, and into a vector of its own: the compiler takes seconds for each kind of vector that Eigen solves
 /// into.
 Vector6 ldltSolve(const Eigen::Matrix<double, 6, 6>& matrix, const Vector6& right) {
   return matrix.ldlt().solve(right);

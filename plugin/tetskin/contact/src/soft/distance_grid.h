@@ -49,7 +49,7 @@ class DistanceGrid {
   /// True if any corner is inside.
   bool hasInside() const;
 
-  /// Writes or reads the grid. Call `isValid` for what was read.
+  /// Writes or reads the grid. What was read is to be tested by `isValid`.
   template <class Stream>
   void visitState(Stream& stream) {
     stream(low_);

@@ -46,7 +46,7 @@ class TETSKIN_CORE_API Bvh {
   template <class Scalar>
   Bvh(const std::vector<BvhBox<Scalar>>& boxes, const std::vector<int>& items, int leafSize);
 
-  /// Writes or reads the tree. Call `isValid` for what was read.
+  /// Writes or reads the tree. What was read is to be tested by `isValid`.
   template <class Stream>
   void visitState(Stream& stream) {
     stream.each(nodes_, [&](Node& node) { stream(node.first), stream(node.last), stream(node.right); });
