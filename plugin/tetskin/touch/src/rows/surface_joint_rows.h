@@ -26,7 +26,7 @@ class ActiveJoint {
   virtual btSoftBody* body() const = 0;
   /// True if its living body is in the world in which it was made.
   virtual bool isInWorld() const = 0;
-  /// Called when a body has left the world and may be destroyed without notice.
+  /// Called when a body has left the world of which it is not known whether it will live.
   virtual void drop() = 0;
   /// True if it will not act any more.
   virtual bool spent() const = 0;
@@ -39,7 +39,7 @@ class ActiveJoint {
   virtual void shift(const btVector3& by) = 0;
   /// Writes or reads what changes, for snapshots.
   virtual void visitState(WorldStream& stream) = 0;
-  /// Writes what does not change, and must be the same in the world in which a snapshot is restored.
+  /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
   virtual void checkState(WorldStream& stream) = 0;
   /// Writes what it is made of, for recorded runs.
   virtual void describe(BuildStream& stream) = 0;
