@@ -42,7 +42,7 @@ class Player {
 
   const Model& model() const { return model_; }
   Scene& scene() { return *scene_; }
-  const Placement& placement() const { return position_; }
+  const Placement& placement() const { return placement_; }
   const EmbedReport& fit() const { return fit_; }
 
   /// Simulates the frames that the options request, and prints the progress.
@@ -59,7 +59,7 @@ class Player {
 
   ModelOptions options_;
   Model model_;
-  Placement position_;
+  Placement placement_;
   std::unique_ptr<Scene> scene_;
   std::deque<Carried> carried_;
   EmbedReport fit_;
