@@ -31,7 +31,14 @@ def options_of(entry, compiler):
     return [compiler or next(word for word in words if not word.endswith("ccache")), "-std=c++17"] + kept + ["-w"]
 
 
+def kind_of(options):
+    """Of the options, those that a precompiled header has to have been made with: without the macros of single parts."""
+    return tuple(option for option in options if option.startswith(("-m", "-f")) or
+                 (option.startswith("-D") and not option.startswith("-DTETSKIN")))
+
+
 def precompile(options, folder):
+    """Eigen, for sources of these options."""
     folder.mkdir(parents=True, exist_ok=True)
     header = folder / "eigen.h"
     header.write_text(EIGEN, encoding="utf-8")
@@ -84,12 +91,13 @@ def main():
     for header in sorted(LIBRARY.rglob("*.h")):
         library = header.relative_to(LIBRARY).parts[0]
         options[header] = plain.get(library, plain["bullet"])  # tetskin.h, export.h: whatever a user has
-    eigen = precompile(plain["bullet"], build / "alone")
+    # Two kinds, as elastic's Eigen has another name. Kernels of other processors are few, and read Eigen themselves.
+    eigen = {kind_of(plain[name]): precompile(plain[name], build / "alone" / name) for name in ("bullet", "elastic")}
     if not wanted and len(options) < 300:
         sys.exit(f"Only {len(options)} files found: look for them elsewhere")
 
     def check(file):
-        return compile_alone(options[file] + ([] if is_public(file) else eigen), file)
+        return compile_alone(options[file] + ([] if is_public(file) else eigen.get(kind_of(options[file]), [])), file)
 
     unknown = sorted(str(file) for file in wanted if file not in options)
     if unknown:
