@@ -8,8 +8,8 @@
 
 namespace tetskin::scenes {
 
-// One line per scene: its maker is make<Name>, in a file of the folder `all`, or in obstacles.cpp. Name, frames, whether it lands,
-// description.
+// One line per scene: its maker is make<Name>, in a file of the folder `all`, or in obstacles.cpp. Name, frames,
+// whether it lands, description.
 #define TETSKIN_SCENES(SCENE)                                                                                       \
   SCENE(Sag, "sag", 60, false, "pinned at its lower end, under gravity")                                            \
   SCENE(Twist, "twist", 60, false, "pinned at both ends, of which the upper is turned")                             \
@@ -76,9 +76,8 @@ const SceneEntry& sceneNamed(const std::string& name) {
 }
 
 std::function<std::unique_ptr<Scene>(const Cage&, const SceneOptions&)> makerOf(const std::string& name) {
-  return [&entry = sceneNamed(name)](const Cage& cage, const SceneOptions& options) {
-    return entry.make(cage, options);
-  };
+  return
+      [&entry = sceneNamed(name)](const Cage& cage, const SceneOptions& options) { return entry.make(cage, options); };
 }
 
 std::unique_ptr<Scene> SceneEntry::make(const Cage& cage, SceneOptions options) const {

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "scenes/player.h"
+#include "scenes/table.h"
 
 namespace tetskin {
 namespace {

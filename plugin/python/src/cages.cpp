@@ -55,7 +55,7 @@ CageModel quadratic(const CageModel& model) {
   return {sharedOf(take(refineQuadratic(*model.cage))), {}};
 }
 
-nb::tuple stateOf(const CageModel& model) {
+nb::tuple stateOfCage(const CageModel& model) {
   const Cage& cage = *model.cage;
   const nb::object hash = cage.meshHash ? nb::object(nb::int_(*cage.meshHash)) : nb::object(nb::none());
   return nb::make_tuple(bytesOf(cage.mesh.nodes), bytesOf(cage.mesh.tets), bytesOf(cage.vertexTets),
@@ -102,7 +102,7 @@ void bindCages(nb::module_& module) {
         return counted(c.mesh.tetCount(), "tet", "tets") + ", " + counted(c.mesh.nodeCount(), "node", "nodes") +
                (c.quadraticTet.empty() ? "" : ", quadratic") + (c.stiffnessFactor.empty() ? "" : ", calibrated");
       })
-      .pickled(stateOf, cageOfState)
+      .pickled(stateOfCage, cageOfState)
       .def(
           "__init__",
           [](CageModel* self, const ArrayLike& nodes, const ArrayLike& tets) {

@@ -53,7 +53,7 @@ MeshModel loaded(const PathLike& path) {
   return {std::make_shared<const TriangleMesh>(take(std::move(mesh)))};
 }
 
-nb::tuple stateOf(const MeshModel& model) {
+nb::tuple stateOfMesh(const MeshModel& model) {
   const TriangleMesh& mesh = *model.mesh;
   nb::list groups;
   for (const TriangleGroup& group : mesh.groups) {
@@ -136,7 +136,7 @@ void bindMeshes(nb::module_& module) {
         return counted(m.mesh->vertexCount(), "vertex", "vertices") + ", " +
                counted(m.mesh->triangleCount(), "triangle", "triangles");
       })
-      .pickled(stateOf, meshOfState)
+      .pickled(stateOfMesh, meshOfState)
       .def(
           "__init__",
           [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles,

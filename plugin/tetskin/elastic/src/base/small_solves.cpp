@@ -10,8 +10,11 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// The sum of products of a row's entries, of which each is `stride` after the one before, and a vector's: by halves, as
-/// Eigen sums what has few entries.
+/// Rows of what `SymmetricFactors` takes.
+constexpr int kRows = 3;
+
+/// The sum of products of a row's entries, of which each is `stride` after the one before, and a vector's: by halves,
+/// as Eigen sums what has few entries.
 double sumOfProducts(const double* row, int stride, const double* vector, int count) {
   if (count == 0) return 0.0;
   if (count == 1) return row[0] * vector[0];
@@ -52,45 +55,44 @@ void solveSmall(int size, double* matrix, double* vector) {
 }
 
 SymmetricFactors::SymmetricFactors(const double* matrix) {
-  constexpr int kSize = 3;
-  for (int k = 0; k < kSize * kSize; ++k) factors_[k] = matrix[k];
-  const auto at = [&](int row, int column) -> double& { return factors_[row + kSize * column]; };
-  for (int step = 0; step < kSize; ++step) {
+  for (int k = 0; k < kRows * kRows; ++k) factors_[k] = matrix[k];
+  const auto at = [&](int row, int column) -> double& { return factors_[row + kRows * column]; };
+  for (int step = 0; step < kRows; ++step) {
     int& pivot = rows_[step];
     pivot = step;
-    for (int k = step + 1; k < kSize; ++k) {
+    for (int k = step + 1; k < kRows; ++k) {
       if (std::abs(at(k, k)) > std::abs(at(pivot, pivot))) pivot = k;
     }
     if (pivot != step) {  // rows and columns, of the lower triangle
       for (int k = 0; k < step; ++k) std::swap(at(step, k), at(pivot, k));
-      for (int k = pivot + 1; k < kSize; ++k) std::swap(at(k, step), at(k, pivot));
+      for (int k = pivot + 1; k < kRows; ++k) std::swap(at(k, step), at(k, pivot));
       std::swap(at(step, step), at(pivot, pivot));
       for (int k = step + 1; k < pivot; ++k) std::swap(at(k, step), at(pivot, k));
     }
-    double scaled[kSize] = {};
+    double scaled[kRows] = {};
     for (int k = 0; k < step; ++k) scaled[k] = at(k, k) * at(step, k);
-    for (int row = step; row < kSize && step > 0; ++row) at(row, step) -= sumOfProducts(&at(row, 0), kSize, scaled, step);
+    for (int row = step; row < kRows && step > 0; ++row)
+      at(row, step) -= sumOfProducts(&at(row, 0), kRows, scaled, step);
     if (at(step, step) == 0.0 || std::isnan(at(step, step))) {
       if (step > 0) continue;
-      for (int k = 0; k < kSize; ++k) rows_[k] = k;  // the whole diagonal is 0
+      for (int k = 0; k < kRows; ++k) rows_[k] = k;  // the whole diagonal is 0
       return;
     }
-    for (int row = step + 1; row < kSize; ++row) at(row, step) /= at(step, step);
+    for (int row = step + 1; row < kRows; ++row) at(row, step) /= at(step, step);
   }
 }
 
 void SymmetricFactors::solve(double* vector) const {
-  constexpr int kSize = 3;
-  const auto at = [&](int row, int column) { return factors_[row + kSize * column]; };
-  for (int k = 0; k < kSize; ++k) std::swap(vector[k], vector[rows_[k]]);
-  for (int row = 1; row < kSize; ++row) vector[row] -= sumOfProducts(&factors_[row], kSize, vector, row);
-  for (int k = 0; k < kSize; ++k) {
+  const auto at = [&](int row, int column) { return factors_[row + kRows * column]; };
+  for (int k = 0; k < kRows; ++k) std::swap(vector[k], vector[rows_[k]]);
+  for (int row = 1; row < kRows; ++row) vector[row] -= sumOfProducts(&factors_[row], kRows, vector, row);
+  for (int k = 0; k < kRows; ++k) {
     vector[k] = std::abs(at(k, k)) > std::numeric_limits<double>::min() ? vector[k] / at(k, k) : 0.0;
   }
-  for (int row = kSize - 2; row >= 0; --row) {
-    vector[row] -= sumOfProducts(&factors_[row + 1 + kSize * row], 1, vector + row + 1, kSize - 1 - row);
+  for (int row = kRows - 2; row >= 0; --row) {
+    vector[row] -= sumOfProducts(&factors_[row + 1 + kRows * row], 1, vector + row + 1, kRows - 1 - row);
   }
-  for (int k = kSize - 1; k >= 0; --k) std::swap(vector[k], vector[rows_[k]]);
+  for (int k = kRows - 1; k >= 0; --k) std::swap(vector[k], vector[rows_[k]]);
 }
 
 }  // namespace tetskin::elastic_detail

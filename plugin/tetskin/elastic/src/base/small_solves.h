@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to elasticity: linear equations of a few unknowns, in plain numbers. The compiler needs a second for each size
-// of Eigen's factors, and none for these. They round as Eigen's (PartialPivLU, LDLT) do, without its vectors.
+// Internal to elasticity: linear equations of a few unknowns, in plain numbers. The compiler needs a second for each
+// size of Eigen's factors, and none for these. They round as Eigen's (PartialPivLU, LDLT) do, without its vectors.
 #pragma once
 
 namespace tetskin::elastic_detail {
@@ -26,7 +26,7 @@ class SymmetricFactors {
   void solve(double* vector) const;
 
  private:
-  double factors_[9] = {};  ///< by columns: D, and L below it
+  double factors_[9] = {};   ///< by columns: D, and L below it
   int rows_[3] = {0, 1, 2};  ///< by step: the row that was put in its place
 };
 

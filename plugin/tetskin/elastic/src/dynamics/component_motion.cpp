@@ -265,8 +265,7 @@ RigidVelocity ComponentMotion::rigidWith(const Vector3d& momentum, const Vector3
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();
   const Matrix3d inertia = inertiaOf(turn, second_);
   if (pinned_.kind == PinnedNodes::Nothing && mass_ > 0.0) push = momentum / mass_;
-  if (pinned_.kind == PinnedNodes::Nothing || pinned_.kind == PinnedNodes::Point)
-    rate = solved(inertia, spin);
+  if (pinned_.kind == PinnedNodes::Nothing || pinned_.kind == PinnedNodes::Point) rate = solved(inertia, spin);
   if (pinned_.kind == PinnedNodes::Line)
     rate = pinned_.axis * (pinned_.axis.dot(spin) / pinned_.axis.dot(inertia * pinned_.axis));
   if (!push.allFinite()) push.setZero();
