@@ -54,6 +54,8 @@ TEST(JointForces, OfAWeldHoldABodyAndItsTurn) {
   expectJointsAlone(onBox);
   expectNear(onBox.joints.force, btVector3(0, btScalar(0.5 * kWeight), 0), 0.01 * kWeight);
   expectNear(onBox.joints.torque, btVector3(0, 0, 0), 0.01 * kWeight * 0.05);
+  const btVector3 arm = *low.position() - (*box).getWorldTransform().getOrigin();
+  expectNear(weld.value()->torque(), arm.cross(onBox.joints.force), 0.02 * kWeight * 0.05);
 }
 
 /// A body hangs on a hook by a spring, and a box on the body by a weld.

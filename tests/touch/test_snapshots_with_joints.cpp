@@ -19,6 +19,7 @@ class Hanging : public ReplayedScene {
   }
   btDeformableMultiBodyDynamicsWorld& world() override { return world_->deformable(); }
   void releaseSpring() { spring_->release(); }
+  btVector3 pull() const { return spring_->force(); }
   void frame(int number) override {
     const auto time = btScalar(0.2) * static_cast<btScalar>(number);
     EXPECT_EQ(spring_->setTarget(target_ + btScalar(0.1) * btVector3(std::sin(time), 0, std::cos(time))),
@@ -44,6 +45,17 @@ class Hanging : public ReplayedScene {
 
 TEST(SnapshotsWithJoints, OfASpringAndAWeld) {
   expectReplays([] { return std::make_unique<Hanging>(true); }, 40, {0, 9, 10, 25});
+}
+
+TEST(SnapshotsWithJoints, TellTheForcesOfTheirStep) {
+  Hanging scene(true);
+  for (int f = 0; f < 5; ++f) scene.frame(f);
+  const Bytes snapshot = saved(scene);
+  const btVector3 before = scene.pull();
+  for (int f = 5; f < 10; ++f) scene.frame(f);
+  ASSERT_NE(scene.pull(), before);
+  restore(scene, snapshot);
+  EXPECT_EQ(scene.pull(), before);
 }
 
 TEST(SnapshotsWithJoints, ThatAreGoneAreRefusedAndChangeNothing) {

@@ -245,6 +245,10 @@ TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
   (*platform).setWorldTransform(moved);
   step(*world, 2);
   EXPECT_TRUE(body.body().isActive());
+  const auto led = SurfaceSpring::add(world->deformable(), body.vertex(0)).value();
+  body.body().forceActivationState(ISLAND_SLEEPING);
+  EXPECT_EQ(led->setTarget(btVector3(0, 9, 0)), StatusCode::Ok);
+  EXPECT_TRUE(body.body().isActive());
 }
 
 TEST(SurfaceSpring, KeepsABodyAwakeThatHangsOnWhatMovesSlowly) {
