@@ -34,8 +34,6 @@ namespace {
 /// and above 4 it is the implicit damping alone that keeps them stable. In free motion it does, at any stiffness; in a
 /// hard landing of thin parts it fails between 15 and 30 (measured with cages of 300 to 30,000 tets).
 constexpr double kStableFrequency = 8.0;
-/// A collision filter of a body that was in no world before.
-constexpr int kAnyFilter = -1;
 
 /// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
 /// with its neighbours pinned, over its mass.
@@ -167,7 +165,8 @@ struct DeformableBody::Impl final : BodyOwner {
   btDeformableBodySolver* solver;
   bool hasOwnSolver;  ///< it is a DeformableSolver: the library knows whether it still exists
   ForceList* list;
-  int group = kAnyFilter, mask = kAnyFilter;  ///< collision filters of the body, when it comes into a world
+  // Collision filters of the body, when it comes into a world: at first those that Bullet gives a soft body.
+  int group = btBroadphaseProxy::DefaultFilter, mask = btBroadphaseProxy::AllFilter;
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
   ElasticMaterial material;
@@ -405,7 +404,8 @@ Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
   if (Status status = checkGravity(world.getGravity(), body()); !status.ok()) return status;
   impl_->moveTo(world);
   impl_->enter();
-  impl_->group = impl_->mask = kAnyFilter;
+  impl_->group = btBroadphaseProxy::DefaultFilter;
+  impl_->mask = btBroadphaseProxy::AllFilter;
   body().activate();
   return {};
 }
