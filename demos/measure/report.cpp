@@ -35,6 +35,7 @@ std::string textOf(double value) {
 SceneResult resultFrom(const nlohmann::json& json) {
   SceneResult result;
   result.scene = json.at("scene").get<std::string>();
+  result.promised = json.value("promised_as", result.scene);
   for (const auto& figure : json.at("figures")) {
     const auto& value = figure.at("value");
     // JSON has no other way to represent NaN.
@@ -60,7 +61,7 @@ WorstFigures worstFor(const Promise& promise, const SceneResults& results) {
   for (const SceneResult& result : results) {
     const std::string stiffness = stiffnessIn(result.scene);
     for (const Figure& figure : result.figures) {
-      if (promiseFor(result.scene, figure.name) != &promise) continue;
+      if (promiseFor(result.promised, figure.name) != &promise) continue;
       const auto found = std::find_if(worst.begin(), worst.end(), [&](const auto& w) { return w.first == stiffness; });
       if (found == worst.end()) {
         worst.emplace_back(stiffness, figure.value);
@@ -136,6 +137,7 @@ nlohmann::ordered_json toJson(const SceneResults& results) {
   for (const SceneResult& result : results) {
     nlohmann::ordered_json one;
     one["scene"] = result.scene;
+    if (result.promised != result.scene) one["promised_as"] = result.promised;
     one["steps"] = result.steps;
     one["iterations_per_step"] = result.iterationsPerStep;
     one["seconds"] = result.seconds;

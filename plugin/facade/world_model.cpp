@@ -8,6 +8,13 @@
 namespace tetskin::facade {
 namespace {
 
+void checkNodes(const std::vector<int>& nodes, std::size_t count) {
+  for (const int node : nodes) {
+    if (node < 0 || static_cast<std::size_t>(node) >= count)
+      fail(StatusCode::IndexOutOfRange, "nodes: there is no node " + std::to_string(node));
+  }
+}
+
 template <class State>
 void forget(std::vector<std::shared_ptr<State>>& all, const State& state) {
   all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return one.get() == &state; }), all.end());
@@ -313,6 +320,7 @@ std::shared_ptr<BodyState> World::addBody(const CageModel& cage, const MeshModel
                                           const Eigen::Affine3d& placement, const BodyOptions& options) {
   if (!mesh.mesh && (options.softContact || options.selfContact))
     fail(StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others");
+  checkNodes(options.pinned, cage.cage->mesh.nodeCount());
   auto body = std::make_shared<BodyState>();
   body->cage = cage;
   body->mesh = mesh;
@@ -449,13 +457,6 @@ btVector3 vectorAt(const PointView<const double>& points, std::size_t i) {
           static_cast<btScalar>(points[i][2])};
 }
 
-void checkNodes(const BodyState& body, const std::vector<int>& nodes) {
-  for (const int node : nodes) {
-    if (node < 0 || static_cast<std::size_t>(node) >= nodeCount(body))
-      fail(StatusCode::IndexOutOfRange, "nodes: there is no node " + std::to_string(node));
-  }
-}
-
 }  // namespace
 
 void setVelocities(BodyState& body, const double* velocities, std::size_t numbers) {
@@ -470,13 +471,13 @@ void setVelocities(BodyState& body, const double* velocities, std::size_t number
 
 void setPinned(BodyState& body, const std::vector<int>& nodes, bool pinned) {
   DeformableBody& soft = alive(body);
-  checkNodes(body, nodes);
+  checkNodes(nodes, nodeCount(body));
   for (const int node : nodes) check(soft.setPinned(node, pinned));
 }
 
 void setPinnedPositions(BodyState& body, const std::vector<int>& nodes, const double* positions, std::size_t numbers) {
   DeformableBody& soft = alive(body);
-  checkNodes(body, nodes);
+  checkNodes(nodes, nodeCount(body));
   const PointView<const double> points = pointsOf(positions, numbers, nodes.size(), "positions");
   for (const int node : nodes) {
     if (!soft.isPinned(node)) fail(StatusCode::InvalidOption, "nodes: node " + std::to_string(node) + " is not pinned");
@@ -492,8 +493,9 @@ std::vector<unsigned char> pinnedOf(const BodyState& body) {
 }
 
 void setFriction(BodyState& body, double friction) {
+  btSoftBody& soft = alive(body).body();
   if (!(friction >= 0.0 && friction <= 1.0)) fail(StatusCode::InvalidOption, "friction: must be from 0 to 1");
-  alive(body).body().m_cfg.kDF = static_cast<btScalar>(friction);
+  soft.m_cfg.kDF = static_cast<btScalar>(friction);
 }
 
 void setFriction(RigidState& rigid, double friction) {

@@ -59,7 +59,9 @@ TEST(ComponentUnknown, IsOneForEachComponentAndMovesItsOwnNodesAlone) {
       EXPECT_NE(isZero(motions), own) << node;
       const Small3x3 translations = smallFrom<3, 3>(motions.values);
       for (int k = 0; k < 3; ++k) {
-        EXPECT_LT(norm(translations.column(k) - (own ? 1.0 : 0.0) * smallIdentity<3>().column(k)), 1e-6);
+        Small3 expected;
+        if (own) expected[k] = 1.0;
+        EXPECT_LT(norm(translations.column(k) - expected), 1e-6);
       }
     }
   }

@@ -111,7 +111,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before")
     parser.add_argument("after")
-    parser.add_argument("--quick", action="store_true", help="small models and short runs, in some 20 s")
+    parser.add_argument("--quick", action="store_true", help="small models and short runs, in half a minute")
     parser.add_argument("--only", default="", help="only what has this in its name")
     options = parser.parse_args()
     for build in (options.before, options.after):

@@ -32,6 +32,7 @@ TEST(LoadMesh, NamesAMissingFileAndAFolder) {
   const TempFolder folder;
   expectError(loadMesh(folder.path("none.ply")), kFileNotFound, {folder.path("none.ply"), "check"});
   std::filesystem::create_directory(folder.path("dir.ply"));
+  expectError(loadMesh(folder.path("none.3mf")), kFileNotFound, {folder.path("none.3mf"), "check"});
   expectError(loadMesh(""), kFileNotFound, {"(empty path)"});
   expectError(loadMesh(folder.path("dir.ply")), kFileNotFound, {folder.path("dir.ply"), "folder"});
 }

@@ -102,6 +102,17 @@ TEST(LoadVtk, TetsOfSecondOrderAreEightTets) {
   }
 }
 
+TEST(LoadVtk, TetsOfAnyOrderMayBeOfTheFirst) {
+  for (const char* type : {"71", "79"}) {
+    TetFileReport report;
+    const std::string cell = std::string("CELLS 1 5\n4 0 2 4 9\nCELL_TYPES 1\n") + type + "\n";
+    const Result<Cage> cage = loadCageText("c.vtk", kVtkHead + kQuadraticPoints + cell, &report);
+    ASSERT_TRUE(cage.ok()) << cage.status().message;
+    EXPECT_EQ(cage.value().mesh.tetCount(), 1u);
+    EXPECT_EQ(report.quadraticTets, 0u);
+  }
+}
+
 TEST(LoadVtk, NamesTheCellOfSecondOrderThatIsFaulty) {
   const auto load = [](const std::string& cells) { return loadVtk(kVtkHead + kQuadraticPoints + cells); };
   expectError(load("CELLS 1 10\n9 0 2 4 9 1 3 5 6 7\nCELL_TYPES 1\n24\n"), kMalformed,

@@ -35,8 +35,12 @@ def code_in(text, suffix):
 
 def counted():
     """Lines by folder, of the files that git has or would have."""
-    names = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "plugin", "demos", "tests"],
-                           cwd=SOURCE, check=True, capture_output=True, text=True).stdout
+    listed = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "plugin", "demos", "tests"]
+    try:
+        names = subprocess.run(listed, cwd=SOURCE, check=True, capture_output=True, text=True).stdout
+    except (OSError, subprocess.CalledProcessError) as error:
+        print(f"not counted: git does not list the files ({error})")
+        sys.exit(77)
     lines = {}
     for name in set(filter(None, names.split("\0"))):
         file = SOURCE / name
@@ -77,9 +81,9 @@ def main():
     for name, folders in sums.items():
         then, here = (sum(one.get(folder, 0) for folder in folders) for one in (before, now))
         print(f"{name:28}{then:8}{here:8}{here - then:+8}")
-    unknown = sorted(set(before) ^ set(now))
+    unknown = sorted(set(before) - set(now))
     if len(libraries) < 5 or unknown:
-        sys.exit(f"{NOTED.name} and the repository do not name the same folders: {', '.join(unknown)}")
+        sys.exit(f"{NOTED.name} and the repository do not name the same folders: {', '.join(unknown)}; take the rows of what has gone out")
 
 
 if __name__ == "__main__":

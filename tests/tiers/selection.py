@@ -47,8 +47,9 @@ PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own; with what it shares
 # with the module for JavaScript.
 PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers|plugin/facade)/|^tests/platforms/common[.]sh$")
-# What else is in the package or its tests: the library, what draws its pages, the programs of pages.
-IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/.*[.]md)$")
+# What else is in the package, its build or its tests: the library, what draws its pages, the programs of pages.
+IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/.*[.]md|(plugin/)?CMakeLists[.]txt|"
+                       r"plugin/cmake/.*|demos/setup[.]sh|tests/(configurations[.]cmake|run))$")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
 WEB = re.compile(r"^(plugin/js|plugin/facade|demos/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}

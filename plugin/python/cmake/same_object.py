@@ -5,9 +5,10 @@
 folder BUILD, has compiled already. Copies that build's object if the same compiler made it by the same options of the
 same text; otherwise compiles, by ccache if there is one.
 
-The text is what the preprocessor makes of the source, without the places that it comes from: by these, a compiler cache
-takes the same text in another folder for another one. Options that only the preprocessor reads are in the text. BUILD
-has a compile_commands.json. With options for debugging, which put places into the object, everything is compiled."""
+The text is what the preprocessor makes of the source, without the names of the files that it comes from. A compiler
+cache counts these, and so takes the same text in another folder for a different one. Options that only the preprocessor
+reads are in the text. BUILD is made by Ninja, which says whether the object is up to date, and has a
+compile_commands.json. With options for debugging, which put places into the object, everything is compiled."""
 import json
 import os
 import shlex
@@ -26,6 +27,9 @@ class Command:
     def __init__(self, words, folder):
         self.folder, self.values, self.compiles, self.words = Path(folder), {}, [], []
         words = list(words)
+        launcher = next((k for k, word in enumerate(words) if Path(word).name == "same_object.py"), None)
+        if launcher is not None:
+            words = words[launcher + 2:]
         while Path(words[0]).name == "ccache":
             words.pop(0)
         self.compiler = words[0]
@@ -58,14 +62,21 @@ class Command:
         return done.stdout if done.returncode == 0 else None
 
 
-def read_files(dependencies, folder):
-    words = Path(folder, dependencies).read_text(encoding="utf-8").replace("\\\n", " ").split()
-    return [Path(folder, word) for word in words[1:]]
+def is_current(build, other):
+    """Whether the other build would leave its object as it is, and its compiler has not been replaced since."""
+    ninja, compiler = shutil.which("ninja"), shutil.which(other.compiler)
+    if not (ninja and compiler and (build / "build.ninja").exists() and other.output().exists()):
+        return False
+    if os.stat(os.path.realpath(compiler)).st_ctime > other.output().stat().st_mtime:
+        return False
+    said = subprocess.run([ninja, "-C", str(build), "-n", other.values["-o"]], capture_output=True, text=True, check=False)
+    return said.returncode == 0 and "no work to do" in said.stdout
 
 
 def copied(build, own):
     """Whether the other build's object has been put where this one is wanted."""
-    listed = Path(build) / "compile_commands.json"
+    build = Path(build)
+    listed = build / "compile_commands.json"
     if not ("-c" in own.values and "-MF" in own.values and listed.exists()) or any(
             word.startswith("-g") for word in own.compiles):
         return False
@@ -76,22 +87,26 @@ def copied(build, own):
                 break
     else:
         return False
-    if (other.compiler, other.compiles) != (own.compiler, own.compiles) or not other.output().exists():
+    if (other.compiler, other.compiles) != (own.compiler, own.compiles) or other.output() == own.output():
+        return False
+    if not is_current(build, other):
         return False
     text = own.text(own.values["-MF"])
     if text is None or text != other.text():
         return False
-    made = other.output().stat().st_mtime
-    if any(file.stat().st_mtime > made for file in read_files(own.values["-MF"], own.folder)
-           if "CMakeFiles" not in file.parts):
-        return False  # that build has not been brought up to date
-    shutil.copyfile(other.output(), own.output())
+    beside = f"{own.output()}.copy"
+    shutil.copyfile(other.output(), beside)
+    os.replace(beside, own.output())
     return True
 
 
 def main():
     build, words = sys.argv[1], sys.argv[2:]
-    if not copied(build, Command(words, os.getcwd())):
+    try:
+        done = copied(build, Command(words, os.getcwd()))
+    except (OSError, ValueError, KeyError):  # of a build that is not as it should be, nothing is taken
+        done = False
+    if not done:
         cache = [shutil.which("ccache")] if shutil.which("ccache") else []
         os.execvp((cache + words)[0], cache + words)
 

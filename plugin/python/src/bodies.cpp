@@ -164,14 +164,14 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_ro("mesh",
                    [](const BodyHandle& b) { return b.state->mesh.mesh ? std::optional(b.state->mesh) : std::nullopt; })
       .def_prop_ro("node_count", nodeCount, "Number of nodes.")
-      .def_prop_ro("bounds", locked(+[](const BodyHandle& b) {
+      .def_prop_ro("bounds", locked([](const BodyHandle& b) {
                      const Box3& box = surfaceOf(*b.state).bounds();
                      return nb::make_tuple(vectorOf(box.min()), vectorOf(box.max()));
                    }),
                    kBoundsType, "The box of the surface: two corners, world space.")
       .def_prop_rw(
           "visible", [](const BodyHandle& b) { return b.state->skin.visible(); },
-          locked(+[](BodyHandle& b, bool visible) { surfaceOf(*b.state).setVisible(visible); }),
+          locked([](BodyHandle& b, bool visible) { surfaceOf(*b.state).setVisible(visible); }),
           "Whether steps update the surface. When shown again, it is updated at once.")
       .def_prop_ro("asleep", number([](DeformableBody& b) { return !b.body().isActive(); }),
                    "Whether it is at rest, and costs next to nothing.")
@@ -189,11 +189,11 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
                    setter([](DeformableBody& b, double v) { return b.setStiffnessDamping(v); }),
                    "Seconds: Rayleigh damping, 0 or more.")
       .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
-                   locked(+[](BodyHandle& b, double friction) { setFriction(*b.state, friction); }),
+                   locked([](BodyHandle& b, double friction) { setFriction(*b.state, friction); }),
                    "0 to 1; multiplied by that of rigid bodies.")
       .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
                    "Total, without pinned nodes.")
-      .def("set_gravity", locked(+[](BodyHandle& b, const std::optional<Vec3>& gravity) {
+      .def("set_gravity", locked([](BodyHandle& b, const std::optional<Vec3>& gravity) {
              if (gravity) {
                check(alive(b).setGravity(toBullet(*gravity, "gravity")));
              } else {
@@ -210,13 +210,13 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def("transform", transform, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
            "Moves the whole body from where it is, at once, in its motion: rotated about the world's origin (x, y, z, "
            "w), then by position. Velocities and pinned nodes go along; what it has touched is forgotten.")
-      .def("reset", locked(+[](BodyHandle& b) { b.world->reset(*b.state); }),
+      .def("reset", locked([](BodyHandle& b) { b.world->reset(*b.state); }),
            "Puts it back into the state in which it was added: where it was, at rest, with nothing remembered, so that "
            "its steps are those of a new body. What has been set stays: pinned nodes, material, gravity, springs.")
       .def("apply_radial_impulse", radialImpulse, "centre"_a, "radius"_a, "strength"_a,
            "Pushes all of the surface in a ball away from its centre: an explosion. strength: sum of the magnitudes at "
            "all vertices.")
-      .def("remove", locked(+[](BodyHandle& b) { b.world->remove(*b.state); }),
+      .def("remove", locked([](BodyHandle& b) { b.world->remove(*b.state); }),
            "Removes it from its world, with its contacts, springs and welds. Views of it stay valid. Removing it again "
            "changes nothing.");
 
@@ -243,7 +243,7 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "bodies that have it; self_contact: with "
            "others and itself. Both make a distance grid of the surface once, which takes a second for 20,000 "
            "triangles.")
-      .def_prop_ro("bodies", locked(+[](const std::shared_ptr<World>& w) {
+      .def_prop_ro("bodies", locked([](const std::shared_ptr<World>& w) {
                      std::vector<BodyHandle> all;
                      for (const auto& state : w->bodies()) all.push_back({w, state});
                      return all;

@@ -117,7 +117,7 @@ void bindContacts(nb::module_& module, Class<World>& world) {
           "body"_a,
           "Contacts of a soft body with rigid bodies at its surface, in the last substep in which it was awake.")
       .def("forces_on",
-           locked(+[](const std::shared_ptr<World>& w, const Either& body, const std::optional<Either>& other) {
+           locked([](const std::shared_ptr<World>& w, const Either& body, const std::optional<Either>& other) {
              const btCollisionObject& object = objectOf(body);
              if (!other) return w->forces().forcesOn(object);
              return w->forces().forcesBetween(object, objectOf(*other));

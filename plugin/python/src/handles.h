@@ -36,13 +36,24 @@ template <class Of>
 World& worldOf(const Of& handle) {
   return *handle.world;
 }
-/// A call with the lock of the world that its first argument is of.
+/// Calls with the lock of the world that their first argument is of.
 template <class Return, class Of, class... Arguments>
 auto locked(Return (*call)(Of&, Arguments...)) {
   return [call](Of& of, Arguments... arguments) -> Return {
     const Locked lock(worldOf(of));
     return call(of, std::forward<Arguments>(arguments)...);
   };
+}
+template <class Call, class Return, class Of, class... Arguments>
+auto lockedAs(Call call, Return (Call::*)(Of&, Arguments...) const) {
+  return [call](Of& of, Arguments... arguments) -> Return {
+    const Locked lock(worldOf(of));
+    return call(of, std::forward<Arguments>(arguments)...);
+  };
+}
+template <class Call>
+auto locked(Call call) {
+  return lockedAs(call, &Call::operator());
 }
 
 /// Arrays that a handle keeps: only those of soft bodies.

@@ -174,17 +174,17 @@ void bindJoints(nb::module_& module, Class<World>& world) {
                : j.state->joint->getConstraintType() == POINT2POINT_CONSTRAINT_TYPE ? "point"
                                                                                     : "fixed";
       })
-      .def_prop_ro("coordinate", locked(+[](const JointHandle& j) { return coordinateOf(j); }),
+      .def_prop_ro("coordinate", locked([](const JointHandle& j) { return coordinateOf(j); }),
                    "The angle of a hinge, in radians, or the way of a slider, in world length, since it was made.")
       .def(
-          "set_motor", locked(+[](JointHandle& j, std::optional<double> velocity, double maxForce) {
+          "set_motor", locked([](JointHandle& j, std::optional<double> velocity, double maxForce) {
             setMotor(j, velocity, maxForce);
           }),
           "velocity"_a.none(), "max_force"_a,
           "Drives a hinge or slider: radians or world length per second, with at most this torque or force. None: off.")
-      .def("set_limits", locked(+[](JointHandle& j, const std::array<double, 2>& limits) { setLimits(j, limits); }),
+      .def("set_limits", locked([](JointHandle& j, const std::array<double, 2>& limits) { setLimits(j, limits); }),
            "limits"_a, "Of the coordinate: the lower and the upper one.")
-      .def("remove", locked(+[](JointHandle& j) { j.world->remove(*j.state); }));
+      .def("remove", locked([](JointHandle& j) { j.world->remove(*j.state); }));
 
   world
       .def("add_point_joint", addPoint, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a, "collide"_a = false,

@@ -17,7 +17,7 @@ std::string constantOf(StatusCode code) {
   std::string constant;
   for (const char* letter = nameOf(code); *letter; ++letter) {
     const bool isCapital = std::isupper(static_cast<unsigned char>(*letter));
-    if (isCapital && !constant.empty() && code != StatusCode::Ok) constant += '_';
+    if (isCapital && !constant.empty()) constant += '_';
     constant += static_cast<char>(std::toupper(static_cast<unsigned char>(*letter)));
   }
   return constant;

@@ -92,33 +92,33 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
         return r.state->shape.shape->getName() + (" at " + wordsOf(r.state->body->getWorldTransform().getOrigin()));
       })
       .def_prop_rw("position", read([](btRigidBody& b) { return vectorOf(b.getWorldTransform().getOrigin()); }),
-                   locked(+[](RigidHandle& r, const Vec3& at) { r.world->setPosition(*r.state, at); }),
+                   locked([](RigidHandle& r, const Vec3& at) { r.world->setPosition(*r.state, at); }),
                    "(3,) float64, world space. Assigned to a kinematic body, it moves there in the next step.")
       .def_prop_rw("rotation", read([](btRigidBody& b) { return newQuaternion(rotationOf(b.getWorldTransform())); }),
-                   locked(+[](RigidHandle& r, const Quaternion& q) { r.world->setRotation(*r.state, q); }),
+                   locked([](RigidHandle& r, const Quaternion& q) { r.world->setRotation(*r.state, q); }),
                    "(4,) float64: a quaternion x, y, z, w.")
       .def_prop_rw("velocity", read([](btRigidBody& b) { return vectorOf(b.getLinearVelocity()); }),
-                   locked(+[](RigidHandle& r, const Vec3& v) {
+                   locked([](RigidHandle& r, const Vec3& v) {
                      alive(r).setLinearVelocity(toBullet(v, "velocity"));
                      r.state->body->activate(true);
                    }),
                    "(3,) float64, world length per second.")
       .def_prop_rw("angular_velocity", read([](btRigidBody& b) { return vectorOf(b.getAngularVelocity()); }),
-                   locked(+[](RigidHandle& r, const Vec3& v) {
+                   locked([](RigidHandle& r, const Vec3& v) {
                      alive(r).setAngularVelocity(toBullet(v, "angular_velocity"));
                      r.state->body->activate(true);
                    }),
                    "(3,) float64, radians per second.")
       .def_prop_rw("mass", read([](btRigidBody& b) { return static_cast<double>(b.getMass()); }),
-                   locked(+[](RigidHandle& r, double mass) { setMass(r, mass); }), "0: static or kinematic.")
+                   locked([](RigidHandle& r, double mass) { setMass(r, mass); }), "0: static or kinematic.")
       .def_prop_rw("friction", read([](btRigidBody& b) { return static_cast<double>(b.getFriction()); }),
-                   locked(+[](RigidHandle& r, double friction) { setFriction(*r.state, friction); }),
+                   locked([](RigidHandle& r, double friction) { setFriction(*r.state, friction); }),
                    "Coulomb's coefficient, which is multiplied by that of what is touched.")
       .def_prop_ro("kinematic", read([](btRigidBody& b) { return b.isKinematicObject(); }))
       .def_prop_ro(
           "removed", [](const RigidHandle& r) { return r.state->removed; },
           "Whether it has been removed from its world.")
-      .def("apply_impulse", locked(+[](RigidHandle& r, const Vec3& impulse, const std::optional<Vec3>& at) {
+      .def("apply_impulse", locked([](RigidHandle& r, const Vec3& impulse, const std::optional<Vec3>& at) {
              btRigidBody& body = alive(r);
              const btVector3 arm =
                  at ? btVector3(toBullet(*at, "at") - body.getCenterOfMassPosition()) : btVector3(0, 0, 0);
@@ -127,13 +127,13 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
            }),
            "impulse"_a, "at"_a = nb::none(),
            "Mass times velocity, at a point in world space; None: at the centre of mass.")
-      .def("remove", locked(+[](RigidHandle& r) { r.world->remove(*r.state); }),
+      .def("remove", locked([](RigidHandle& r) { r.world->remove(*r.state); }),
            "Removes it from its world, with its joints, springs and welds. Removing it again changes nothing.");
 
   world
       .def("add_rigid_body",
-           locked(+[](const std::shared_ptr<World>& w, const ShapeModel& shape, double mass, const Vec3& position,
-                      const Quaternion& rotation, double friction, bool kinematic) {
+           locked([](const std::shared_ptr<World>& w, const ShapeModel& shape, double mass, const Vec3& position,
+                     const Quaternion& rotation, double friction, bool kinematic) {
              return RigidHandle{w, w->addRigid(shape, mass, toBullet(position, rotation), friction, kinematic)};
            }),
            "shape"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
@@ -141,14 +141,14 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
            "Adds a rigid body. mass: 0 for one that does not move by itself; rotation: x, y, z, w; kinematic: moved by "
            "its position and rotation.")
       .def(
-          "add_plane", locked(+[](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
+          "add_plane", locked([](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
             return RigidHandle{w, w->addRigid(plane(normal, offset), 0.0, btTransform::getIdentity(), friction, false)};
           }),
           nb::kw_only(), "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0, "friction"_a = 0.5,
           "Adds a ground: y = 0 by default.")
       .def("add_box",
-           locked(+[](const std::shared_ptr<World>& w, const Vec3& halfExtents, double mass, const Vec3& position,
-                      const Quaternion& rotation, double friction, bool kinematic) {
+           locked([](const std::shared_ptr<World>& w, const Vec3& halfExtents, double mass, const Vec3& position,
+                     const Quaternion& rotation, double friction, bool kinematic) {
              return RigidHandle{w,
                                 w->addRigid(box(halfExtents), mass, toBullet(position, rotation), friction, kinematic)};
            }),
@@ -157,13 +157,13 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
            "As add_rigid_body of Shape.box.")
       .def(
           "add_sphere",
-          locked(+[](const std::shared_ptr<World>& w, double radius, double mass, const Vec3& position,
-                     const Quaternion& rotation, double friction, bool kinematic) {
+          locked([](const std::shared_ptr<World>& w, double radius, double mass, const Vec3& position,
+                    const Quaternion& rotation, double friction, bool kinematic) {
             return RigidHandle{w, w->addRigid(sphere(radius), mass, toBullet(position, rotation), friction, kinematic)};
           }),
           "radius"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
           "friction"_a = 0.5, "kinematic"_a = false, "As add_rigid_body of Shape.sphere.")
-      .def_prop_ro("rigid_bodies", locked(+[](const std::shared_ptr<World>& w) {
+      .def_prop_ro("rigid_bodies", locked([](const std::shared_ptr<World>& w) {
                      std::vector<RigidHandle> all;
                      for (const auto& state : w->rigids()) all.push_back({w, state});
                      return all;

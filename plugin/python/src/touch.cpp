@@ -100,23 +100,22 @@ void bindTouch(nb::module_& module, Class<World>& world) {
         return "at " + wordsOf(*alivePoint(p).point.position());
       })
       .def_prop_ro("body", [](const PointHandle& p) { return p.body; })
-      .def_prop_ro("position", locked(+[](const PointHandle& p) { return vectorOf(*alivePoint(p).point.position()); }),
+      .def_prop_ro("position", locked([](const PointHandle& p) { return vectorOf(*alivePoint(p).point.position()); }),
                    "(3,) float64, world space, after the last step.")
-      .def_prop_ro("velocity", locked(+[](const PointHandle& p) { return vectorOf(*alivePoint(p).point.velocity()); }),
+      .def_prop_ro("velocity", locked([](const PointHandle& p) { return vectorOf(*alivePoint(p).point.velocity()); }),
                    "(3,) float64, world length per second.")
-      .def_prop_ro("normal",
-                   locked(+[](const PointHandle& p) { return vectorOf(alivePoint(p).point.frame()->normal); }),
+      .def_prop_ro("normal", locked([](const PointHandle& p) { return vectorOf(alivePoint(p).point.frame()->normal); }),
                    "(3,) float64: the outward normal.")
-      .def_prop_ro("effective_mass", locked(+[](const PointHandle& p) {
+      .def_prop_ro("effective_mass", locked([](const PointHandle& p) {
                      return static_cast<double>(alivePoint(p).point.effectiveMass());
                    }),
                    "Against an impulse at the point; infinite if all nodes around it are pinned.")
-      .def("apply_impulse", locked(+[](PointHandle& p, const Vec3& impulse) {
+      .def("apply_impulse", locked([](PointHandle& p, const Vec3& impulse) {
              alivePoint(p);
              check(p.point.applyImpulse(toBullet(impulse, "impulse")), "apply_impulse");
            }),
            "impulse"_a, "Mass times velocity, world space: at once.")
-      .def("apply_force", locked(+[](PointHandle& p, const Vec3& force, int substeps) {
+      .def("apply_force", locked([](PointHandle& p, const Vec3& force, int substeps) {
              alivePoint(p);
              check(p.point.applyForce(toBullet(force, "force"), substeps), "apply_force");
            }),
@@ -146,38 +145,37 @@ void bindTouch(nb::module_& module, Class<World>& world) {
       "Pulls a point of a surface to a point in space, or of a rigid body. Made by World.add_spring.");
   bindIdentity(springs);
   springs.words([](const SpringHandle& s) { return s.state->spring ? "holds" : "released"; })
-      .def("set_target", locked(+[](SpringHandle& s, const Vec3& target) {
+      .def("set_target", locked([](SpringHandle& s, const Vec3& target) {
              check(spring(s).setTarget(toBullet(target, "target")), "set_target");
            }),
            "target"_a, "World space; of a spring to a rigid body, in that body's local space.")
-      .def("set_stiffness", locked(+[](SpringHandle& s, double stiffness) {
-             check(spring(s).setStiffness(stiffness), "set_stiffness");
-           }),
+      .def("set_stiffness",
+           locked([](SpringHandle& s, double stiffness) { check(spring(s).setStiffness(stiffness), "set_stiffness"); }),
            "stiffness"_a)
       .def("set_max_force",
-           locked(+[](SpringHandle& s, double force) { check(spring(s).setMaxForce(force), "set_max_force"); }),
+           locked([](SpringHandle& s, double force) { check(spring(s).setMaxForce(force), "set_max_force"); }),
            "force"_a)
-      .def_prop_ro("force", locked(+[](const SpringHandle& s) { return vectorOf(spring(s).force()); }),
+      .def_prop_ro("force", locked([](const SpringHandle& s) { return vectorOf(spring(s).force()); }),
                    "(3,) float64 on the soft body in the last step, world space.")
-      .def_prop_ro("stretch", locked(+[](const SpringHandle& s) { return static_cast<double>(spring(s).stretch()); }),
+      .def_prop_ro("stretch", locked([](const SpringHandle& s) { return static_cast<double>(spring(s).stretch()); }),
                    "Distance between point and target, world length.")
       .def_prop_ro("released", [](const SpringHandle& s) { return !s.state->spring; })
-      .def("release", locked(+[](SpringHandle& t) { t.world->remove(*t.state); }),
+      .def("release", locked([](SpringHandle& t) { t.world->remove(*t.state); }),
            "Lets go. Releasing it again changes nothing.");
 
   Class<WeldHandle> welds(module, "Weld", "Fixes a rigid body to a point of a surface. Made by World.add_weld.");
   bindIdentity(welds);
   welds.words([](const WeldHandle& w) { return w.state->weld ? "holds" : "released"; })
-      .def_prop_ro("force", locked(+[](const WeldHandle& w) { return vectorOf(weld(w).force()); }),
+      .def_prop_ro("force", locked([](const WeldHandle& w) { return vectorOf(weld(w).force()); }),
                    "(3,) float64 on the soft body in the last step, world space.")
-      .def_prop_ro("torque", locked(+[](const WeldHandle& w) { return vectorOf(weld(w).torque()); }),
+      .def_prop_ro("torque", locked([](const WeldHandle& w) { return vectorOf(weld(w).torque()); }),
                    "(3,) float64, about the point.")
-      .def_prop_ro("separation", locked(+[](const WeldHandle& w) { return static_cast<double>(weld(w).separation()); }),
+      .def_prop_ro("separation", locked([](const WeldHandle& w) { return static_cast<double>(weld(w).separation()); }),
                    "Error of the position, world length.")
-      .def_prop_ro("angle", locked(+[](const WeldHandle& w) { return static_cast<double>(weld(w).angle()); }),
+      .def_prop_ro("angle", locked([](const WeldHandle& w) { return static_cast<double>(weld(w).angle()); }),
                    "Error of the rotation, radians.")
       .def_prop_ro("released", [](const WeldHandle& w) { return !w.state->weld; })
-      .def("release", locked(+[](WeldHandle& t) { t.world->remove(*t.state); }),
+      .def("release", locked([](WeldHandle& t) { t.world->remove(*t.state); }),
            "Lets go. Releasing it again changes nothing.");
 
   world

@@ -92,7 +92,7 @@ Class<World> bindWorlds(nb::module_& module) {
       .def("restore", restore, "snapshot"_a,
            "Restores a state in place. The world has the same bodies and joints as when it was saved, made in the same "
            "order. On an Error nothing is changed.")
-      .def("shift_origin", locked(+[](const std::shared_ptr<World>& w, const Vec3& origin) {
+      .def("shift_origin", locked([](const std::shared_ptr<World>& w, const Vec3& origin) {
              w->shiftOrigin(toBullet(origin, "origin"));
            }),
            "origin"_a,
@@ -108,8 +108,8 @@ Class<World> bindWorlds(nb::module_& module) {
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"),
           "Raises a TypeError: what travels is what builds a world, and its snapshot.")
       .def_prop_rw("gravity",
-                   locked(+[](const std::shared_ptr<World>& w) { return vectorOf(w->bullet().getGravity()); }),
-                   locked(+[](const std::shared_ptr<World>& w, const Vec3& gravity) {
+                   locked([](const std::shared_ptr<World>& w) { return vectorOf(w->bullet().getGravity()); }),
+                   locked([](const std::shared_ptr<World>& w, const Vec3& gravity) {
                      w->bullet().setGravity(toBullet(gravity, "gravity"));
                    }),
                    "(3,) float64, world length / s^2; that of all bodies without their own.");

@@ -78,9 +78,9 @@ struct TETSKIN_IO_API TetFileReport {
 ///
 /// Nodes and tets are in the file's order and unit. Cells that are no tets are skipped. Tets of second order (VTK type
 /// 24, and 71 and 79 with 10 nodes) become eight tets each, with the nodes on their edges, wherever these are. All is
-/// counted in `report`. Refused are tets of higher order, and tets of first order that share an edge with those.
-/// In the result, every index names a node and no coordinate is beyond Limits::kMaxCoordinate; for other faults see
-/// `checkTetMesh`.
+/// counted in `report`. Refused are tets of higher order, and tets of first order that share an edge with ones of
+/// second order. In the result, every index names a node and no coordinate is beyond Limits::kMaxCoordinate; for other
+/// faults see `checkTetMesh`.
 ///
 /// Cost: linear; memory is bounded by the size of the file, whatever counts it states.
 ///

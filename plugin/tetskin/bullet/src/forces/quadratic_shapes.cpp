@@ -4,7 +4,6 @@
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <optional>

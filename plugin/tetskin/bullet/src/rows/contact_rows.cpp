@@ -20,7 +20,7 @@ constexpr double kStiffness = 20.0;
 constexpr double kViolation = 1e-3;
 /// Upper bound of the factor by which D is raised for this: beyond it, the rounding of float dominates.
 constexpr double kMostStiffening = 100.0;
-/// The way that gravity adds in a step is left out, times this number: a small body at rest falls by a visible part of
+/// This many times the way that gravity adds in a step is left out: a small body at rest falls by a visible part of
 /// its size in each step, and jumps on contacts that are stiff to that.
 constexpr btScalar kFallsAtRest = 2;
 /// T over D. Slopes and stops keep their promises in `tetskin_measure` with 0.0003 and with 100, too, as the

@@ -19,7 +19,6 @@
 
 #include <cassert>
 #include <memory>
-#include <type_traits>
 
 namespace tetskin::bullet_detail {
 

@@ -10,7 +10,7 @@
 
 namespace tetskin {
 
-/// The surrounding vertices that make each vertex' normal. Vertices at one position share theirs, unless their rest
+/// The surrounding vertices that make each vertex's normal. Vertices at one position share theirs, unless their rest
 /// normals differ by more than an angle (a hard edge), whatever their lengths; one that is zero or not finite counts as
 /// absent, and makes no edge. A group of vertices that share a normal has a path: around them, from each of their
 /// triangles into the next. Immutable, shared like an Embedding.

@@ -181,6 +181,11 @@ void BodyDynamics<S>::beginForces(double seconds) {
 }
 
 template <class S>
+bool BodyDynamics<S>::isAt(std::size_t node, const S* point) const {
+  return places_.isAt(matrix_.slotOf(node), point, S(0));
+}
+
+template <class S>
 bool BodyDynamics<S>::continues(std::size_t node, const S* point, const S* velocity) const {
   S last[3];
   reached(node, last);

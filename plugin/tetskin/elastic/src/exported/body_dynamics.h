@@ -107,7 +107,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// turn  a matrix by rows;  turns  false: it is that of no rotation
   void carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by);
   /// True if this is the node's position, rounded.
-  bool isAt(std::size_t node, const S* point) const { return places_.isAt(matrix_.slotOf(node), point, S(0)); }
+  bool isAt(std::size_t node, const S* point) const;
   /// The node's position, rounded: 3 scalars.
   void rounded(std::size_t node, S* point) const { places_.round(matrix_.slotOf(node), point); }
 

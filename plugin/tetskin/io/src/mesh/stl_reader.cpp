@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kStlText = 80, kStlHeader = kStlText + 4, kStlTriangle = 50, kStlNormal = 12;
 constexpr NumberType kStlCount{4, false, false}, kStlReal{4, true};
 
-/// True for a binary file: of exactly the size that it states, or one that does not begin as text does, which begins
-/// with "solid", as some binary ones do, but contains no zeros.
+/// True for a binary file: of exactly the size that it states, or with a zero among its first 84 bytes, or without
+/// "solid" at its beginning. Some binary files begin with that, too, but a text has no zeros.
 bool isBinaryStl(const std::string& bytes, std::size_t triangles) {
   if (bytes.size() < kStlHeader) return false;
   if (bytes.size() == kStlHeader + triangles * kStlTriangle) return true;

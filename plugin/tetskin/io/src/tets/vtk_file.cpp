@@ -306,12 +306,14 @@ Status VtkReader::addTet(std::size_t cell) {
   return {};
 }
 
-/// Tets of first order have 4 nodes, of second 10; those of Lagrange and Bezier may have more, and are refused.
+/// Tets of first order have 4 nodes, of second 10; those of Lagrange and Bezier have either, or more, and are refused
+/// then.
 Status VtkReader::checkSize(std::size_t cell) const {
   const std::size_t size = cellSize_[cell];
   const bool secondOrder = isHighOrderTet(cell);
-  if (size == (secondOrder ? 10 : 4)) return {};
-  if (secondOrder && cellTypes_[cell] != kVtkQuadraticTet && size > 10) {
+  const bool anyOrder = secondOrder && cellTypes_[cell] != kVtkQuadraticTet;
+  if (size == (secondOrder ? 10 : 4) || (anyOrder && size == 4)) return {};
+  if (anyOrder && size > 10) {
     return errorAt(
         lineOf(cellFirst_[cell]), StatusCode::UnsupportedFormat,
         "cell " + std::to_string(cell) + " is a tet above second order; save the mesh at second or first order");

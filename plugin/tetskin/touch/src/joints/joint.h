@@ -57,7 +57,7 @@ class Joint {
   btSoftBody* body() const { return dropped_ ? nullptr : point_.body(); }
   /// True if its living body is in the world in which it was made.
   bool isInWorld() const;
-  /// Called when a body has left the world of which it is not known whether it will live.
+  /// Called when its body has left the world and may be destroyed unnoticed.
   void drop();
   /// Adds the constraints of the step.
   void addJoints(btScalar seconds, std::vector<PointJoint>& joints);

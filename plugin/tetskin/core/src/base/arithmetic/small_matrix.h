@@ -8,6 +8,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tetskin {
@@ -86,13 +87,6 @@ template <int Rows, int Columns = 1>
 SmallMatrix<Rows, Columns> smallFrom(const double* values) {
   SmallMatrix<Rows, Columns> to;
   for (int k = 0; k < to.kSize; ++k) to.values[k] = values[k];
-  return to;
-}
-
-template <int Size>
-SmallMatrix<Size, Size> smallIdentity() {
-  SmallMatrix<Size, Size> to;
-  for (int k = 0; k < Size; ++k) to(k, k) = 1.0;
   return to;
 }
 
@@ -180,8 +174,8 @@ class SmallLdlt {
   }
 
  private:
-  /// The inverse of the largest number, as Eigen has it.
-  static constexpr double kSmallest = 1.0 / 1.7976931348623157e308;
+  /// The least number that is not denormal, as in Eigen 3.4.
+  static constexpr double kSmallest = std::numeric_limits<double>::min();
 
   void exchange(int k, int with) {
     for (int j = 0; j < k; ++j) std::swap(factors_(k, j), factors_(with, j));
