@@ -7,7 +7,7 @@ same text; otherwise compiles, by ccache if there is one.
 
 The text is what the preprocessor makes of the source, without the names of the files that it comes from. A compiler
 cache counts these, and so takes the same text in another folder for a different one. Options that only the preprocessor
-reads are in the text. BUILD is made by Ninja, which says whether the object is up to date, and has a
+reads are in the text. BUILD is made by Ninja, which has recorded what each object depends on, and has a
 compile_commands.json. With options for debugging, which put places into the object, everything is compiled."""
 import json
 import os
@@ -63,14 +63,19 @@ class Command:
 
 
 def is_current(build, other):
-    """Whether the other build would leave its object as it is, and its compiler has not been replaced since."""
-    ninja, compiler = shutil.which("ninja"), shutil.which(other.compiler)
-    if not (ninja and compiler and (build / "build.ninja").exists() and other.output().exists()):
+    """Whether nothing that the other build's object depends on is newer: its sources, by Ninja's record; the options of
+    that build; the compiler."""
+    ninja, compiler, made_of = shutil.which("ninja"), shutil.which(other.compiler), other.values["-o"]
+    if not (ninja and compiler and other.output().exists()):
         return False
-    if os.stat(os.path.realpath(compiler)).st_ctime > other.output().stat().st_mtime:
+    said = subprocess.run([ninja, "-C", str(build), "-t", "deps", made_of], capture_output=True, text=True, check=False)
+    first, *files = said.stdout.splitlines()
+    if not first.endswith("(VALID)"):
         return False
-    said = subprocess.run([ninja, "-C", str(build), "-n", other.values["-o"]], capture_output=True, text=True, check=False)
-    return said.returncode == 0 and "no work to do" in said.stdout
+    files = [build / file.strip() for file in files if file.strip()]
+    made = other.output().stat().st_mtime
+    compiled = os.stat(os.path.realpath(compiler)).st_ctime
+    return compiled <= made and all(file.stat().st_mtime <= made for file in [build / "CMakeCache.txt", *files])
 
 
 def copied(build, own):
