@@ -31,8 +31,7 @@ enum class ReadAs { Tets, Cage };
 
 /// Cuts tets of second order into eight, which become quadratic tets unless they are flat.
 /// Errors  Malformed, with the line: nodes that cannot be on the edges; UnsupportedFormat: tets of first order with
-/// such
-///         an edge, so that a node would be on the edge of a tet that does not have it; TooLarge
+///         such an edge, so that a node would be on the edge of a tet that does not have it; TooLarge
 Status cutHighOrderTets(ReadAs as, FileCage& file, TetFileReport& report);
 
 }  // namespace tetskin::io
