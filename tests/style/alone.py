@@ -88,9 +88,10 @@ def main():
         library = file.relative_to(LIBRARY).parts[0]
         if not any(option.startswith("-m") for option in own):
             plain.setdefault(library, own)
-    for header in sorted(LIBRARY.rglob("*.h")):
-        library = header.relative_to(LIBRARY).parts[0]
-        options[header] = plain.get(library, plain["bullet"])  # tetskin.h, export.h: whatever a user has
+    # Headers, and sources that another configuration compiles (without Assimp): as the other sources of their library.
+    for file in [*sorted(LIBRARY.rglob("*.h")), *sorted(LIBRARY.rglob("*.cpp"))]:
+        library = file.relative_to(LIBRARY).parts[0]
+        options.setdefault(file, plain.get(library, plain["bullet"]))  # tetskin.h, export.h: whatever a user has
     # Two kinds, as elastic's Eigen has another name. Kernels of other processors are few, and read Eigen themselves.
     eigen = {kind_of(plain[name]): precompile(plain[name], build / "alone" / name) for name in ("bullet", "elastic")}
     if not wanted and len(options) < 300:
