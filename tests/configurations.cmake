@@ -71,16 +71,17 @@ tetskin_test_configuration(thread_sanitized TARGET test_threads TESTS ^threads L
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=thread -DTETSKIN_DEMOS=OFF
   -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_REDUCED=OFF -DTETSKIN_IO=OFF)
 
-# The fuzzers, all four at once for a minute and a half: by libFuzzer if there is a clang with its runtime, otherwise by
-# our random driver. This also tests that the rest configures, links and runs without the parts left out.
+# The fuzzers, all four at once: by libFuzzer if there is a clang with its runtime, otherwise by our random driver. This
+# also tests that the rest configures, links and runs without the parts left out.
+set(TETSKIN_FUZZ_LONG 90 CACHE STRING "Seconds that configuration.fuzzed runs each fuzzer for")
 set(fuzzed_sanitizers address,undefined)
 if(has_fuzzer_runtime)
   set(fuzzed_sanitizers fuzzer-no-link,address,undefined)
 endif()
 tetskin_test_configuration(fuzzed TARGET fuzzers TESTS ^fuzz PARALLEL 4 OPTIONS ${sanitizing_compiler}
   -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1" -DTETSKIN_SANITIZE=${fuzzed_sanitizers}
-  -DTETSKIN_FUZZ_SECONDS=90 -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF -DTETSKIN_THREADS=OFF
-  -DTETSKIN_DEMOS=OFF)
+  -DTETSKIN_FUZZ_SECONDS=${TETSKIN_FUZZ_LONG} -DTETSKIN_BULLET=OFF -DTETSKIN_CAGE=OFF -DTETSKIN_ELASTIC=OFF
+  -DTETSKIN_THREADS=OFF -DTETSKIN_DEMOS=OFF)
 set_tests_properties(configuration.fuzzed PROPERTIES LABELS "fuzz;full")
 
 # Files without assimp, which is not even looked for.
