@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Bodies that are put back to their start, or elsewhere, while they touch others.
-#include <tetskin/bullet/recorder.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/replay/recorder.h>
 
 #include <cstdio>
 #include <filesystem>

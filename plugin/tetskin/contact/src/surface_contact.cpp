@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/own_objects.h>
-#include <tetskin/bullet/src/base/required_solver.h>
-#include <tetskin/bullet/src/exported/point_search.h>
 #include <tetskin/contact/src/rigid/surface_patches.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/exported/skin_binding.h>
+#include <tetskin/solver/src/base/required_solver.h>
+#include <tetskin/solver/src/exported/point_search.h>
 
 #include <algorithm>
 #include <cassert>

@@ -32,7 +32,7 @@ TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
 /// Does what Bullet would do in the next step if m_bUpdateRtCst is set, but with our trees. The tree of faces is only
 /// updated if it was not omitted, and only rebuilt if nodes or faces have been added or moved in memory. Cost O(links +
 /// faces + nodes) without a rebuild; nothing if the flag is not set.
-void updateConstants(btSoftBody& body);
+TETSKIN_BULLET_API void updateConstants(btSoftBody& body);
 
 /// Tells whether the nodes of a body may have moved; it exists as long as the body.
 struct NodeMoves {
@@ -48,7 +48,7 @@ struct NodeMoves {
 ///
 /// The tree of faces is also rebuilt at once where a step in a classic world deletes it, as it does if m_bUpdateRtCst
 /// is set. Bullet leaves the faces pointing into the deleted tree, and writes there when nodes are appended.
-class BodyWithTrees : public btSoftBody {
+class TETSKIN_BULLET_API BodyWithTrees : public btSoftBody {
  public:
   BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes);
 
