@@ -7,8 +7,9 @@
 #include <functional>
 #include <new>
 
-#include "deformable_test.h"
-#include "rigid_scene.h"
+#include "saved.h"
+#include "solver/deformable_test.h"
+#include "solver/rigid_scene.h"
 
 namespace tetskin::test {
 namespace {

@@ -4,7 +4,7 @@
 // Bodies solved by the library's own solver that land, rest and slide, and that carry what lands on them.
 #include "deformable_test.h"
 
-#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 
 #include <chrono>
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(DeformableSolver, PassesOverContactsThatAreNotANumber) {
     step(world, 10);
     const bool bullets = model != ForceModel::Corotated;
     ASSERT_TRUE(bullets ? body->body().m_nodeRigidContacts.size() > 0
-                        : !bodyWithTrees(body->body())->pointContacts().empty());
+                        : !channelOf(body->body())->pointContacts().empty());
     world.ground().setLinearVelocity(btScalar(NAN) * btVector3(1, 1, 1));
     step(world, 1);
     for (int n = 0; n < body->body().m_nodes.size(); ++n) {

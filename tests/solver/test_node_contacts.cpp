@@ -46,15 +46,15 @@ class NodeContacts : public testing::Test {
   /// Numbers of the nodes in contact.
   std::set<int> find(btCollisionShape& shape) {
     object_.setCollisionShape(&shape);
-    body_.pointContacts().clear();
+    BodyChannel::of(body_).pointContacts().clear();
     contacts_->collide({nullptr, &shape, &object_, object_.getWorldTransform(), -1, -1});
     std::set<int> nodes;
-    for (const PointContact& contact : body_.pointContacts()) {
+    for (const PointContact& contact : BodyChannel::of(body_).pointContacts()) {
       EXPECT_EQ(contact.at.count, 1U);
       EXPECT_EQ((contact.position - body_.m_nodes[contact.at.nodes[0]].m_x).length() < btScalar(1e-5), true);
       nodes.insert(contact.at.nodes[0]);
     }
-    EXPECT_EQ(nodes.size(), body_.pointContacts().size());
+    EXPECT_EQ(nodes.size(), BodyChannel::of(body_).pointContacts().size());
     return nodes;
   }
   /// A position on a node's path, in the object's space.
@@ -125,7 +125,7 @@ TEST_F(NodeContacts, MeetAMeshOnItsOuterSide) {
     above += crosses;
   }
   EXPECT_GT(above, 20);
-  for (const PointContact& contact : body_.pointContacts()) {
+  for (const PointContact& contact : BodyChannel::of(body_).pointContacts()) {
     const btVector3 begin = onPath(contact.at.nodes[0], 0).absolute();
     if (std::max(begin.x(), begin.z()) > btScalar(1.8)) continue;  // at the rim, it may be beside the mesh
     EXPECT_NEAR((contact.normal - object_.getWorldTransform().getBasis().getColumn(1)).length(), 0, 1e-5);

@@ -133,8 +133,8 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
 
 const std::vector<SurfaceContactPoint>& SurfaceContact::contacts() const {
   impl_->points.clear();
-  if (const BodyWithTrees* body = impl_->search.body()) {
-    for (const PointContact& contact : body->pointContacts()) {
+  if (const PointContacts* contacts = impl_->search.contacts()) {
+    for (const PointContact& contact : *contacts) {
       if (!contact.object) continue;
       impl_->points.push_back({contact.position, contact.normal, contact.distance, contact.object, contact.impulse});
     }

@@ -11,6 +11,7 @@
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/body_forces.h>
 #include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/solver/src/forces/elastic_force.h>
@@ -381,7 +382,7 @@ void DeformableBody::Impl::moveTo(btDeformableMultiBodyDynamicsWorld& to) {
   moveElasticity();
   BodyWithTrees& own = *bodyWithTrees(*body);
   own.setMovesCountedBy(nullptr);
-  if (const auto contacts = own.surfaceContacts().lock()) contacts->setDispatcher(to.getDispatcher());
+  if (const auto contacts = BodyChannel::of(own).surfaceContacts().lock()) contacts->setDispatcher(to.getDispatcher());
 }
 
 void DeformableBody::removeFromWorld() {

@@ -25,7 +25,7 @@ namespace {
 using World = btDeformableMultiBodyDynamicsWorld;
 
 constexpr std::uint64_t kMagic = 0x544F485350414E54u;  // "TNAPSHOT"
-constexpr std::uint32_t kByteLayout = 3;               ///< rises with every change of what is written
+constexpr std::uint32_t kByteLayout = 4;               ///< rises with every change of what is written
 
 using VisitPart = void (*)(WorldStream&, DeformableSolver&);
 /// In the order in which they depend on each other.

@@ -5,9 +5,9 @@
 #pragma once
 
 #include <LinearMath/btVector3.h>
-#include <tetskin/bullet/src/base/point_contacts.h>
 #include <tetskin/core/src/base/bvh/bvh.h>
 #include <tetskin/export.h>
+#include <tetskin/solver/src/base/point_contacts.h>
 
 #include <Eigen/Core>
 

@@ -6,9 +6,9 @@
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
-#include <tetskin/bullet/src/base/point_contacts.h>
 #include <tetskin/core/types.h>
 #include <tetskin/solver/src/base/body_forces.h>
+#include <tetskin/solver/src/base/point_contacts.h>
 
 class btSoftBody;
 

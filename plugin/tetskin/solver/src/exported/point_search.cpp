@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/exported/point_search.h>
 #include <tetskin/solver/src/search/contact_algorithm.h>
 
@@ -26,8 +27,9 @@ PointSearch::PointSearch(btDeformableMultiBodyDynamicsWorld& world, BodyWithTree
   assert(!(distances.margin < 0) && !(distances.beyondNodes < 0));
   registerContactAlgorithms(static_cast<btCollisionDispatcher&>(*world.getDispatcher()));
   body.getCollisionShape()->setMargin(distances.margin);
-  body.setReach(distances.margin + distances.beyondNodes);
-  body.setSurfaceContacts(contacts_);
+  BodyChannel& channel = BodyChannel::of(body);
+  channel.setReach(distances.margin + distances.beyondNodes);
+  channel.setSurfaceContacts(contacts_);
   forgetPairs(body, world);
   body.activate();
 }
@@ -36,16 +38,16 @@ PointSearch::~PointSearch() {
   if (!contacts_->bodyLives()) return;
   BodyWithTrees& body = contacts_->body();
   body.getCollisionShape()->setMargin(marginBefore_);
-  body.setReach(-1);
+  BodyChannel::of(body).setReach(-1);
 }
 
 bool PointSearch::exists(const btSoftBody& body) {
-  const BodyWithTrees* made = bodyWithTrees(body);
-  return made && !made->surfaceContacts().expired();
+  const BodyChannel* channel = channelOf(body);
+  return channel && !channel->surfaceContacts().expired();
 }
 
-const BodyWithTrees* PointSearch::body() const {
-  return contacts_->bodyLives() ? &contacts_->body() : nullptr;
+const PointContacts* PointSearch::contacts() const {
+  return contacts_->bodyLives() ? &BodyChannel::of(contacts_->body()).pointContacts() : nullptr;
 }
 
 const ContactPatches& PointSearch::patches() const {

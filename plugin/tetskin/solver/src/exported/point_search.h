@@ -35,8 +35,8 @@ class TETSKIN_SOLVER_API PointSearch {
 
   /// True if there is one for the body.
   static bool exists(const btSoftBody& body);
-  /// Null if the body has been destroyed.
-  const BodyWithTrees* body() const;
+  /// All contacts of the body in the last step; null if the body has been destroyed.
+  const PointContacts* contacts() const;
   const ContactPatches& patches() const;
 
  private:

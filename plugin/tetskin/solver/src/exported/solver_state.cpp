@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/core/src/base/hash.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/body_forces.h>
 #include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/solver/src/exported/solver_state.h>
@@ -112,8 +113,8 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
     bool byBullet = solvedHere.count(bodies[b]) == 0 || collidesByBulletsTrees(*bodies[b]);
     stream(byBullet);
     if (byBullet) stream.same(treesOf(*bodies[b]), "a soft body that Bullet searches contacts of had other trees");
-    const BodyWithTrees* own = bodyWithTrees(*bodies[b]);
-    const bool atSurface = own && own->surfaceContacts().lock();
+    const BodyChannel* channel = channelOf(*bodies[b]);
+    const bool atSurface = channel && channel->surfaceContacts().lock();
     stream.same(atSurface, "a soft body had contact at its surface, or had none");
   }
 }

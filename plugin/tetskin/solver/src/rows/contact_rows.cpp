@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
-#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/contact_rows.h>
 
@@ -374,9 +374,9 @@ void ContactRows::add(std::vector<PointJoint>& joints, SolverBodies& bodies, Rig
 
 void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
   SolvedBody& body = bodies.bodies()[index];
-  auto* own = bodyWithTrees(*body.body);
-  readBulletsContacts(*body.body, own ? own->speculation() : btScalar(0), *body.bulletsContacts);
-  if (own) own->setSpeculation(0);
+  BodyChannel* channel = channelOf(*body.body);
+  readBulletsContacts(*body.body, channel ? channel->speculation() : btScalar(0), *body.bulletsContacts);
+  if (channel) channel->setSpeculation(0);
   const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
   const auto add = [&](PointContact& contact, bool atStart) {
     contact.impulse.setZero();
@@ -396,8 +396,8 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
     this->add(row, origin);
   };
   for (PointContact& contact : *body.bulletsContacts) add(contact, false);
-  if (!own) return;
-  for (PointContact& contact : own->pointContacts()) add(contact, true);
+  if (!channel) return;
+  for (PointContact& contact : channel->pointContacts()) add(contact, true);
 }
 
 void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {

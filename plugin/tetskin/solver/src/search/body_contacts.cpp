@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btAabbUtil2.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/solver/src/base/contact_filter.h>
@@ -81,6 +80,7 @@ BodyContacts::BodyContacts(const btDispatcher* dispatcher, BodyWithTrees& body, 
                            btScalar thickness)
     : dispatcher_(dispatcher),
       body_(body),
+      channel_(BodyChannel::of(body)),
       lifetime_(body.lifetime()),
       search_(std::move(search)),
       thickness_(thickness),
@@ -92,9 +92,10 @@ void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   const btCollisionObject& object = *rigid.getCollisionObject();
   if (!body_.isActive() || !collidesWithRigid(body_, object)) return;
   if (!dispatcher_ && (body_.m_cfg.collisions & btSoftBody::fCollision::SDF_RDN) == 0) return;
-  const std::shared_ptr<const KinematicPaths> paths = body_.speculation() > 0 ? body_.kinematicPaths().lock() : nullptr;
+  const std::shared_ptr<const KinematicPaths> paths =
+      channel_.speculation() > 0 ? channel_.kinematicPaths().lock() : nullptr;
   const Met met{&object, rigid.getCollisionShape(), pathOf(rigid, paths.get())};
-  if (!body_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
+  if (!channel_.searchWaits() || !(object.isActive() || object.isStaticOrKinematicObject())) return search(met);
   waiting_.push_back(met);
 }
 
@@ -112,9 +113,9 @@ void BodyContacts::search(const Met& met) {
 
 /// The nodes do not move between the searches of a step. Outside of steps, an application may move them at any time.
 void BodyContacts::readNodes() {
-  const bool inStep = body_.speculation() > 0;
-  if (inStep && nodesRead_ == body_.predictions()) return;
-  nodesRead_ = body_.predictions();
+  const bool inStep = channel_.speculation() > 0;
+  if (inStep && nodesRead_ == channel_.predictions()) return;
+  nodesRead_ = channel_.predictions();
   nodes_.resize(static_cast<std::size_t>(body_.m_nodes.size()));
   for (int n = 0; n < body_.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body_.m_nodes[n];
@@ -126,7 +127,7 @@ void BodyContacts::readNodes() {
     for (auto& [number, shape] : known->second.shapes) shape.memory = {};
   }
   margin_ = margin;
-  search_.begin(nodes_, margin, body_.speculation());
+  search_.begin(nodes_, margin, channel_.speculation());
 }
 
 /// A box around the shape at both ends of its path.
@@ -171,7 +172,7 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   bool touches = false;
   for (const PointContact& touch : search_.find(*probe, path, memoryOf(known), &around)) {
     if (passesOver(touch.at)) continue;
-    PointContact& contact = body_.pointContacts().emplace_back(touch);
+    PointContact& contact = channel_.pointContacts().emplace_back(touch);
     contact.body = &body_;
     contact.object = &object;
     contact.friction = body_.m_cfg.kDF * object.getFriction();
@@ -219,7 +220,7 @@ void BodyContacts::forget(const btCollisionObject& object) {
   }
   if (!bodyLives()) return;
   // Contacts of the last step are reported until the next one.
-  for (PointContact& contact : body_.pointContacts()) {
+  for (PointContact& contact : channel_.pointContacts()) {
     if (contact.object == &object) contact.object = nullptr;
   }
 }
@@ -229,7 +230,7 @@ void BodyContacts::forgetAll() {
   known_.clear();
   remembered_ = 0;
   nodesRead_ = 0;
-  body_.pointContacts().clear();
+  channel_.pointContacts().clear();
 }
 
 /// Clearances are dropped, and found again with the same result.
@@ -241,7 +242,7 @@ void BodyContacts::shift(const btVector3& by) {
       shape.memory = std::move(fresh);
     }
   }
-  for (PointContact& contact : body_.pointContacts()) contact.position += by;
+  for (PointContact& contact : channel_.pointContacts()) contact.position += by;
 }
 
 void BodyContacts::forgetUnused(KnownObject& object) {
@@ -342,12 +343,13 @@ std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body, btScalar siz
 }
 
 std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body, const btDispatcher& dispatcher, bool nodes) {
-  const BodyWithTrees* made = bodyWithTrees(body);
-  if (!made) return nullptr;
-  std::shared_ptr<BodyContacts> atSurface = made->surfaceContacts().lock();
+  const BodyChannel* channel = channelOf(body);
+  if (!channel) return nullptr;
+  std::shared_ptr<BodyContacts> atSurface = channel->surfaceContacts().lock();
   if (atSurface && atSurface->dispatcher() == &dispatcher) return atSurface;
-  const bool isOurs = made->nodesSolver() && made->nodesSolver() == const_cast<btSoftBody&>(body).getSoftBodySolver();
-  return nodes && isOurs ? made->nodeContacts() : nullptr;
+  const btSoftBodySolver* solver = const_cast<btSoftBody&>(body).getSoftBodySolver();
+  const bool isOurs = channel->nodesSolver() && channel->nodesSolver() == solver;
+  return nodes && isOurs ? channel->nodeContacts() : nullptr;
 }
 
 }  // namespace tetskin::bullet_detail

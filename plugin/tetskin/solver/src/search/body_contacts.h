@@ -7,7 +7,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/shape_key.h>
 #include <tetskin/solver/src/search/convex_probe.h>
 #include <tetskin/solver/src/search/hull_probe.h>
@@ -93,12 +93,13 @@ class BodyContacts {
 
   const btDispatcher* dispatcher_;
   BodyWithTrees& body_;
+  BodyChannel& channel_;
   std::weak_ptr<const void> lifetime_;  ///< of the body: afterwards, another one may have its address
   PointCollider search_;
   btScalar thickness_;
   btScalar margin_ = 0;  ///< of the last search
   std::vector<NodePath> nodes_;
-  unsigned nodesRead_ = 0;    ///< BodyWithTrees::predictions when they were read; 0: they must be read
+  unsigned nodesRead_ = 0;    ///< BodyChannel::predictions when they were read; 0: they must be read
   std::vector<Met> waiting_;  ///< those that are yet to be searched for
   ExactProbe exact_;
   HullProbe hull_;

@@ -6,6 +6,7 @@
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/core/src/base/run_by_size.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/contact_filter.h>
 #include <tetskin/solver/src/base/destroy_all.h>
 #include <tetskin/solver/src/base/required_solver.h>
@@ -124,7 +125,7 @@ void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjec
     if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
     const SolvedBody* solved = impl_->bodies.find(body);
     // Otherwise, the algorithm of the pair has called it; but a dispatcher may be none of Bullet's.
-    if (solved && !solved->byBullet) return bodyWithTrees(*body)->nodeContacts()->collide(*object);
+    if (solved && !solved->byBullet) return channelOf(*body)->nodeContacts()->collide(*object);
     impl_->obstacleChanges.syncRigidObject(*body, *object);
   }
   btDeformableBodySolver::processCollision(body, object);

@@ -11,6 +11,7 @@
 #include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/solver/src/search/body_contacts.h>
 #include <tetskin/solver/src/step/step.h>
@@ -124,7 +125,8 @@ void shiftSoft(btSoftBody& body, const btVector3& by) {
   if (!own) return;
   own->shift(by);
   own->countMove();
-  for (const auto& contacts : {own->surfaceContacts().lock(), own->nodeContacts()}) {
+  const BodyChannel& channel = BodyChannel::of(*own);
+  for (const auto& contacts : {channel.surfaceContacts().lock(), channel.nodeContacts()}) {
     if (contacts) contacts->shift(by);
   }
 }

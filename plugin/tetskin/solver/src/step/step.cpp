@@ -13,8 +13,8 @@
 //                               writeBack       velocities
 //   applyTransforms             positions, by Bullet, and then in double: see step_positions.cpp
 #include <BulletSoftBody/btDeformableContactProjection.h>
-#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/core/src/base/run_by_size.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/destroy_all.h>
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/fixed_nodes.h>
@@ -104,7 +104,7 @@ void clearContacts(btSoftBody& body) {
   destroyAll(body.m_faceRigidContacts);
   destroyAll(body.m_faceNodeContacts);
   destroyAll(body.m_faceNodeContactsCCD);
-  if (auto* own = bodyWithTrees(body)) own->pointContacts().clear();
+  if (BodyChannel* channel = channelOf(body)) channel->pointContacts().clear();
 }
 
 /// Runs a task for each body: small bodies in parallel; a large one is itself divided among threads.

@@ -6,6 +6,7 @@
 // the next step on.
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/search/body_contacts.h>
 #include <tetskin/solver/src/step/step.h>
 
@@ -98,9 +99,9 @@ void DeformableSolver::Impl::dropRemovedObjects() {
     dropContactsWith(gone, solver.m_softBodies[b]->m_nodeRigidContacts);
     dropContactsWith(gone, solver.m_softBodies[b]->m_faceRigidContacts);
     // The end of a pair tells it, too, but not where an application's own algorithm has handled the pair.
-    const auto* own = bodyWithTrees(*solver.m_softBodies[b]);
-    if (!own || !own->nodeContacts()) continue;
-    for (const btCollisionObject* object : gone) own->nodeContacts()->forget(*object);
+    const BodyChannel* channel = channelOf(*solver.m_softBodies[b]);
+    if (!channel || !channel->nodeContacts()) continue;
+    for (const btCollisionObject* object : gone) channel->nodeContacts()->forget(*object);
   }
   findIslands(*objects.world());
 }

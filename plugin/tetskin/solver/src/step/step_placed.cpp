@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What is remembered of a body that the application puts elsewhere, or back to its start, between two steps.
-#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/solver/src/search/body_contacts.h>
 #include <tetskin/solver/src/step/step.h>
@@ -19,9 +19,9 @@ void DeformableSolver::Impl::forgetTouches(btSoftBody& body) {
   for (int i = 0; i < forces().size(); ++i) {
     if (InactiveForce* own = inactiveForce(forces()[i])) own->forget(body);
   }
-  BodyWithTrees* own = bodyWithTrees(body);
-  if (!own) return;
-  for (const auto& contacts : {own->surfaceContacts().lock(), own->nodeContacts()}) {
+  const BodyChannel* channel = channelOf(body);
+  if (!channel) return;
+  for (const auto& contacts : {channel->surfaceContacts().lock(), channel->nodeContacts()}) {
     if (contacts) contacts->forgetAll();
   }
 }

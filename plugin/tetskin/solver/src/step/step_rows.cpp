@@ -3,8 +3,8 @@
 //
 // The contacts of a step: the distance within which they are searched for, their rows, and which bodies are solved for
 // together because of them.
-#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/rigid_rows.h>
 #include <tetskin/solver/src/search/body_contacts.h>
@@ -20,27 +20,28 @@ namespace tetskin {
 void DeformableSolver::Impl::prepareSearch(SolvedBody& body) const {
   auto* own = bodyWithTrees(*body.body);
   if (!own) return;
-  own->setSearchWaits(threads != nullptr);
-  own->setKinematicPaths(rigids.sharedPaths());
-  own->setNodesSolver(body.byBullet ? nullptr : static_cast<const btSoftBodySolver*>(&solver));
+  BodyChannel& channel = BodyChannel::of(*own);
+  channel.setSearchWaits(threads != nullptr);
+  channel.setKinematicPaths(rigids.sharedPaths());
+  channel.setNodesSolver(body.byBullet ? nullptr : static_cast<const btSoftBodySolver*>(&solver));
   if (body.byBullet) return;
-  const auto& contacts = own->nodeContacts();
+  const auto& contacts = channel.nodeContacts();
   const auto count = static_cast<std::size_t>(body.body->m_nodes.size());
   if (!contacts || contacts->search().patches().nodes.size() != count) {
     const btScalar size = sizeOfNodes(*own);
-    own->setNodeContacts(makeNodeContacts(*own, size), size);
+    channel.setNodeContacts(makeNodeContacts(*own, size), size);
   }
-  if (own->surfaceContacts().expired()) own->setReach(own->margin());
+  if (channel.surfaceContacts().expired()) channel.setReach(own->margin());
 }
 
 /// Runs the searches that have waited for threads.
 void DeformableSolver::Impl::searchWaiting() {
   std::vector<std::shared_ptr<BodyContacts>> waiting;
   for (const SolvedBody& solved : bodies.bodies()) {
-    auto* own = bodyWithTrees(*solved.body);
-    if (!own) continue;
-    own->setSearchWaits(false);
-    for (const auto& contacts : {own->surfaceContacts().lock(), own->nodeContacts()}) {
+    BodyChannel* channel = channelOf(*solved.body);
+    if (!channel) continue;
+    channel->setSearchWaits(false);
+    for (const auto& contacts : {channel->surfaceContacts().lock(), channel->nodeContacts()}) {
       if (contacts && contacts->isWaiting()) waiting.push_back(contacts);
     }
   }
@@ -57,11 +58,12 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
   auto* own = bodyWithTrees(*body.body);
   const btDiscreteDynamicsWorld* world = body.world();
   if (!own || !world) return;
+  BodyChannel& channel = BodyChannel::of(*own);
   const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
   const btScalar distance = falls + kPathFraction * fastest * dt();
   // The body's box includes this distance.
-  const btScalar more = distance - own->speculation();
-  own->setSpeculation(distance);
+  const btScalar more = distance - channel.speculation();
+  channel.setSpeculation(distance);
   body.body->m_bounds[0] -= btVector3(more, more, more);
   body.body->m_bounds[1] += btVector3(more, more, more);
 }

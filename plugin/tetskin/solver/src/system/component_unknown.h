@@ -6,9 +6,9 @@
 // inertia.
 #pragma once
 
-#include <tetskin/bullet/src/base/carried_point.h>
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/core/src/base/arithmetic/small_matrix.h>
+#include <tetskin/solver/src/base/carried_point.h>
 #include <tetskin/solver/src/forces/forced_bodies.h>
 
 #include <Eigen/Core>

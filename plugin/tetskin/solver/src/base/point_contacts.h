@@ -5,7 +5,7 @@
 #pragma once
 
 #include <LinearMath/btVector3.h>
-#include <tetskin/bullet/src/base/carried_point.h>
+#include <tetskin/solver/src/base/carried_point.h>
 
 #include <cstdint>
 #include <vector>
