@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The smallest whole program: a tube of 20,000 vertices, pinned at one end, sags in a cage of 300 tets. No files.
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <cmath>
 #include <cstdio>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Plays a run that a demo has recorded by --record: it calls that demo with its arguments, and with --replay.
-#include <tetskin/bullet/recorder.h>
+#include <tetskin/replay/recorder.h>
 #include <tetskin/tetskin.h>
 
 #include <cstdio>

@@ -54,8 +54,8 @@ endif()
 # replay.heap and others are long runs: replay.drop is restored in a new process, too.
 function(tetskin_test_sanitized name label folders_from)
   tetskin_test_configuration(${name} FOLDER sanitized_in_double LABELS ${label} TARGET unit_tests
-    TESTS "^(core|threads|cage|elastic|io|bullet|contact|touch|reduced|replay)[.]"
-    LEAVE_OUT "^(replay[.](heap|drag|twist|pit|Deterministic)|bullet[.]EveryNumberInAllCells)"
+    TESTS "^(core|threads|cage|elastic|io|bullet|solver|contact|touch|reduced|replay)[.]"
+    LEAVE_OUT "^(replay[.](heap|drag|twist|pit|Deterministic)|solver[.]EveryNumberInAllCells)"
     OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1"
     -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF
     -DTETSKIN_TEST_FOLDERS_FROM=${folders_from})
@@ -164,6 +164,7 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
     PROCESSORS ${nested_parallel})
   tetskin_test_consumer(installed_package -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=package)
   tetskin_test_consumer(installed_core_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=core)
+  tetskin_test_consumer(installed_bullet_alone -DCMAKE_PREFIX_PATH=${prefix} -DCONSUME=bullet)
   find_package(Eigen3 3.4 CONFIG REQUIRED)
   get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
   add_test(NAME consumer.installed_headers
@@ -192,7 +193,8 @@ if(TETSKIN_INSTALL AND PYTHON_IN_PATH)
   tetskin_test_consumer(flags_native ${package} "-DCMAKE_CXX_FLAGS=-O2 -march=native")
   tetskin_test_consumer(flags_sanitized ${package}
     "-DCMAKE_CXX_FLAGS=-O1 -fsanitize=address,undefined -fno-sanitize-recover=all")
-  set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.installed_headers
+  set_tests_properties(consumer.installed_package consumer.installed_core_alone consumer.installed_bullet_alone
+    consumer.installed_headers
     consumer.flags_avx2 consumer.flags_native consumer.flags_sanitized
     PROPERTIES FIXTURES_REQUIRED installed_package LABELS "${labels_full}")
   # Forms in which Bullet comes, made of Debian's. The programs link the installed libraries.

@@ -3,8 +3,9 @@
 #include "bench/snapshot_cases.h"
 
 #include <benchmark/benchmark.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/contact/soft_contacts.h>
+#include <tetskin/replay/snapshot.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <memory>
 #include <string>

@@ -4,9 +4,9 @@
 // A world in which motion and contact are measured, with everything that moves in it.
 #pragma once
 
-#include <tetskin/bullet/deformable_body.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/solver/deformable_body.h>
 
 #include <Eigen/Geometry>
 #include <functional>

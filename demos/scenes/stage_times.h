@@ -4,7 +4,7 @@
 // How long the stages of a run's frames take.
 #pragma once
 
-#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <nlohmann/json_fwd.hpp>
 

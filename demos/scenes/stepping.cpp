@@ -2,8 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/stepping.h"
 
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/recorder.h>
+#include <tetskin/replay/recorder.h>
+#include <tetskin/replay/snapshot.h>
+#include <tetskin/solver/deformable_world.h>
 #include <tetskin/tetskin.h>
 
 #include <nlohmann/json.hpp>

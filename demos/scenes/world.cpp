@@ -11,11 +11,11 @@
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/reduced/reduced_body.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <algorithm>
 #include <cassert>

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "world_model.h"
 
+#include <tetskin/replay/snapshot.h>
 #include <algorithm>
 #include <cmath>
 
@@ -144,14 +145,14 @@ void World::updateSkins() {
 }
 
 std::vector<char> World::save() const {
-  std::vector<char> bytes(take(world_->save(nullptr, 0)));
-  (void)take(world_->save(bytes.data(), bytes.size()));
+  std::vector<char> bytes(take(saveSnapshot(*world_, nullptr, 0)));
+  (void)take(saveSnapshot(*world_, bytes.data(), bytes.size()));
   return bytes;
 }
 
 void World::restore(const void* snapshot, std::size_t size) {
   const Alone alone(*this);
-  check(world_->restore(snapshot, size));
+  check(restoreSnapshot(*world_, snapshot, size));
   updateTeleported();
 }
 

@@ -9,12 +9,12 @@
 #include "models.h"
 
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/recorder.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/replay/recorder.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 #include <atomic>

@@ -21,9 +21,6 @@
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/types.h>
 #ifdef TETSKIN_HAS_BULLET
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/recorder.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #endif
@@ -46,6 +43,14 @@
 #endif
 #ifdef TETSKIN_HAS_REDUCED
 #include <tetskin/reduced/reduced_body.h>
+#endif
+#ifdef TETSKIN_HAS_REPLAY
+#include <tetskin/replay/recorder.h>
+#include <tetskin/replay/snapshot.h>
+#endif
+#ifdef TETSKIN_HAS_SOLVER
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 #endif
 #ifdef TETSKIN_HAS_THREADS
 #include <tetskin/threads/thread_pool.h>

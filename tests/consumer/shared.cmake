@@ -21,7 +21,7 @@ if(PKG_CONFIG)
 endif()
 
 string(REGEX MATCH "^[0-9]+[.][0-9]+" abi ${VERSION})  # while the major version is 0
-foreach(library core bullet cage contact elastic io reduced threads touch)
+foreach(library core bullet cage contact elastic io reduced replay solver threads touch)
   file(GLOB_RECURSE so ${prefix}/libtetskin_${library}.so.${abi})
   if(NOT so)
     message(FATAL_ERROR "No library tetskin_${library} with the ABI ${abi} in its name")
@@ -37,15 +37,15 @@ foreach(library core bullet cage contact elastic io reduced threads touch)
     string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|restTets|restQuadraticTets|findRestNodes|takeRestShapes)[^\n]*" ""
       names "${names}")
   endif()
-  # A class that bullet derives from: its type information is repeated there.
-  if(library STREQUAL bullet)
+  # A class that solver derives from: its type information is repeated there.
+  if(library STREQUAL solver)
     string(REGEX REPLACE "[^\n]* (vtable|typeinfo|typeinfo name) for tetskin::elastic_detail::ConjugateGradient<(float|double)>::CouplingOperator" ""
       names "${names}")
   endif()
   if(names MATCHES "${shown}(findTets|skinLinear|skinQuadratic|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
     message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
   endif()
-  if(NOT names MATCHES "${shown}(embed|createSoftBody|createCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree)")
+  if(NOT names MATCHES "${shown}(embed|createSoftBody|createCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree|DeformableWorld|saveSnapshot)")
     message(FATAL_ERROR "${so} does not show what is public")
   endif()
 endforeach()

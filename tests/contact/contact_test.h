@@ -4,7 +4,7 @@
 // A body whose surface lies well within its cage, and the things that it falls on.
 #pragma once
 
-#include "bullet/deformable_test.h"
+#include "solver/deformable_test.h"
 #include "support/points_within.h"
 
 #include <tetskin/contact/surface_contact.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include "../bullet/deformable_test.h"
+#include "solver/deformable_test.h"
 
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/contact_body.h>

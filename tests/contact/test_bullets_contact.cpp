@@ -7,7 +7,7 @@
 #include "contact_test.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
-#include <tetskin/bullet/src/base/exact_distance.h>
+#include <tetskin/solver/src/base/exact_distance.h>
 
 #include <cmath>
 #include <memory>

@@ -3,8 +3,8 @@
 //
 // Rest does not depend on the step: an application that passes the time of each frame as one step has steps of any
 // length, and what lies stays where it lies.
-#include "bullet/recorded_forces.h"
 #include "contact_test.h"
+#include "solver/recorded_forces.h"
 
 #include <cmath>
 #include <functional>

@@ -6,6 +6,7 @@
 #include "soft_fixtures.h"
 #include "support/allocation_count.h"
 
+#include <tetskin/replay/snapshot.h>
 #include <vector>
 
 namespace tetskin::test {
@@ -72,7 +73,7 @@ TEST(RefusedSnapshotsOfContacts, AreToldByEachBodysShape) {
   Scene one(false), other(true);
   other.world.stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240);
   const Snapshot bytes = savedOf(one.world), before = savedOf(other.world);
-  const Status refused = other.world.restore(bytes.data(), bytes.size());
+  const Status refused = restoreSnapshot(other.world, bytes.data(), bytes.size());
   EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
   EXPECT_NE(refused.message.find("another contact shape"), std::string::npos) << refused.message;
   EXPECT_TRUE(savedOf(other.world) == before);

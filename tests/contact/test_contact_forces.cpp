@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What bodies in contact by their surfaces do to each other, as ForceRecord reports it.
-#include "bullet/recorded_forces.h"
 #include "contact_test.h"
 #include "soft_fixtures.h"
+#include "solver/recorded_forces.h"
 #include "support/allocation_count.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>

@@ -8,8 +8,8 @@
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
-#include <tetskin/bullet/src/search/mesh_probe.h>
 #include <tetskin/contact/soft_contacts.h>
+#include <tetskin/solver/src/search/mesh_probe.h>
 
 #include <functional>
 #include <string>

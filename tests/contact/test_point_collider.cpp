@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact_test.h"
 
-#include <tetskin/bullet/src/search/point_collider.h>
 #include <tetskin/contact/src/rigid/surface_patches.h>
+#include <tetskin/solver/src/search/point_collider.h>
 
 #include <random>
 #include <set>

@@ -4,9 +4,9 @@
 
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
-#include <tetskin/bullet/src/search/hull_probe.h>
-#include <tetskin/bullet/src/search/mesh_probe.h>
-#include <tetskin/bullet/src/search/point_path.h>
+#include <tetskin/solver/src/search/hull_probe.h>
+#include <tetskin/solver/src/search/mesh_probe.h>
+#include <tetskin/solver/src/search/point_path.h>
 
 namespace tetskin::test {
 

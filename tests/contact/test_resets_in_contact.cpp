@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Bodies that are put back to their start, or elsewhere, while they touch others.
-#include <tetskin/bullet/recorder.h>
-#include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/replay/recorder.h>
+#include <tetskin/solver/src/base/body_channel.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -61,7 +61,7 @@ struct LandingBalls {
 /// things.
 TEST(ResetsInContact, KeepTheReachOfASurface) {
   LandingBalls scene;
-  const auto reachOf = [](DeformableBody& body) { return bullet_detail::bodyWithTrees(body.body())->reach(); };
+  const auto reachOf = [](DeformableBody& body) { return bullet_detail::channelOf(body.body())->reach(); };
   const btScalar reach = reachOf(*scene.bodies[1]);
   ASSERT_GT(reach, 0);
   scene.frame();

@@ -4,7 +4,7 @@
 // A body's nodes are read once for all objects that it meets in a step, and for each of them outside of steps.
 #include "contact_test.h"
 
-#include <tetskin/bullet/src/base/body_trees.h>
+#include <tetskin/solver/src/base/body_channel.h>
 
 #include <cmath>
 #include <memory>
@@ -97,7 +97,7 @@ TEST(SearchesOutsideOfSteps, FindContactsWhereNodesHaveBeenPut) {
     for (int k = 0; k < steps; ++k) at.step();
     btSoftBody& body = at.ball.body->body();
     const auto search = [&] {
-      bullet_detail::PointContacts& contacts = bullet_detail::bodyWithTrees(body)->pointContacts();
+      bullet_detail::PointContacts& contacts = bullet_detail::channelOf(body)->pointContacts();
       contacts.clear();
       at.world.deformable().performDiscreteCollisionDetection();
       for (const bullet_detail::PointContact& contact : contacts) {

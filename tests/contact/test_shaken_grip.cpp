@@ -3,8 +3,8 @@
 //
 // What two fingers hold by friction stays where it is between them while they shake it, as far as Coulomb's law allows,
 // and slides by that law beyond.
-#include "bullet/recorded_forces.h"
 #include "contact_test.h"
+#include "solver/recorded_forces.h"
 
 #include <array>
 #include <cmath>

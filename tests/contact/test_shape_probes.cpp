@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact_test.h"
 
-#include <tetskin/bullet/src/search/convex_probe.h>
-#include <tetskin/bullet/src/search/hull_probe.h>
-#include <tetskin/bullet/src/search/mesh_probe.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/solver/src/search/convex_probe.h>
+#include <tetskin/solver/src/search/hull_probe.h>
+#include <tetskin/solver/src/search/mesh_probe.h>
 
 namespace tetskin::test {
 

@@ -8,7 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <gtest/gtest.h>
 
-#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Bodies that meet each other go on from a snapshot as they did when it was saved, to the bit.
+#include <tetskin/replay/snapshot.h>
 #include <tetskin/threads/thread_pool.h>
 
 #include <vector>
@@ -44,13 +45,13 @@ struct SavedHeap {
   }
   void step() { world.stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240); }
   Snapshot saved() const {
-    Snapshot bytes(world.save(nullptr, 0).value());
-    const Result<std::size_t> count = world.save(bytes.data(), bytes.size());
+    Snapshot bytes(saveSnapshot(world, nullptr, 0).value());
+    const Result<std::size_t> count = saveSnapshot(world, bytes.data(), bytes.size());
     EXPECT_TRUE(count.ok()) << count.status().message;
     return bytes;
   }
   void restore(const Snapshot& bytes) {
-    const Status status = world.restore(bytes.data(), bytes.size());
+    const Status status = restoreSnapshot(world, bytes.data(), bytes.size());
     ASSERT_TRUE(status.ok()) << status.message;
   }
   std::vector<btScalar> motion() const { return motionOf(bodies); }
@@ -92,7 +93,7 @@ TEST(SnapshotsOfSoftContact, AmongOtherBodiesAreRefusedAndChangeNothing) {
   for (int k = 0; k < 5; ++k) heap.step();
   heap.contacts->remove(heap.bodies.back()->body());
   const Snapshot before = heap.saved();
-  const Status refused = heap.world.restore(all.data(), all.size());
+  const Status refused = restoreSnapshot(heap.world, all.data(), all.size());
   EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
   EXPECT_NE(refused.message.find("contacts among other soft bodies were there"), std::string::npos) << refused.message;
   EXPECT_TRUE(heap.saved() == before);

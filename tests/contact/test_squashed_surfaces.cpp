@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Surfaces of soft bodies that are squashed flat by rigid ones, far more than they can carry.
-#include "bullet/recorded_forces.h"
 #include "contact_test.h"
+#include "solver/recorded_forces.h"
 
 #include <algorithm>
 #include <cmath>

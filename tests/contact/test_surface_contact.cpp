@@ -3,7 +3,7 @@
 #include "contact_test.h"
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-#include <tetskin/bullet/src/base/exact_distance.h>
+#include <tetskin/solver/src/base/exact_distance.h>
 
 namespace tetskin::test {
 

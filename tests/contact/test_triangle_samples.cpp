@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "contact_test.h"
 
-#include <tetskin/bullet/src/search/mesh_probe.h>
-#include <tetskin/bullet/src/search/point_collider.h>
 #include <tetskin/contact/src/rigid/surface_patches.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
+#include <tetskin/solver/src/search/mesh_probe.h>
+#include <tetskin/solver/src/search/point_collider.h>
 
 #include <random>
 

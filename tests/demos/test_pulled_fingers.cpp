@@ -4,10 +4,10 @@
 // Fingers that a cage keeps apart come apart when they are pulled, about as far as those of the body itself.
 #include <gtest/gtest.h>
 
-#include <tetskin/bullet/deformable_body.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/elastic/calibration.h>
+#include <tetskin/solver/deformable_body.h>
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 

@@ -3,8 +3,8 @@
 //
 // Runs that the demos record, play again and check.
 #include <gtest/gtest.h>
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/recorder.h>
+#include <tetskin/replay/recorder.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include "command.h"
 

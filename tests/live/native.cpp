@@ -9,14 +9,14 @@
 //   --any   with those that this processor has
 //   --fast  without `deterministic`
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/bullet/src/exported/state_hash.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
+#include <tetskin/replay/src/exported/state_hash.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <algorithm>
 #include <chrono>

@@ -5,12 +5,12 @@
 // of test_overhead.py cost here.
 //   tetskin_reference MESH TETS FRAMES POSITIONS   writes the surface after so many frames: floats; prints microseconds
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/io/files.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <algorithm>
 #include <chrono>

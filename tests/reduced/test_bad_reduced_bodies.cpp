@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "reduced_test.h"
 
-#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <limits>
 

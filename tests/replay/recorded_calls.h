@@ -9,11 +9,12 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/recorder.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/replay/recorder.h>
+#include <tetskin/replay/snapshot.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 
@@ -202,8 +203,8 @@ struct Call {
 };
 
 inline Bytes savedBytes(CallScene& scene) {
-  Bytes bytes(scene.world.save(nullptr, 0).value());
-  EXPECT_TRUE(scene.world.save(bytes.data(), bytes.size()).ok());
+  Bytes bytes(saveSnapshot(scene.world, nullptr, 0).value());
+  EXPECT_TRUE(saveSnapshot(scene.world, bytes.data(), bytes.size()).ok());
   return bytes;
 }
 
@@ -260,7 +261,7 @@ class CalledRun {
   void expectGoesOnFromBefore() const {
     const auto scene = begun();
     for (int round = 0; round < (call_.kind == Kind::Structure ? 1 : 2); ++round) {
-      const Status restored = scene->world.restore(before_.data(), before_.size());
+      const Status restored = restoreSnapshot(scene->world, before_.data(), before_.size());
       ASSERT_TRUE(restored.ok()) << restored.message;
       goOn(*scene, kCalled, true);
     }
@@ -272,7 +273,7 @@ class CalledRun {
       if (again) callBefore(*scene, frame);
       if (again || frame < 2) scene->step();
     }
-    const Status restored = scene->world.restore(after_.data(), after_.size());
+    const Status restored = restoreSnapshot(scene->world, after_.data(), after_.size());
     ASSERT_TRUE(restored.ok()) << restored.message;
     goOn(*scene, kCalled + kCalls, false);
   }
@@ -280,7 +281,7 @@ class CalledRun {
  private:
   std::unique_ptr<CallScene> begun() const {
     auto scene = std::make_unique<CallScene>(plain_);
-    EXPECT_TRUE(scene->world.restore(beginning_.data(), beginning_.size()).ok());
+    EXPECT_TRUE(restoreSnapshot(scene->world, beginning_.data(), beginning_.size()).ok());
     return scene;
   }
   void callBefore(CallScene& scene, int frame) const {

@@ -4,11 +4,11 @@
 
 #include "replay_models.h"
 
-#include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
-#include <tetskin/bullet/src/exported/state_hash.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/replay/src/exported/state_hash.h>
+#include <tetskin/solver/deformable_body.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 

@@ -6,7 +6,7 @@
 // that a world restored from a snapshot goes on as the one that was saved.
 #pragma once
 
-#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <cstdint>
 #include <memory>

@@ -5,6 +5,7 @@
 //   runs save SCENE FOLDER THREADS EVERY   steps a scene, and saves a snapshot every so many frames, and all hashes
 //   runs go_on SCENE FOLDER THREADS EVERY  makes the scene anew for each snapshot, restores it, and compares
 //   runs churn SCENE FOLDER THREADS EVERY  the same, after other bodies have come and gone
+#include <tetskin/replay/snapshot.h>
 #include <tetskin/threads/thread_pool.h>
 
 #include <btBulletDynamicsCommon.h>
@@ -47,8 +48,9 @@ struct Run {
     if (!scene) fail("no scene is called " + arguments.scene);
   }
   Bytes save() const {
-    Bytes bytes(scene->world().save(nullptr, 0).value());
-    if (!scene->world().save(bytes.data(), bytes.size()).ok()) fail("the size that was asked for does not suffice");
+    Bytes bytes(saveSnapshot(scene->world(), nullptr, 0).value());
+    if (!saveSnapshot(scene->world(), bytes.data(), bytes.size()).ok())
+      fail("the size that was asked for does not suffice");
     return bytes;
   }
   ThreadPool pool;
@@ -100,7 +102,7 @@ void goOn(const Arguments& arguments, bool withChurn) {
     const Run run(arguments);
     if (withChurn) churn(*run.scene);
     const Bytes snapshot = read(arguments.fileOf(from));
-    const Status restored = run.scene->world().restore(snapshot.data(), snapshot.size());
+    const Status restored = restoreSnapshot(run.scene->world(), snapshot.data(), snapshot.size());
     if (!restored.ok()) fail("frame " + std::to_string(from) + ": " + restored.message);
     if (run.save() != snapshot) fail("what was restored at frame " + std::to_string(from) + " is saved differently");
     for (int frame = from; frame < kReplayFrames; ++frame) {

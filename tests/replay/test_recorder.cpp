@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/recorder.h>
+#include <tetskin/replay/recorder.h>
+#include <tetskin/replay/snapshot.h>
+#include <tetskin/solver/deformable_body.h>
 
 #include <btBulletDynamicsCommon.h>
 
@@ -351,10 +352,10 @@ TEST(Snapshots, OfADeterministicWorldGoOnInANewOne) {
   for (const char* name : {"twist", "drop"}) {
     const auto scene = ReplayScene::create(name, options);
     for (int frame = 0; frame < 20; ++frame) scene->step(frame);
-    std::vector<unsigned char> snapshot(scene->world().save(nullptr, 0).value());
-    ASSERT_TRUE(scene->world().save(snapshot.data(), snapshot.size()).ok());
+    std::vector<unsigned char> snapshot(saveSnapshot(scene->world(), nullptr, 0).value());
+    ASSERT_TRUE(saveSnapshot(scene->world(), snapshot.data(), snapshot.size()).ok());
     const auto other = ReplayScene::create(name, options);
-    ASSERT_TRUE(other->world().restore(snapshot.data(), snapshot.size()).ok());
+    ASSERT_TRUE(restoreSnapshot(other->world(), snapshot.data(), snapshot.size()).ok());
     for (int frame = 20; frame < 40; ++frame) {
       scene->step(frame);
       other->step(frame);
@@ -366,9 +367,9 @@ TEST(Snapshots, OfADeterministicWorldGoOnInANewOne) {
 TEST(Snapshots, OfAWorldWithoutSoftBodiesChangeNothing) {
   DeformableWorld world;
   const Newcomer ball(world);
-  std::vector<unsigned char> first(world.save(nullptr, 0).value()), second(first.size());
-  ASSERT_TRUE(world.save(first.data(), first.size()).ok());
-  ASSERT_TRUE(world.save(second.data(), second.size()).ok());
+  std::vector<unsigned char> first(saveSnapshot(world, nullptr, 0).value()), second(first.size());
+  ASSERT_TRUE(saveSnapshot(world, first.data(), first.size()).ok());
+  ASSERT_TRUE(saveSnapshot(world, second.data(), second.size()).ok());
   EXPECT_EQ(first, second);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <gtest/gtest.h>
-#include <tetskin/bullet/src/record/record_file.h>
-#include <tetskin/bullet/src/record/state_patch.h>
+#include <tetskin/replay/src/record/record_file.h>
+#include <tetskin/replay/src/record/state_patch.h>
 
 #include <random>
 

@@ -12,7 +12,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 DOCS = REPOSITORY / "plugin/docs"
 LIBRARIES = REPOSITORY / "plugin/tetskin"
-STEP = LIBRARIES / "bullet/src/step/step.cpp"
+STEP = LIBRARIES / "solver/src/step/step.cpp"
 SVG = "{http://www.w3.org/2000/svg}"
 KINDS = ("PUBLIC", "PRIVATE", "INTERFACE")
 # Targets of other projects, by the ids of their boxes.

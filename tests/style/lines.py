@@ -4,6 +4,7 @@
 """lines.py [--release NUMBER]: prints the lines of code of each library, of the packages, the demos and the tests,
 beside those of the last release, which lines.txt has. Lines that are empty or only a comment do not count.
 
+A row there with several names, joined by +, was one folder, which has been parted since: its lines stand beside their sum.
 With --release, before a release, writes lines.txt anew. Fails only where lines.txt does not name what there is: how many
 lines a feature is worth is for people to say."""
 import re
@@ -58,6 +59,12 @@ def noted():
     return rows[0][1], {folder: int(lines) for folder, lines in rows[1:]}
 
 
+def folders_of(name):
+    """The folders of a row in lines.txt."""
+    above, _, last = name.rpartition("/")
+    return [f"{above}/{one}" if above else one for one in last.split("+")]
+
+
 def check_itself():
     for text, suffix, wanted in (("int f();\n\n// why\nint g(); // what\n", ".h", 2), ("/* a\nb */\nint f();\n", ".cpp", 1),
                                  ('"""A\nB"""\nimport os\n# why\nos.x("""\n""")\n', ".py", 3), ("set -eu\n# why\n", "", 1)):
@@ -76,12 +83,18 @@ def main():
         sys.exit(__doc__)
     release, before = noted()
     libraries = [folder for folder in now if folder.startswith("plugin/tetskin/")]
-    sums = {"the library": libraries, **{folder: [folder] for folder in sorted(now)}}
-    print(f"{'lines of code':28}{release:>8}{'now':>8}")
-    for name, folders in sums.items():
-        then, here = (sum(one.get(folder, 0) for folder in folders) for one in (before, now))
-        print(f"{name:28}{then:8}{here:8}{here - then:+8}")
-    unknown = sorted(set(before) - set(now))
+    rows = {name: folders_of(name) for name in before}
+    known = {folder for folders in rows.values() for folder in folders}
+    rows.update({folder: [folder] for folder in now if folder not in known})
+    print(f"{'lines of code':38}{release:>8}{'now':>8}")
+    then, here = (sum(lines for name, lines in one.items() if name.startswith("plugin/tetskin/")) for one in (before, now))
+    print(f"{'the library':38}{then:8}{here:8}{here - then:+8}")
+    for name, folders in sorted(rows.items()):
+        then, here = before.get(name, 0), sum(now.get(folder, 0) for folder in folders)
+        print(f"{name:38}{then:8}{here:8}{here - then:+8}")
+        for folder in folders if len(folders) > 1 else []:
+            print(f"  {folder:36}{'':8}{now.get(folder, 0):8}")
+    unknown = sorted(known - set(now))
     if len(libraries) < 5 or unknown:
         sys.exit(f"{NOTED.name} and the repository do not name the same folders: {', '.join(unknown)}; take the rows of what has gone out")
 

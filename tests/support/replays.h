@@ -5,7 +5,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/deformable_world.h>
+#include <tetskin/replay/snapshot.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <cstring>
 #include <memory>

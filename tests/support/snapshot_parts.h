@@ -5,7 +5,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/bullet/src/state/snapshot_hash.h>
+#include <tetskin/replay/src/state/snapshot_hash.h>
 
 #include <cstdint>
 #include <cstring>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What springs, welds and impulses do to both sides, as ForceRecord reports it.
-#include "../bullet/recorded_forces.h"
+#include "solver/recorded_forces.h"
 #include "touch_test.h"
 
 namespace tetskin::test {

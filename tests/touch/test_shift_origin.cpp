@@ -6,13 +6,14 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/replay/snapshot.h>
 
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "bullet/recorded_forces.h"
+#include "solver/recorded_forces.h"
 #include "support/bars.h"
 #include "support/cage_surface.h"
 #include "touch_test.h"

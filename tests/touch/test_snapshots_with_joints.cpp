@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/replay/snapshot.h>
+
 #include "support/replays.h"
 #include "touch_test.h"
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include "../bullet/deformable_test.h"
+#include "solver/deformable_test.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/touch/surface_joint.h>

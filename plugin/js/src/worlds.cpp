@@ -3,7 +3,8 @@
 #include "handles.h"
 
 #include <emscripten.h>
-#include <tetskin/bullet/src/exported/state_hash.h>
+#include <tetskin/replay/snapshot.h>
+#include <tetskin/replay/src/exported/state_hash.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -85,7 +86,7 @@ View poses(WorldHandle& handle) {
 }
 
 std::size_t snapshotSize(WorldHandle& handle) {
-  return take(handle.world->bullet().save(nullptr, 0));
+  return take(saveSnapshot(handle.world->bullet(), nullptr, 0));
 }
 View save(WorldHandle& handle) {
   return lent(handle.world->save());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A body of elastic tets by itself, in an engine of any kind. With Bullet, take `DeformableBody` (tetskin/bullet).
+// A body of elastic tets by itself, in an engine of any kind. With Bullet, take `DeformableBody` (tetskin/solver).
 #pragma once
 
 #include <tetskin/core/cage.h>

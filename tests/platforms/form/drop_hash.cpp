@@ -1,12 +1,12 @@
 // A ball that falls into a bowl and touches it with its surface, without files and without functions whose last bits
 // differ between C libraries. Prints a hash of the nodes' positions for each instruction set.
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include <array>
 #include <cmath>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Links every part of the package, and steps a body once.
-#include <tetskin/bullet/deformable_body.h>
-#include <tetskin/bullet/deformable_world.h>
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/solver/deformable_body.h>
+#include <tetskin/solver/deformable_world.h>
 #include <tetskin/tetskin.h>
 
 #include <cstdio>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/base/body_forces.h>
-#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
+#include <tetskin/solver/src/base/body_forces.h>
+#include <tetskin/solver/src/base/required_solver.h>
 
 #include <cassert>
 #include <cmath>

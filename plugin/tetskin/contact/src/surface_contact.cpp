@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/own_objects.h>
-#include <tetskin/bullet/src/base/required_solver.h>
-#include <tetskin/bullet/src/exported/point_search.h>
 #include <tetskin/contact/src/rigid/surface_patches.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/exported/skin_binding.h>
+#include <tetskin/solver/src/base/required_solver.h>
+#include <tetskin/solver/src/exported/point_search.h>
 
 #include <algorithm>
 #include <cassert>
@@ -133,8 +133,8 @@ Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBod
 
 const std::vector<SurfaceContactPoint>& SurfaceContact::contacts() const {
   impl_->points.clear();
-  if (const BodyWithTrees* body = impl_->search.body()) {
-    for (const PointContact& contact : body->pointContacts()) {
+  if (const PointContacts* contacts = impl_->search.contacts()) {
+    for (const PointContact& contact : *contacts) {
       if (!contact.object) continue;
       impl_->points.push_back({contact.position, contact.normal, contact.distance, contact.object, contact.impulse});
     }

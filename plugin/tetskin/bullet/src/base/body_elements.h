@@ -22,7 +22,8 @@ struct BuiltBody {
 /// cage     `validateAttributes(cage)` is ok
 /// options  including the data of the cage: see `withCageDefaults`
 /// Errors   those of `createSoftBody`
-Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo, const SoftBodyOptions& options);
+TETSKIN_BULLET_API Result<BuiltBody> buildBody(const Cage& cage, btSoftBodyWorldInfo& worldInfo,
+                                               const SoftBodyOptions& options);
 
 /// Ok, or that the cage is unusable, or has flat tets.
 TETSKIN_BULLET_API Status checkCage(const TetMesh& cage, const TetMeshReport& report);

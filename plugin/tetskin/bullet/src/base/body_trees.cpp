@@ -149,12 +149,14 @@ class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
   explicit Shape(BodyWithTrees& body) : btSoftBodyCollisionShape(&body), body_(body) {}
   btScalar getMargin() const override {
     body_.keepFaceTree();
-    return btSoftBodyCollisionShape::getMargin() + body_.speculation();
+    const BodyCompanion* companion = body_.companion();
+    return btSoftBodyCollisionShape::getMargin() + (companion ? companion->speculation() : btScalar(0));
   }
   void getAabb(const btTransform& transform, btVector3& low, btVector3& high) const override {
     btSoftBodyCollisionShape::getAabb(transform, low, high);
-    if (!(body_.reach() >= 0)) return;
-    const btScalar reach = body_.reach() + body_.speculation();
+    const BodyCompanion* companion = body_.companion();
+    if (!companion || !(companion->reach() >= 0)) return;
+    const btScalar reach = companion->reach() + companion->speculation();
     const btVector3 around(reach, reach, reach);
     for (int n = 0; n < body_.m_nodes.size(); ++n) {
       const btSoftBody::Node& node = body_.m_nodes[n];
@@ -234,9 +236,7 @@ void BodyWithTrees::returnToStart() {
     for (btVector3* rate : {&node.m_v, &node.m_vn, &node.m_splitv, &node.m_f}) rate->setZero();
   }
   m_maxSpeedSquared = 0;
-  if (surfaceContacts_.expired()) setReach(-1);
-  setSpeculation(0);
-  pointContacts_.clear();
+  if (companion_) companion_->returnToStart();
   countMove();
   if (kind_ != Kind::None) {
     buildNodeTree(*this);
@@ -247,12 +247,10 @@ void BodyWithTrees::returnToStart() {
 }
 
 void BodyWithTrees::visitState(WorldStream& stream) {
-  stream(reach_);
   stream(shifted_);
   if (!stream.restoring()) return;
   countMove();
-  setSpeculation(0);
-  pointContacts_.clear();
+  if (companion_) companion_->dropStep();
   if (!hasNoFaceTree()) updateFaceTree(false, false);
 }
 

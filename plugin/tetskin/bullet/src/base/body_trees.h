@@ -11,7 +11,6 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/bullet/src/base/own_objects.h>
-#include <tetskin/bullet/src/base/point_contacts.h>
 #include <tetskin/export.h>
 
 #include <cstdint>
@@ -21,8 +20,6 @@
 
 namespace tetskin::bullet_detail {
 
-class BodyContacts;
-class KinematicPaths;
 class WorldStream;
 
 /// Builds all three trees by median splits, for any number of components, with boxes that fit the nodes' current
@@ -32,13 +29,28 @@ TETSKIN_BULLET_API void buildTrees(btSoftBody& body);
 /// Does what Bullet would do in the next step if m_bUpdateRtCst is set, but with our trees. The tree of faces is only
 /// updated if it was not omitted, and only rebuilt if nodes or faces have been added or moved in memory. Cost O(links +
 /// faces + nodes) without a rebuild; nothing if the flag is not set.
-void updateConstants(btSoftBody& body);
+TETSKIN_BULLET_API void updateConstants(btSoftBody& body);
 
 /// Tells whether the nodes of a body may have moved; it exists as long as the body.
 struct NodeMoves {
   std::uint64_t count = 1;
   /// The solver whose steps count; null if none does. If the body has another one, its world moves nodes uncounted.
   const btSoftBodySolver* counter = nullptr;
+};
+
+/// What a solver keeps with a body: it goes along from world to world, and is destroyed with the body.
+class BodyCompanion {
+ public:
+  virtual ~BodyCompanion() = default;
+  /// Distance that is added to that of the shape while a step searches for contacts; else 0.
+  virtual btScalar speculation() const = 0;
+  /// The box in the broadphase also contains the nodes' positions at the end of the step, enlarged by this: Bullet's
+  /// own box only contains the positions at the beginning. Below 0: Bullet's own box.
+  virtual btScalar reach() const = 0;
+  /// The body has another state: drops what was found in a step.
+  virtual void dropStep() = 0;
+  /// The body is as it was created.
+  virtual void returnToStart() = 0;
 };
 
 /// A soft body that keeps its trees valid.
@@ -48,7 +60,7 @@ struct NodeMoves {
 ///
 /// The tree of faces is also rebuilt at once where a step in a classic world deletes it, as it does if m_bUpdateRtCst
 /// is set. Bullet leaves the faces pointing into the deleted tree, and writes there when nodes are appended.
-class BodyWithTrees : public btSoftBody {
+class TETSKIN_BULLET_API BodyWithTrees : public btSoftBody {
  public:
   BodyWithTrees(btSoftBodyWorldInfo& worldInfo, const std::vector<btVector3>& nodes);
 
@@ -71,17 +83,9 @@ class BodyWithTrees : public btSoftBody {
     moves_->counter = solver;
     countMove();  // whatever has happened in between
   }
-  /// Finds contacts of points other than the nodes with rigid objects; expired if nothing does.
-  const std::weak_ptr<BodyContacts>& surfaceContacts() const { return surfaceContacts_; }
-  void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
-  /// Finds the contacts of the nodes; or null.
-  const std::shared_ptr<BodyContacts>& nodeContacts() const { return nodeContacts_; }
-  /// size  of the body, when they were made
-  void setNodeContacts(std::shared_ptr<BodyContacts> contacts, btScalar size) {
-    nodeContacts_ = std::move(contacts);
-    contactSize_ = size;
-  }
-  btScalar contactSize() const { return contactSize_; }
+  /// Null until a solver keeps something.
+  BodyCompanion* companion() const { return companion_.get(); }
+  void setCompanion(std::unique_ptr<BodyCompanion> companion) { companion_ = std::move(companion); }
   /// The nodes' positions with which the body was created.
   const std::vector<btVector3>& createdAt() const { return createdAt_; }
   /// By how much the world has been moved since.
@@ -89,44 +93,10 @@ class BodyWithTrees : public btSoftBody {
   void shift(const btVector3& by) { shifted_ += by; }
   /// Takes the body back to where it was created, at rest, with new trees; cost O(n log n).
   void returnToStart();
-  /// The solver that reads the contacts of the nodes; null if Bullet searches for them. Whether the body is still in
-  /// its world, another solver's name in the body tells.
-  const btSoftBodySolver* nodesSolver() const { return nodesSolver_; }
-  void setNodesSolver(const btSoftBodySolver* solver) { nodesSolver_ = solver; }
-
-  /// Where kinematic bodies come from, of the world whose steps search for contacts; expired if nothing tells.
-  const std::weak_ptr<const KinematicPaths>& kinematicPaths() const { return kinematicPaths_; }
-  void setKinematicPaths(std::weak_ptr<const KinematicPaths> paths) { kinematicPaths_ = std::move(paths); }
-
-  /// The points that must stay outside of objects in this step: a search adds them, the solver reads them, and clears
-  /// them when a step begins.
-  PointContacts& pointContacts() { return pointContacts_; }
-  const PointContacts& pointContacts() const { return pointContacts_; }
-
-  /// While this is set, searches wait until all pairs of the step are known: those of several bodies then run side by
-  /// side.
-  void setSearchWaits(bool waits) { searchWaits_ = waits; }
-  bool searchWaits() const { return searchWaits_; }
-
-  /// From now on, the box in the broadphase also contains the nodes' positions at the end of the step, enlarged by
-  /// this: Bullet's own box only contains the positions at the beginning. Below 0: Bullet's own box.
-  void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
-  btScalar reach() const { return reach_; }
   /// The distance that is kept from objects: that of the shape, without what a step adds to it.
   btScalar margin() const;
 
-  /// The distance at which a body's points count as touching while a step searches for contacts, in addition to the
-  /// distance that is kept between the objects. Forces that will support both objects are not known yet: a body that
-  /// rests on a resting object is predicted to fall with it, or away from it. 0: none, as outside of steps.
-  void setSpeculation(btScalar distance) {
-    speculation_ = distance;
-    ++predictions_;
-  }
-  /// Grows from step to step: while it stays the same, and the speculation is above 0, nodes and their paths do, too.
-  unsigned predictions() const { return predictions_; }
-  btScalar speculation() const { return speculation_; }
-
-  /// Writes or reads what the last step has left; what was found in it is dropped.
+  /// Writes or reads by how much it was shifted; what was found in the last step is dropped.
   void visitState(WorldStream& stream);
 
   /// Also called by transformTo, translate and rotate.
@@ -140,18 +110,10 @@ class BodyWithTrees : public btSoftBody {
 
   OwnObject registered_{OwnObject::Kind::BodyWithTrees, static_cast<const btSoftBody*>(this)};
   Kind kind_ = Kind::None;
-  btScalar reach_ = -1, speculation_ = 0;
-  unsigned predictions_ = 0;
-  bool searchWaits_ = false;
   std::shared_ptr<NodeMoves> moves_ = std::make_shared<NodeMoves>();
-  PointContacts pointContacts_;
-  std::weak_ptr<BodyContacts> surfaceContacts_;
-  std::weak_ptr<const KinematicPaths> kinematicPaths_;
-  std::shared_ptr<BodyContacts> nodeContacts_;
-  btScalar contactSize_ = 0;
+  std::unique_ptr<BodyCompanion> companion_;
   std::vector<btVector3> createdAt_;
   btVector3 shifted_{0, 0, 0};
-  const btSoftBodySolver* nodesSolver_ = nullptr;
 };
 
 /// The object of a body that `createSoftBody` has created; null for others.

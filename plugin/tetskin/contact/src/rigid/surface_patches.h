@@ -4,8 +4,8 @@
 // Internal to SurfaceContact: the points of a surface that collide.
 #pragma once
 
-#include <tetskin/bullet/src/base/contact_patches.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/solver/src/base/contact_patches.h>
 
 #include <cstdint>
 #include <vector>

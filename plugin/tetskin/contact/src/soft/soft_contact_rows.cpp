@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/base/contact_filter.h>
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
+#include <tetskin/solver/src/base/contact_filter.h>
 
 #include <algorithm>
 #include <cassert>

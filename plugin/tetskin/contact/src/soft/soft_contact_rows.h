@@ -5,8 +5,8 @@
 // where a DeformableSolver finds it, but applies no force itself.
 #pragma once
 
-#include <tetskin/bullet/src/base/row_source.h>
 #include <tetskin/contact/src/soft/pair_search.h>
+#include <tetskin/solver/src/base/row_source.h>
 
 #include <map>
 #include <memory>

@@ -12,7 +12,7 @@
 // constrain six directions, which is all that a rigid motion has.
 #pragma once
 
-#include <tetskin/bullet/src/base/row_source.h>
+#include <tetskin/solver/src/base/row_source.h>
 #include <tetskin/touch/src/joints/joint_anchor.h>
 #include <tetskin/touch/src/points/point_jacobian.h>
 

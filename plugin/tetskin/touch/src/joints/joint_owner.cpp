@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/touch/src/joints/joint_owner.h>
 
 #include <cassert>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <tetskin/bullet/deformable_world.h>
-#include <tetskin/bullet/src/base/body_forces.h>
 #include <tetskin/bullet/src/base/body_trees.h>
-#include <tetskin/bullet/src/base/required_solver.h>
 #include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/solver/deformable_world.h>
+#include <tetskin/solver/src/base/body_forces.h>
+#include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/touch/src/joints/joint_rows.h>
 
 #include <algorithm>

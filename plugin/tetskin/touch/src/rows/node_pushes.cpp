@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/bullet/src/base/required_solver.h>
+#include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/touch/src/rows/node_pushes.h>
 
 #include <cassert>

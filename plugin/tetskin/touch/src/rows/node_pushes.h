@@ -4,7 +4,7 @@
 // Internal to tetskin::touch: applies the impulses and forces on nodes among which a Jacobian has divided a push.
 #pragma once
 
-#include <tetskin/bullet/src/base/node_loads.h>
+#include <tetskin/solver/src/base/node_loads.h>
 #include <tetskin/touch/src/points/point_jacobian.h>
 
 namespace tetskin::touch_detail {

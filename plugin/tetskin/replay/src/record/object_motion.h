@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to Recorder: hashes that tell which object moves otherwise, and the transforms that the application gives
+// its kinematic bodies.
+#pragma once
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/replay/src/record/state_patch.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+/// By object of the world: a hash of positions and velocities. Cost O(nodes + objects)
+std::vector<std::uint32_t> hashesOfMotion(btDeformableMultiBodyDynamicsWorld& world);
+/// The object's place in the world, and what it is.
+std::string nameOf(const btCollisionObject& object);
+
+/// Where the motion states of kinematic bodies have put them in the step before: Bullet asks these as a step begins,
+/// and no snapshot has the answer. Empty without such bodies.
+Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world);
+
+/// As long as this exists, kinematic bodies go to recorded targets: their motion states, which are the application's,
+/// are not asked, and not told. Those of Bullet's own class, which do nothing but store a place, get the new one.
+/// Bullet asks as a step begins, once, and is answered in their stead; whatever it calls later finds the bodies' own.
+class LedToTargets {
+ public:
+  LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& bytes);
+  ~LedToTargets();
+  LedToTargets(const LedToTargets&) = delete;
+  LedToTargets& operator=(const LedToTargets&) = delete;
+  /// False if the targets are of other bodies: then nothing has been changed.
+  bool fits() const { return fits_; }
+
+ private:
+  class StandIn;
+  btDeformableMultiBodyDynamicsWorld& world_;
+  std::vector<std::unique_ptr<StandIn>> standIns_;
+  bool fits_ = false;
+};
+
+}  // namespace tetskin::bullet_detail

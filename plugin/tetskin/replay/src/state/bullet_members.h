@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to snapshots: members of Bullet's classes that it does not show. A world goes on to the last bit only if
+// they are put back as they were, and Bullet's setters compute or round.
+#pragma once
+
+#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/solver/src/base/opened_member.h>
+
+#include <type_traits>
+
+namespace tetskin::bullet_detail {
+
+/// A number, a vector, an array of such; or a struct that has its own visitState.
+template <class T>
+void visitMember(WorldStream& stream, T& member) {
+  if constexpr (std::is_array_v<T>) {
+    for (auto& element : member) visitMember(stream, element);
+  } else if constexpr (std::is_invocable_v<WorldStream&, T&>) {
+    stream(member);
+  } else {
+    visitState(stream, member);
+  }
+}
+
+template <class... Members>
+void visitAll(WorldStream& stream, Members&... members) {
+  (visitMember(stream, members), ...);
+}
+
+/// In a source, after the declaration `void visitMembers(WorldStream&, Object&)`:
+///     template struct Visited<Object, &Object::m_hidden, ...>;
+/// defines that function.
+template <class Object, auto... members>
+struct Visited {
+  friend void visitMembers(WorldStream& stream, Object& object) { visitAll(stream, object.*members...); }
+};
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletDynamics/Dynamics/btActionInterface.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
+#include <tetskin/bullet/src/base/own_objects.h>
+#include <tetskin/replay/src/state/bullet_members.h>
+#include <tetskin/replay/src/state/saved_worlds.h>
+#include <tetskin/replay/src/state/world_state.h>
+#include <tetskin/solver/src/base/required_solver.h>
+#include <tetskin/solver/src/exported/solver_state.h>
+
+#include <string>
+
+namespace tetskin::bullet_detail {
+
+using World = btDeformableMultiBodyDynamicsWorld;
+
+struct ActionsMember {
+  friend btAlignedObjectArray<btActionInterface*> btDiscreteDynamicsWorld::*memberOf(ActionsMember);
+};
+template struct Opened<ActionsMember, &btDiscreteDynamicsWorld::m_actions>;
+
+namespace {
+
+bool isSavedBroadphase(const btBroadphaseInterface& broadphase) {
+  static const btBroadphaseInterface* const bullets = new btDbvtBroadphase;
+  return isWatched(broadphase) || isOfSameClass(broadphase, *bullets);
+}
+
+bool isSavedDispatcher(const btDispatcher& dispatcher) {
+  return isWatched(dispatcher) || isBulletsDispatcher(dispatcher);
+}
+
+bool isSavedSolver(const btConstraintSolver& solver) {
+  static const btConstraintSolver* const sample = new btDeformableMultiBodyConstraintSolver;
+  return isOfSameClass(solver, *sample);
+}
+
+bool isSavedCache(const btOverlappingPairCache& cache) {
+  static const btOverlappingPairCache* const sample = new btHashedOverlappingPairCache;
+  return isOfSameClass(cache, *sample);
+}
+
+std::string unsavedPart(World& world) {
+  if (!isSavedBroadphase(*world.getBroadphase())) return "a broadphase that is not a btDbvtBroadphase";
+  if (!isSavedCache(*world.getPairCache())) return "a pair cache that is not a btHashedOverlappingPairCache";
+  if (!isSavedDispatcher(*world.getDispatcher())) return "a dispatcher that is not a btCollisionDispatcher";
+  if (!isSavedSolver(*world.getConstraintSolver())) {
+    return "a constraint solver that is not a btDeformableMultiBodyConstraintSolver";
+  }
+  const auto& actions = world.*memberOf(ActionsMember());
+  for (int k = 0; k < actions.size(); ++k) {
+    if (!drawsRecords(*actions[k])) return "action " + std::to_string(k) + " (a vehicle, a character, or your own)";
+  }
+  const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+  constexpr int kSaved = btCollisionObject::CO_COLLISION_OBJECT | btCollisionObject::CO_RIGID_BODY |
+                         btCollisionObject::CO_SOFT_BODY | btCollisionObject::CO_FEATHERSTONE_LINK;
+  for (int k = 0; k < objects.size(); ++k) {
+    if (objects[k]->getInternalType() & ~kSaved)
+      return "object " + std::to_string(k) + " (a ghost object, or your own)";
+    if (!objects[k]->getCollisionShape() || !objects[k]->getBroadphaseHandle()) {
+      return "object " + std::to_string(k) + " (it has no collision shape, or the world's broadphase does not know it)";
+    }
+  }
+  for (int k = 0; k < world.getNumConstraints(); ++k) {
+    if (!isSaved(*world.getConstraint(k))) return "joint " + std::to_string(k) + " (none of Bullet's classes)";
+  }
+  for (int k = 0; k < world.getNumMultiBodyConstraints(); ++k) {
+    if (!isSaved(*world.getMultiBodyConstraint(k))) {
+      return "joint of multibodies " + std::to_string(k) + " (none of Bullet's classes)";
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+Status checkIsSaved(World& world, const DeformableSolver& solver) {
+  if (isWithinStep(solver))
+    return {StatusCode::NotSaved, "a snapshot has no world within a step: wait until stepSimulation ends"};
+  const std::string part = unsavedPart(world);
+  if (part.empty()) return {};
+  return {StatusCode::NotSaved, "a snapshot cannot hold " + part};
+}
+
+}  // namespace tetskin::bullet_detail

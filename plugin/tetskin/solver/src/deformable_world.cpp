@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <tetskin/solver/deformable_world.h>
+#include <tetskin/solver/src/motion/divided_limits.h>
+#include <tetskin/solver/src/motion/rigid_forces.h>
+#include <tetskin/solver/src/motion/rigid_turns.h>
+#include <tetskin/solver/src/step/step.h>
+#include <tetskin/solver/src/step/watched_detection.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin {
+
+using namespace bullet_detail;
+
+namespace {
+
+/// The longest side of the box around the nodes; once it is long enough, at least so much.
+btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
+  assert(body.m_nodes.size() > 0);
+  btVector3 low = body.m_nodes[0].m_x, high = low;
+  btScalar size = 0;
+  for (int n = 1; n < body.m_nodes.size() && size < enough; ++n) {
+    low.setMin(body.m_nodes[n].m_x);
+    high.setMax(body.m_nodes[n].m_x);
+    size = (high - low)[(high - low).maxAxis()];
+  }
+  return size;
+}
+
+/// Into how many steps one of this length is divided, so that gravity moves no soft body that is awake by more than a
+/// share of its size in each: a contact is searched where a body would be without it, and one that is deeper in the
+/// ground there trembles, or falls through.
+int partsOf(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds) {
+  constexpr btScalar kMostFall = btScalar(0.06), kMostParts = 64;
+  const btScalar enough = world.getGravity().length() * seconds * seconds / kMostFall;
+  if (!(enough < BT_LARGE_FLOAT)) return 1;  // no length of a step
+  btScalar smallest = enough;
+  const auto& bodies = world.getSoftBodyArray();
+  for (int b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b]->isActive() || bodies[b]->m_nodes.size() < 2) continue;
+    smallest = std::min(smallest, sizeUpTo(*bodies[b], enough));
+  }
+  if (!(smallest > 0)) return 1;
+  return static_cast<int>(std::min(std::ceil(btSqrt(enough / smallest)), kMostParts));
+}
+
+/// As long as this exists, the world is within `stepSimulation`; an exception that leaves it ends the step, too.
+template <class SolverImpl>
+class Simulation {
+ public:
+  Simulation(SolverImpl& solver, const btSoftBodyArray& bodies)
+      : solver_(solver), bodies_(bodies), isInner_(solver.inSimulation), running_(solver.inSimulation) {}
+  ~Simulation() {
+    if (solver_.inStep && !isInner_) solver_.endStep(bodies_);
+  }
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+ private:
+  SolverImpl& solver_;
+  const btSoftBodyArray& bodies_;
+  const bool isInner_;  ///< a callback has called it
+  const Running running_;
+};
+
+}  // namespace
+
+struct DeformableWorldObjects::Impl {
+  Impl() : dispatcher(configuration, detects), broadphase(detects) {
+    constraintSolver.setDeformableSolver(&deformableSolver);
+  }
+
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  bool detects = false;
+  WatchedDispatcher dispatcher;
+  WatchedBroadphase broadphase;
+  DeformableSolver deformableSolver;
+  btDeformableMultiBodyConstraintSolver constraintSolver;
+  RigidTurns turns;
+  std::unique_ptr<RigidForces> forces;  ///< null: as Bullet has them
+};
+
+DeformableWorldObjects::DeformableWorldObjects() : impl_(std::make_unique<Impl>()) {}
+DeformableWorldObjects::~DeformableWorldObjects() = default;
+
+DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
+    : btDeformableMultiBodyDynamicsWorld(&impl_->dispatcher, &impl_->broadphase, &impl_->constraintSolver,
+                                         &impl_->configuration, &impl_->deformableSolver) {
+  Access<DeformableSolver>::impl(impl_->deformableSolver).know(*this);
+  setGravity(options.gravity);
+  setUseProjection(true);
+  impl_->deformableSolver.setThreads(options.threads);
+  impl_->deformableSolver.setDeterministic(options.deterministic);
+  if (options.rigidForces == RigidForceModel::PlainWorld) {
+    impl_->forces = std::make_unique<RigidForces>(m_nonStaticRigidBodies);
+    Access<DeformableSolver>::impl(impl_->deformableSolver).rigidForces = impl_->forces.get();
+  }
+}
+
+DeformableWorld::~DeformableWorld() = default;
+
+/// Between the steps of one call, a world's state is incomplete: Bullet knows how many steps are left, and clears
+/// the application's forces after the last one.
+int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
+  const Simulation simulation(Access<DeformableSolver>::impl(impl_->deformableSolver), getSoftBodyArray());
+  // Bullet would add it to its clock, or divide by it.
+  if (!(timeStep >= 0 && timeStep < BT_LARGE_FLOAT) ||
+      (maxSubSteps > 0 && !(fixedTimeStep > 0 && fixedTimeStep < BT_LARGE_FLOAT))) {
+    return 0;
+  }
+  const btScalar seconds = maxSubSteps > 0 ? fixedTimeStep : timeStep;
+  const int parts = partsOf(*this, seconds);
+  if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+  const DividedLimits limits(*this, parts);
+  // A step of the caller's own length is all of it, although rounding may have made the parts a little longer.
+  constexpr btScalar kRounding = 4 * SIMD_EPSILON;
+  const btScalar part = seconds / static_cast<btScalar>(parts) * (1 - kRounding);
+  return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, std::max(maxSubSteps, 1) * parts, part);
+}
+
+DeformableSolver& DeformableWorld::deformableSolver() {
+  return impl_->deformableSolver;
+}
+btDeformableMultiBodyConstraintSolver& DeformableWorld::constraintSolver() {
+  return impl_->constraintSolver;
+}
+btDbvtBroadphase& DeformableWorld::broadphase() {
+  return impl_->broadphase;
+}
+btCollisionDispatcher& DeformableWorld::dispatcher() {
+  return impl_->dispatcher;
+}
+
+/// As btDeformableMultiBodyDynamicsWorld does; in a deterministic world, our own sine then turns the rigid bodies.
+void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
+  btMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);  // NOLINT(bugprone-parent-virtual-call): the soft ones below
+  if (impl_->deformableSolver.deterministic()) RigidTurns::predict(m_nonStaticRigidBodies, dt);
+  if (impl_->forces) impl_->forces->afterPrediction(dt);
+  impl_->deformableSolver.predictMotion(dt);
+}
+
+/// Likewise.
+void DeformableWorld::integrateTransforms(btScalar dt) {
+  if (impl_->forces) impl_->forces->end();
+  if (!impl_->deformableSolver.deterministic()) return btDeformableMultiBodyDynamicsWorld::integrateTransforms(dt);
+  positionCorrection(dt);
+  impl_->turns.begin(m_nonStaticRigidBodies);
+  btMultiBodyDynamicsWorld::integrateTransforms(dt);  // NOLINT(bugprone-parent-virtual-call): as above
+  impl_->turns.end(m_nonStaticRigidBodies, dt);
+  impl_->deformableSolver.applyTransforms(dt);
+}
+
+}  // namespace tetskin

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// For other libraries: what a DeformableSolver, its forces and its search for contacts remember, and which classes of
+// its own a world has. This is all that snapshots see of it.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btActionInterface.h>
+#include <btBulletCollisionCommon.h>
+#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/solver/deformable_world.h>
+
+namespace tetskin::bullet_detail {
+
+// Each of these serves both directions. What is only prepared, or computed anew in each step, is in none of them.
+/// What the solver remembers from step to step.
+TETSKIN_SOLVER_API void visitSolver(WorldStream& stream, DeformableSolver& solver);
+/// How the application has set the solver: not part of a snapshot.
+TETSKIN_SOLVER_API void visitSolverSettings(WorldStream& stream, DeformableSolver& solver);
+/// The entries of the solver's list of forces: elasticity, soft contacts, joints at surfaces.
+TETSKIN_SOLVER_API void visitForces(WorldStream& stream, DeformableSolver& solver);
+/// Before any of the others: what the solver's bodies and forces must be. Refuses what cannot be saved, and, while a
+/// snapshot is restored, a world with others.
+TETSKIN_SOLVER_API void checkForces(WorldStream& stream, DeformableSolver& solver);
+/// What the search for contacts of soft bodies with rigid objects remembers.
+TETSKIN_SOLVER_API void visitContactSearch(WorldStream& stream);
+
+/// True for the broadphase, and for the dispatcher, of a `DeformableWorld`.
+TETSKIN_SOLVER_API bool isWatched(const btBroadphaseInterface& broadphase);
+TETSKIN_SOLVER_API bool isWatched(const btDispatcher& dispatcher);
+/// True for the library's only action, which draws recorded forces and has no state.
+TETSKIN_SOLVER_API bool drawsRecords(const btActionInterface& action);
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::solver: the bodies of `ForceModel::Corotated`, and how their nodes are read.
+#pragma once
+
+#include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
+#include <tetskin/bullet/soft_body.h>
+#include <tetskin/elastic/src/exported/body_dynamics.h>
+#include <tetskin/solver/src/base/placement.h>
+#include <tetskin/solver/src/forces/quadratic_shapes.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin::bullet_detail {
+
+class WorldStream;
+
+/// The material of a body.
+struct ElasticMaterial {
+  double youngsModulus = 0.0;  ///< in pressure units, above 0
+  double poissonRatio = 0.3;   ///< 0 to below 0.5
+  double damping = 0.02;       ///< seconds: damping forces are this times the rate of the elastic ones
+
+  bool operator==(const ElasticMaterial& other) const {
+    return youngsModulus == other.youngsModulus && poissonRatio == other.poissonRatio && damping == other.damping;
+  }
+};
+
+/// The tolerances to which the velocities of a step are solved.
+struct SolverSettings {
+  double tolerance = 5e-3;  ///< of the forces left, relative to those that act; 0 to below 1
+  int iterations = 100;     ///< bound of the iterations of the conjugate gradient per pass; at least 1
+};
+
+using Dynamics = elastic_detail::BodyDynamics<btScalar>;
+
+/// Takes the nodes of any body, with their velocities, normals and trees, to another place.
+/// dynamics  of the body, which go with it; or null
+void carryNodes(btSoftBody& body, Dynamics* dynamics, const Placement& placement);
+/// A measure of the shapes of some tets at rest, which changes if the body is scaled.
+btScalar restMeasureOf(const btSoftBody& body);
+
+/// The state of a body's nodes.
+void readNodes(const btSoftBody& body, Dynamics& dynamics);
+
+/// The body's tets at rest, all of them linear, by Bullet's numbers: the same whether the body has just been created or
+/// has been scaled since.
+/// Cost    O(nodes + tets)
+/// Errors  Degenerate: the reason why the tets cannot be simulated
+Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
+Status checkMaterial(const ElasticMaterial& material);
+/// Ok unless the material is too stiff for the body's mass: see elastic_detail::checkStiffness.
+Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
+
+/// One body, and the data derived from it.
+struct ForcedBody {
+  btSoftBody* body = nullptr;
+  std::vector<double> stiffnessScale;     ///< by tet, or empty
+  std::vector<QuadraticShape> quadratic;  ///< as far as the body's tets still are their parts, see `withQuadraticTets`
+  std::unique_ptr<Dynamics> dynamics;
+  std::size_t tetCount = 0;  ///< tets of the body when `dynamics` was made
+  btScalar restMeasure = 0;  ///< measure of some tets: a change shows that the body was scaled
+  /// The world in which it was added; another world would have another force for the body.
+  btDeformableMultiBodyDynamicsWorld* world = nullptr;
+  const btSoftBodyWorldInfo* worldInfo = nullptr;
+
+  /// Computes, or renews, the data derived from the body's tets. Scale factors and quadratic tets are dropped if the
+  /// body has another number of tets now.
+  /// linear  see `restTetsOf`; its nodes are those of the body's cage, or empty
+  void build(const elastic_detail::RestTets& linear, const ElasticMaterial& material);
+  void setMaterial(const ElasticMaterial& material);
+  /// Forgets all steps: as the body was built.
+  void reset(const ElasticMaterial& material);
+  /// True if the body still has the nodes, tets and rest shapes from which the data was derived.
+  bool hasOwnCounts() const;
+  bool hasItsRestShapes() const;
+
+  /// Writes or reads what the dynamics remember from step to step. The nodes and the material are those of the snapshot
+  /// when it is read.
+  void visitState(WorldStream& stream);
+};
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to tetskin::solver: the hook by which Bullet asks for the contacts of a pair.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <tetskin/solver/src/search/body_contacts.h>
+
+#include <memory>
+
+namespace tetskin::bullet_detail {
+
+/// From now on, the dispatcher asks the soft body of each new pair of a soft and a rigid body for its contacts: see
+/// `contactsOf`. Bodies without contacts of this kind get Bullet's algorithms. The object that is registered has no
+/// state and is never destroyed, so that nothing need be unregistered. May be called repeatedly.
+void registerContactAlgorithms(btCollisionDispatcher& dispatcher);
+
+}  // namespace tetskin::bullet_detail

@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// A step, from top to bottom. Bullet's world calls, in this order:
+//   reinitialize                gather          which bodies are awake, and which forces act on them
+//   predictMotion               predict         other forces' impulses; the elastic solve, except of bodies that will
+//                                               be touched again; the positions that follow from it
+//   (detection of contacts, by Bullet; its solve of rigid bodies among themselves)
+//   solveDeformableConstraints  assemble        rows of contacts, anchors, and other constraints of rigid bodies;
+//                                               what Bullet's other constraints have changed and fixed
+//                               solve           goes on where nothing was touched; otherwise again, with all of that
+//                               finishContacts  reports the impulses of contacts
+//                               writeBack       velocities
+//   applyTransforms             positions, by Bullet, and then in double: see step_positions.cpp
+#include <BulletSoftBody/btDeformableContactProjection.h>
+#include <tetskin/core/src/base/run_by_size.h>
+#include <tetskin/solver/src/base/body_channel.h>
+#include <tetskin/solver/src/base/destroy_all.h>
+#include <tetskin/solver/src/forces/node_vectors.h>
+#include <tetskin/solver/src/rows/fixed_nodes.h>
+#include <tetskin/solver/src/step/step.h>
+#include <tetskin/solver/src/system/system_solve.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace tetskin {
+namespace {
+
+/// The same as btSoftBody::updateBounds, which reads Bullet's nodes one by one.
+void updateBounds(const SolvedBody& solved) {
+  btSoftBody& body = *solved.body;
+  Dynamics& dynamics = *solved.dynamics;
+  assert(dynamics.nodeCount() == static_cast<std::size_t>(body.m_nodes.size()));
+  if (dynamics.nodeCount() == 0) return body.updateBounds();
+  btVector3 low = fromPoint(dynamics.point(0)), high = low;
+  for (std::size_t n = 1; n < dynamics.nodeCount(); ++n) {
+    const btVector3 x = fromPoint(dynamics.point(n));
+    low.setMin(x);
+    high.setMax(x);
+  }
+  const btScalar margin = body.getCollisionShape()->getMargin();
+  const btVector3 around(margin, margin, margin);
+  body.m_bounds[0] = low - around;
+  body.m_bounds[1] = high + around;
+}
+
+void prepareStep(const SolvedBody& solved, btScalar dt) {
+  assert(dt > 0);
+  btSoftBody& body = *solved.body;
+  body.m_sst.sdt = dt * body.m_cfg.timescale;
+  body.m_sst.isdt = 1 / body.m_sst.sdt;
+  body.m_sst.velmrg = body.m_sst.sdt * 3;
+  body.m_sst.radmrg = body.getCollisionShape()->getMargin();
+  body.m_sst.updmrg = body.m_sst.radmrg * btScalar(0.25);
+  updateBounds(solved);
+}
+
+/// Moves the nodes by their velocities, which are bounded before. Returns the square of the highest speed.
+double moveNodes(btSoftBody& body, btScalar dt) {
+  assert(dt > 0);
+  const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
+  const btScalar kept = 1 - body.m_cfg.drag;
+  double maximum = 0.0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    btSoftBody::Node& node = body.m_nodes[n];
+    node.m_v *= kept;
+    // In double: the square of a speed may be out of float's range.
+    const double squared = toEigen(node.m_v).squaredNorm();
+    const auto allowed = static_cast<double>(fastest);
+    if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
+    maximum = std::max(maximum, std::min(squared, allowed * allowed));
+    node.m_q = node.m_x + dt * node.m_v;
+    node.m_splitv.setZero();
+    node.m_constrained = false;
+  }
+  return maximum;
+}
+
+btScalar fastestNode(const btSoftBody& body) {
+  btScalar squared = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) squared = std::max(squared, body.m_nodes[n].m_v.length2());
+  return btSqrt(squared);
+}
+
+void setBroadphaseBox(btSoftBody& body) {
+  const btSoftBodyWorldInfo& world = *body.getWorldInfo();
+  if (!body.getBroadphaseHandle()) return;
+  world.m_broadphase->setAabb(body.getBroadphaseHandle(), body.m_bounds[0], body.m_bounds[1], world.m_dispatcher);
+}
+
+void resetEffectiveMasses(const btAlignedObjectArray<btSoftBody*>& bodies) {
+  for (int i = 0; i < bodies.size(); ++i) {
+    for (int n = 0; n < bodies[i]->m_nodes.size(); ++n) {
+      btSoftBody::Node& node = bodies[i]->m_nodes[n];
+      if (node.m_im > 0) node.m_effectiveMass = btMatrix3x3::getIdentity() * (1 / node.m_im);
+    }
+  }
+}
+
+void clearContacts(btSoftBody& body) {
+  destroyAll(body.m_nodeRigidContacts);
+  destroyAll(body.m_faceRigidContacts);
+  destroyAll(body.m_faceNodeContacts);
+  destroyAll(body.m_faceNodeContactsCCD);
+  if (BodyChannel* channel = channelOf(body)) channel->pointContacts().clear();
+}
+
+/// Runs a task for each body: small bodies in parallel; a large one is itself divided among threads.
+/// task  (SolvedBody&, ParallelFor* inner)
+template <class Task>
+void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& task) {
+  std::vector<std::size_t> sizes;
+  sizes.reserve(bodies.size());
+  for (const SolvedBody& body : bodies) sizes.push_back(body.dynamics->matrix().slotCount());
+  runBySize(
+      threads, sizes, [&](std::size_t k) { return elastic_detail::isDivisible(sizes[k]); },
+      [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
+}
+
+/// True unless the application has moved the body since the last step, or changed its velocities, as sleep does, too.
+bool continuesLastStep(const SolvedBody& solved) {
+  if (!solved.dynamics->remembers()) return true;
+  for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = solved.body->m_nodes[n];
+    if (!solved.dynamics->continues(static_cast<std::size_t>(n), node.m_x, node.m_vn)) return false;
+  }
+  return true;
+}
+
+/// The first step of a held body, and steps of varying length, by BodyDynamics::setStaggered. Free bodies go on falling
+/// beside Bullet's rigid ones.
+void staggerHeld(const SolvedBody& solved, btScalar dt) {
+  Dynamics& dynamics = *solved.dynamics;
+  dynamics.setStaggered(solved.elastic && dynamics.isHeld());
+  const auto share = static_cast<btScalar>(dynamics.forceShare(static_cast<double>(dt)));
+  if (share == 1) return;
+  for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
+    const btSoftBody::Node& node = solved.body->m_nodes[n];
+    toPoint(node.m_vn + share * (node.m_v - node.m_vn), dynamics.velocity(static_cast<std::size_t>(n)));
+  }
+}
+
+std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) {
+  std::size_t count = 0;
+  for (const std::size_t b : system.bodies) count += bodies.bodies()[b].dynamics->nodeCount();
+  return count;
+}
+
+}  // namespace
+
+// ---- gather
+
+void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds) {
+  assert(seconds > 0);
+  inStep = true;
+  solving = solver.ownSolveActive();
+  hidden.show(world);
+  all.copyFromArray(world);
+  forgetRemovedObjects(worldOf(all));
+  if (solving) {
+    sleepers.wake(all);
+    fallAsleep();
+  }
+  const bool changed = collect(world);
+  driven.begin(solver.m_softBodies, seconds);
+  for (int i = 0; i < (changed ? solver.m_numNodes : bodies.awakeCount()); ++i) {
+    solver.m_dv[i].setZero();
+    solver.m_ddv[i].setZero();
+    solver.m_residual[i].setZero();
+  }
+  solver.m_dt = seconds;
+  solver.m_objective->setDt(seconds);
+  // These calls may create a body's dynamics anew.
+  for (int i = 0; i < forces().size(); ++i) forces()[i]->reinitialize(changed);
+  assign();
+  if (seconds > 0 && solving) rigids.paths().beginStep(bodies.worlds(), seconds);
+}
+
+void DeformableSolver::Impl::fallAsleep() {
+  const auto waited = [](const btSoftBody* body) { return body->getActivationState() == WANTS_DEACTIVATION; };
+  for (int i = 0; i < all.size(); ++i) {
+    if (!waited(all[i])) continue;
+    for (btSoftBody* body : stillness.fallAsleep(SolverBodies::worldsOf(forces()))) sleepers.store(*body);
+    return;
+  }
+}
+
+bool DeformableSolver::Impl::collect(const btAlignedObjectArray<btSoftBody*>& world) {
+  const bool changed = bodies.collect(world, !solving, solver.m_softBodies);
+  if (changed) numberAnew();
+  solver.m_objective->m_projection.reinitialize(changed);
+  return changed;
+}
+
+void DeformableSolver::Impl::assign() {
+  if (solving) return bodies.assign(forces());
+  bodies.clear();
+  resetEffectiveMasses(solver.m_softBodies);
+}
+
+// ---- predict
+
+void DeformableSolver::Impl::predict() {
+  useOwnSettings();
+  applyOthers();
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
+    if (!continuesLastStep(body)) body.dynamics->forget();
+    readNodes(*body.body, *body.dynamics);
+    body.dynamics->setDeterministic(deterministic);
+    staggerHeld(body, dt());
+  });
+  for (SolvedBody& body : bodies.bodies()) prepareSearch(body);
+  for (SolvedSystem& system : bodies.systems()) {
+    SolvedBody& first = bodies.bodies()[system.bodies.front()];
+    // With other forces, the velocities at the beginning of the step determine the tolerances.
+    first.deferSolve = first.hadRows && system.forces.empty();
+  }
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
+    predictVelocities(body, inner);
+    writePrediction(body);
+    if (!body.byBullet) predictPositions(body);
+  });
+  for (SolvedBody& body : bodies.bodies()) {
+    clearContacts(*body.body);
+    body.byBullet ? predictByBullet(body) : setBroadphaseBox(*body.body);
+  }
+}
+
+/// The world sets its own values in each step.
+void DeformableSolver::Impl::useOwnSettings() {
+  solver.setImplicit(false);
+  solver.setLineSearch(false);
+  solver.m_useProjection = true;
+  solver.setStrainLimiting(true);
+}
+
+void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
+  Dynamics& dynamics = *body.dynamics;
+  dynamics.setPressed(body.hadRows);
+  dynamics.setTouched(body.hadContacts);
+  dynamics.predict(static_cast<double>(dt()), inner);
+  body.unseenSpeed = unseenSpeed(body);
+  dynamics.matrix().free();
+  if (body.deferSolve) return dynamics.startLater();
+  dynamics.start(inner);
+  if (body.elastic) solveAlone(body, body.hadRows ? 0 : body.settings->iterations, inner);
+}
+
+void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const {
+  assert(body.elastic && maximum >= 0);
+  elastic_detail::SolveLimits limits;
+  limits.tolerance = body.settings->tolerance;
+  limits.iterations = body.settings->iterations;
+  limits.enough = body.dynamics->squaredImpulses(body.unseenSpeed);
+  body.iterations = body.dynamics->solve(*body.solve, limits, maximum, inner);
+}
+
+void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
+  if (!body.elastic) return;
+  const auto& matrix = body.dynamics->matrix();
+  for (std::size_t n = 0; n < body.dynamics->nodeCount(); ++n) {
+    btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];
+    if (node.m_im > 0) {
+      node.m_v = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
+    }
+    btScalar inverse[6];
+    matrix.freeInverse(n, inverse);
+    node.m_effectiveMass_inv = symmetricMatrix(inverse);
+  }
+}
+
+/// By Bullet's own function, which also refits the trees of nodes and faces.
+void DeformableSolver::Impl::predictByBullet(SolvedBody& body) {
+  body.paddedTrees->forget();
+  solver.predictDeformableMotion(body.body, dt());
+  if (body.elastic) speculate(body, fastestNode(*body.body));
+}
+
+/// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees and the box in the broadphase.
+void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
+  prepareStep(body, dt());
+  const double squared = moveNodes(*body.body, dt());
+  const auto fastest = static_cast<btScalar>(std::sqrt(squared));
+  body.paddedTrees->fit(*body.body, *body.dynamics, fastest * dt());
+  if (body.elastic) speculate(body, fastest);
+}
+
+// ---- assemble
+
+void DeformableSolver::Impl::assemble() {
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
+    body.dynamics->matrix().free();
+    readContacts(body);
+  });
+  dropRemovedForces();
+  addOthers();
+  addDynamicFriction(projection(), bodies, solver.m_residual);
+  listFixedNodes(projection(), bodies);
+  collectRows();
+  std::vector<bool> touched(bodies.bodies().size(), false);
+  for (const ContactRow& row : rows.rows()) {
+    for (const RowEnd& end : row.ends) {
+      if (end.isSoft() && !row.joined) touched[end.body] = true;
+    }
+  }
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
+    const auto index = static_cast<std::size_t>(&body - bodies.bodies().data());
+    if (touched[index]) body.dynamics->beTouched(static_cast<double>(dt()), inner);
+  });
+}
+
+/// Reads the result of Bullet's step so far: the change of velocity by its constraints, with which the solution begins,
+/// and the velocities at the beginning of the whole step.
+void DeformableSolver::Impl::readContacts(SolvedBody& body) {
+  assert(body.first + static_cast<int>(body.dynamics->nodeCount()) <= solver.m_dv.size());
+  Dynamics& dynamics = *body.dynamics;
+  for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
+    const int number = body.first + static_cast<int>(n);
+    const btVector3& before = solver.m_backupVelocity[number];
+    btVector3& dv = solver.m_dv[number];
+    body.velocityChanged |= !dv.isZero();
+    if (isNaN(dv)) dv.setZero();  // the same test as in btDeformableBodySolver::updateVelocity
+    btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
+    // The solution relative to the rigid motion.
+    const btVector3 own = body.elastic ? fromWide(solution) : btVector3(0, 0, 0);
+    toPoint(before - own, dynamics.velocity(n));
+    toWide(own + dv, solution);
+  }
+}
+
+// ---- solve
+
+/// Systems on which Bullet's forces act are solved here one after the other, each by all threads; of the others, small
+/// ones in parallel.
+void DeformableSolver::Impl::solve() {
+  others.beginStep(bodies, solver.m_residual, solver.m_backupVelocity, dt());
+  std::vector<SolvedSystem*> own;
+  std::vector<std::size_t> sizes;
+  for (SolvedSystem& system : bodies.systems()) {
+    if (!system.forces.empty()) {
+      solveSystem(system, threads);
+      continue;
+    }
+    own.push_back(&system);
+    sizes.push_back(nodeCountOf(system, bodies));
+  }
+  const auto isDivided = [&](std::size_t k) {
+    return own[k]->bodies.size() > 1 || elastic_detail::isDivisible(sizes[k]);
+  };
+  runBySize(threads, sizes, isDivided, [&](std::size_t k, ParallelFor* inner) { solveSystem(*own[k], inner); });
+  iterations = passes = unconverged = 0;
+  for (const SolvedBody& body : bodies.bodies()) iterations += body.iterations;
+  for (const SolvedSystem& system : bodies.systems()) {
+    passes += system.passes;
+    unconverged += system.converged ? 0 : 1;
+  }
+}
+
+void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inner) {
+  assert(!system.bodies.empty());
+  SolvedBody& first = bodies.bodies()[system.bodies.front()];
+  bool again = !system.forces.empty() || !system.rows.empty();
+  for (const std::size_t b : system.bodies) {
+    const SolvedBody& body = bodies.bodies()[b];
+    again |= !body.fixed.empty() || body.velocityChanged;
+  }
+  if (again) {
+    const SolveReport report = SystemSolve({bodies, rows, rigids, others}, system, inner).solve();
+    first.iterations += report.iterations;
+    system.passes = report.passes;
+    system.converged = report.converged;
+    for (const std::size_t b : system.bodies) {
+      SolvedBody& body = bodies.bodies()[b];
+      body.solvedAgain = true;
+      if (body.elastic) body.dynamics->rememberAmongOthers(static_cast<double>(dt()), inner);
+    }
+  } else if (first.elastic) {
+    // A body that has waited for contacts, and has none, is solved with all iterations; another one continues where it
+    // stopped.
+    if (first.deferSolve) {
+      first.dynamics->restart(inner);
+      solveAlone(first, first.settings->iterations, inner);
+    } else {
+      const int before = first.solve->iterations();
+      first.solve->iterate(first.settings->iterations, inner);
+      first.iterations += first.solve->iterations() - before;
+    }
+  }
+  if (first.elastic && !again) system.converged = first.solve->squaredResidual() <= first.solve->enough();
+  const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.velocityChanged;
+  if (!free || !first.elastic) return;
+  first.dynamics->remember(static_cast<double>(dt()));
+  first.dynamics->removeMomentum();
+}
+
+// ---- contacts
+
+void DeformableSolver::Impl::finishContacts() {
+  rows.finish(bodies, dt());
+  for (RowSource* source : rowSources()) source->finish(dt());
+  if (const auto record = recorded.lock()) record->record(bodies, rows, dt());
+}
+
+// ---- write back
+
+void DeformableSolver::Impl::writeBack() {
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
+    if (body.solvedAgain) body.dynamics->bendTurns(static_cast<double>(dt()));
+    writeVelocities(body);
+    listForeignNodes(body);
+  });
+  findShaken();
+  stillness.judge(bodies, rigids, dt());
+  hidden.hide(bodies.bodies(), dt());
+}
+
+void DeformableSolver::Impl::writeVelocities(SolvedBody& body) const {
+  const auto& matrix = body.dynamics->matrix();
+  const bool rounded = !body.elastic || *body.hasContacts;
+  body.body->m_maxSpeedSquared = 0;
+  for (std::size_t n = 0; n < body.dynamics->nodeCount(); ++n) {
+    btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];
+    const btVector3 v = fromPoint(body.dynamics->velocity(n)) + fromWide(matrix.solution() + matrix.wideOf(n));
+    if (node.m_im > 0) node.m_v = v - node.m_splitv;
+    const btVector3 seen = rounded ? movingComponent(node.m_x, node.m_v, dt()) : node.m_v;
+    body.body->m_maxSpeedSquared = std::max(body.body->m_maxSpeedSquared, seen.length2());
+  }
+}
+
+}  // namespace tetskin

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Internal to DeformableSolver: its members, and the stages of a step, in their order.
+//
+// A node has four numbers:
+//   node            in its body, as the application has it
+//   number          first + node, in Bullet's vectors over all bodies: its forces and constraints name nodes so
+//   slot            in the body's matrix, sorted by colour, so that rows of one colour are swept side by side
+//   wide            where a slot's three numbers are, in groups of slots, one to each lane of a register
+// The last two are BlockMatrix's alone (`slotOf`, `wideOf`): they would be unnecessary only if the nodes of the
+// application's body were renumbered.
+#pragma once
+
+#include <tetskin/bullet/src/base/own_objects.h>
+#include <tetskin/solver/deformable_world.h>
+#include <tetskin/solver/src/base/node_loads.h>
+#include <tetskin/solver/src/motion/driven_nodes.h>
+#include <tetskin/solver/src/motion/rigid_forces.h>
+#include <tetskin/solver/src/motion/sleepers.h>
+#include <tetskin/solver/src/motion/stillness.h>
+#include <tetskin/solver/src/rows/contact_rows.h>
+#include <tetskin/solver/src/rows/joint_impulses.h>
+#include <tetskin/solver/src/search/obstacle_changes.h>
+#include <tetskin/solver/src/step/hidden_bodies.h>
+#include <tetskin/solver/src/step/recorded_forces.h>
+#include <tetskin/solver/src/step/step_clock.h>
+#include <tetskin/solver/src/step/step_objects.h>
+#include <tetskin/solver/src/system/other_forces.h>
+
+#include <memory>
+#include <vector>
+
+namespace tetskin {
+
+using namespace bullet_detail;
+
+struct DeformableSolver::Impl {
+  explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
+
+  // The stages of a step; implemented in step.cpp.
+  /// seconds  above 0
+  void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
+  void predict();
+  void assemble();
+  void solve();
+  void finishContacts();
+  void writeBack();
+
+  // Steps of the integration of positions; implemented in step_positions.cpp.
+  /// Call it before Bullet moves the nodes: the application may have moved some of them within the step.
+  void listForeignNodes(SolvedBody& body) const;
+  /// Call it after Bullet has moved the nodes in its own precision: gives them the positions that the dynamics have.
+  void refinePositions(btScalar dt);
+  /// Call it when rows are final: marks bodies that touch a soft one so far from the origin that rounding of positions,
+  /// at which such contacts are found, shakes them.
+  void findShaken();
+
+  ForceList& forces() { return solver.m_objective->m_lf; }
+  const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
+  btScalar dt() const { return solver.m_dt; }
+
+  // Steps of the stage `gather`.
+  void fallAsleep();
+  bool collect(const btAlignedObjectArray<btSoftBody*>& world);
+  void assign();
+
+  /// Bodies are again as the application has them, wherever the step has stopped.
+  void endStep(const btAlignedObjectArray<btSoftBody*>& world);
+
+  /// Writes or reads the settings by which Bullet's world had the last step solved.
+  void visitFlags(WorldStream& stream);
+
+  // What the application moves between steps.
+  /// Forgets what the body has touched, and how it has slept; implemented in step_placed.cpp.
+  void forgetTouches(btSoftBody& body);
+  /// Moves everything in a world of this solver; implemented in shift_origin.cpp.
+  void shift(btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
+
+  // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
+  /// This is the world whose objects can be told from then on.
+  void know(btDeformableMultiBodyDynamicsWorld& world);
+  /// The world of these bodies, null if it is not known. A solver may outlive its world, and be used by another one.
+  btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;
+  /// Drops the bodies that have left the world.
+  void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
+  /// Call it before a step: what is kept by the addresses of objects that have left the world goes with them, as others
+  /// may have been created there.
+  void forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world);
+  void numberAnew();
+  /// Call it before Bullet detects contacts, and again when it has called the application since.
+  void noteObjects();
+  void dropRemovedObjects();
+  void dropRemovedForces();
+  bool takesPart(const btDeformableLagrangianForce& force) const;
+
+  // Steps of the stage `predict`; those about forces are in step_forces.cpp.
+  /// Sets what Bullet's code uses in a step that is solved here.
+  void useOwnSettings();
+  /// Applies the impulses of other forces.
+  void applyOthers();
+  void predictVelocities(SolvedBody& body, ParallelFor* inner);
+  /// The velocity error that is not visible, whatever the unit of length: see step_rows.cpp.
+  double unseenSpeed(const SolvedBody& body) const;
+  /// maximum  bound of the iterations
+  void solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const;
+  void writePrediction(SolvedBody& body) const;
+  void predictByBullet(SolvedBody& body);
+  void predictPositions(SolvedBody& body);
+
+  // Detection of contacts.
+  void prepareSearch(SolvedBody& body) const;
+  void searchWaiting();
+
+  // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
+  void readContacts(SolvedBody& body);
+  void addOthers();
+  /// Collects the rows of contacts and anchors, and of the other constraints of rigid bodies, and adds each to the
+  /// system on which it acts.
+  void collectRows();
+  std::vector<RowSource*> rowSources();
+  void collectRigidRowsOfWorlds();
+  void joinByRows();
+  void reuseLastVelocity(SolvedBody& body);
+  /// fastest  speed of the body's fastest node
+  void speculate(const SolvedBody& body, btScalar fastest) const;
+
+  // Steps of the stage `solve`.
+  void solveSystem(SolvedSystem& system, ParallelFor* inner);
+
+  // Steps of the stage `writeBack`.
+  void writeVelocities(SolvedBody& body) const;
+
+  DeformableSolver& solver;
+  OwnObject registered{OwnObject::Kind::DeformableSolver, static_cast<const btSoftBodySolver*>(&solver)};
+  SolverBodies bodies;
+  DrivenNodes driven;
+  NodeLoads loads;
+  Sleepers sleepers;
+  Stillness stillness;
+  ObstacleChanges obstacleChanges;
+  RigidUnknowns rigids;
+  ContactRows rows;
+  JointImpulses jointImpulses;  ///< of Bullet's own solve in this step
+  OtherForces others;
+  StepClock clock;
+  HiddenBodies hidden;
+  StepObjects objects;
+  btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world, which may have been destroyed
+  const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
+  RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
+  bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
+  bool inStep = false;                                  ///< from `gather` until positions have been integrated
+  std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it
+  RecordDrawing recordDrawing;
+  ParallelFor* threads = nullptr;
+  bool deterministic = false;
+  bool nodeNormals = true;
+  bool always = false;  ///< see DeformableSolver::requireOwnSolve
+  bool solving = true;  ///< value for this step
+  int iterations = 0, passes = 0, unconverged = 0;
+  btAlignedObjectArray<btSoftBody*> all;
+};
+
+}  // namespace tetskin

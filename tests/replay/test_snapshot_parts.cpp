@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Nothing in a snapshot is there in vain: with any part from another moment, a run goes on otherwise.
+#include "saved.h"
+#include "solver/rigid_scene.h"
+
+#include <gtest/gtest.h>
+#include <tetskin/replay/snapshot.h>
+
+#include <memory>
+#include <vector>
+
+#include "solver/deformable_test.h"
+#include "support/snapshot_parts.h"
+
+namespace tetskin::test {
+namespace {
+
+/// All kinds of rigid objects, and a soft body that falls among them.
+struct Everything : RigidScene {
+  Everything() {
+    addFloor();
+    addKinds();
+    addStack(20);
+    addJoints();
+    addArm();
+    soft = DeformableBody::add(world, smallCageAbove(1)).value();
+  }
+  void frame() {
+    if (++frames % 5 == 0) static_cast<btHingeConstraint&>(*joints[2]).setMotorTargetVelocity(btScalar(frames % 7));
+    step();
+  }
+  std::vector<btScalar> seen() const {
+    std::vector<btScalar> all = motion();
+    for (int n = 0; n < soft->body().m_nodes.size(); ++n) {
+      for (int k = 0; k < 3; ++k) all.push_back(soft->body().m_nodes[n].m_x[k]);
+    }
+    return all;
+  }
+  int frames = 0;
+  std::unique_ptr<DeformableBody> soft;
+};
+
+/// The frames after a snapshot; none if it is refused.
+std::vector<std::vector<btScalar>> runFrom(const Snapshot& snapshot, int frame, Everything& scene) {
+  constexpr int kAfter = 30;
+  std::vector<std::vector<btScalar>> frames;
+  if (!restoreSnapshot(scene.world, snapshot.data(), snapshot.size()).ok()) return frames;
+  scene.frames = frame;
+  for (int k = 0; k < kAfter; ++k) {
+    scene.frame();
+    frames.push_back(scene.seen());
+  }
+  return frames;
+}
+
+TEST(SnapshotParts, OfOtherMomentsChangeTheRun) {
+  constexpr int kLater = 8;
+  Everything scene;
+  int needed[kParts] = {};
+  for (const int frame : {24, 40}) {
+    while (scene.frames < frame) scene.frame();
+    const Snapshot snapshot = saved(scene.world);
+    while (scene.frames < frame + kLater) scene.frame();
+    const Snapshot later = saved(scene.world);
+    const auto expected = runFrom(snapshot, frame, scene);
+    ASSERT_FALSE(expected.empty());
+    for (std::size_t part = 0; part < kParts; ++part) {
+      needed[part] += runFrom(withPartOf(later, part, snapshot), frame, scene) != expected;
+    }
+    EXPECT_TRUE(runFrom(snapshot, frame, scene) == expected) << "after snapshots that fit nothing";
+    ASSERT_TRUE(restoreSnapshot(scene.world, later.data(), later.size()).ok());
+    scene.frames = frame + kLater;
+  }
+  for (std::size_t part = 0; part < kParts; ++part) {
+    if (part != kContactSearch) {  // see test_snapshots_with_contacts.cpp
+      EXPECT_GT(needed[part], 0) << "part " << part;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/soft_body.h>
+#include <tetskin/core/src/base/mesh/uniform_refinement.h>
+#include <tetskin/replay/snapshot.h>
+
+#include <functional>
+#include <string>
+
+#include "solver/deformable_test.h"
+#include "support/bars.h"
+#include "support/replays.h"
+
+namespace tetskin::test {
+namespace {
+
+/// A world, and what an application does in each of its frames.
+class Scene : public ReplayedScene {
+ public:
+  btDeformableMultiBodyDynamicsWorld& world() override { return worldOf.deformable(); }
+  void frame(int number) override {
+    if (before) before(number);
+    step(worldOf, 1);
+  }
+  btSoftBody& soft(std::size_t k = 0) { return bodies[k]->body(); }
+
+  TetskinWorld worldOf;
+  std::vector<std::unique_ptr<DeformableBody>> bodies;
+  std::function<void(int)> before;
+};
+
+constexpr double kFarUp = 50.0;
+
+/// A bar along x.
+/// pinned  at its lower end of x
+std::unique_ptr<Scene> withBar(double height, bool pinned, const SoftBodyOptions& options = {}) {
+  auto scene = std::make_unique<Scene>();
+  TetMesh bar = makeBox({8, 2, 2}, {2.0, 0.5, 0.5});
+  for (Eigen::Vector3d& p : bar.nodes) p.y() += height;
+  scene->bodies.push_back(added(scene->worldOf, bar, options));
+  for (int n = 0; pinned && n < scene->soft().m_nodes.size(); ++n) {
+    if (scene->soft().m_nodes[n].m_x.x() > 0) continue;
+    EXPECT_TRUE(scene->bodies[0]->setPinned(n, true).ok());
+  }
+  return scene;
+}
+
+void spin(btSoftBody& body, btScalar rate) {
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    btSoftBody::Node& node = body.m_nodes[n];
+    node.m_v = node.m_vn = rate * btVector3(1, 2, 3).cross(node.m_x - btVector3(1, btScalar(kFarUp), 0));
+  }
+}
+
+TEST(SnapshotsOfSoftBodies, OfAFreeBodyThatSpins) {
+  const auto make = [] {
+    auto scene = withBar(kFarUp, false);
+    spin(scene->soft(), 3);
+    return scene;
+  };
+  expectReplays(make, 40, {0, 3, 11, 25});
+}
+
+TEST(SnapshotsOfSoftBodies, OfAHeldBarThatSwings) {
+  expectReplays([] { return withBar(kFarUp, true); }, 60, {0, 7, 30});
+}
+
+TEST(SnapshotsOfSoftBodies, OfAStiffBarThatSwings) {
+  SoftBodyOptions stiff;
+  stiff.relativeStiffness = 20000.0;
+  stiff.solverTolerance = 1e-4;
+  expectReplays([&] { return withBar(kFarUp, true, stiff); }, 60, {0, 7, 30});
+}
+
+TEST(SnapshotsOfSoftBodies, OfPinsThatAreLed) {
+  const auto make = [] {
+    auto scene = withBar(kFarUp, true);
+    scene->before = [own = scene.get()](int frame) {
+      const btScalar y = btScalar(0.1) * std::sin(btScalar(0.3) * static_cast<btScalar>(frame));
+      for (int n = 0; n < own->soft().m_nodes.size(); ++n) {
+        if (!own->bodies[0]->isPinned(n)) continue;
+        btVector3 place = own->soft().m_nodes[n].m_x;
+        place.setX(y);
+        EXPECT_TRUE(own->bodies[0]->setPinnedPosition(n, place).ok());
+      }
+    };
+    return scene;
+  };
+  expectReplays(make, 30, {0, 5, 17});
+}
+
+TEST(SnapshotsOfSoftBodies, OfABodyThatLandsAndFallsAsleep) {
+  expectReplays([] { return withBar(0.1, false); }, 240, {0, 10, 60, 150, 230});
+}
+
+TEST(SnapshotsOfSoftBodies, OfABodyThatIsWoken) {
+  const auto make = [] {
+    auto scene = withBar(0.1, false);
+    scene->before = [own = scene.get()](int frame) {
+      if (frame == 230) own->soft().translate(btVector3(0, btScalar(0.1), 0));
+    };
+    return scene;
+  };
+  expectReplays(make, 250, {200, 229});
+}
+
+TEST(SnapshotsOfSoftBodies, OfQuadraticTets) {
+  const auto make = [] {
+    auto scene = std::make_unique<Scene>();
+    TetMesh mesh = latticeCage(6, 1, 1, 0.5);
+    for (Eigen::Vector3d& p : mesh.nodes) p.y() += 0.5;
+    scene->bodies.push_back(
+        DeformableBody::add(scene->world(), refineQuadratic(mesh).value(), oneKilogram(SoftBodyOptions())).value());
+    return scene;
+  };
+  expectReplays(make, 40, {0, 9, 30});
+}
+
+TEST(SnapshotsOfSoftBodies, OfBulletsOwnForces) {
+  for (const ForceModel model : {ForceModel::NeoHookean, ForceModel::LinearElasticity}) {
+    const auto make = [model] {
+      SoftBodyOptions options;
+      options.forceModel = model;
+      return withBar(kFarUp, true, options);
+    };
+    expectReplays(make, 30, {0, 9, 20});
+  }
+}
+
+TEST(SnapshotsOfSoftBodies, OfBulletsOwnForcesOnAFloor) {
+  const auto make = [] {
+    SoftBodyOptions options;
+    options.forceModel = ForceModel::NeoHookean;
+    auto scene = withBar(0.02, false, options);
+    scene->soft().rotate(btQuaternion(btVector3(0, 0, 1), btScalar(0.3)));
+    return scene;
+  };
+  expectReplays(make, 90, {0, 9, 20, 60});
+}
+
+void expectMismatch(Scene& scene, const Bytes& snapshot, const std::string& named) {
+  const Bytes before = saved(scene);
+  const Status status = restoreSnapshot(scene.world(), snapshot.data(), snapshot.size());
+  EXPECT_EQ(status.code, StatusCode::SnapshotMismatch) << status.message;
+  EXPECT_NE(status.message.find(named), std::string::npos) << status.message;
+  EXPECT_EQ(saved(scene), before);
+}
+
+/// Moving a body by hand turns the tree of its nodes, by which Bullet searches.
+TEST(SnapshotsOfSoftBodies, WhoseTreesHaveChangedAreRefusedWhereBulletSearches) {
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::NeoHookean;
+  const auto bullets = withBar(0.1, false, options), ours = withBar(0.1, false);
+  for (Scene* scene : {bullets.get(), ours.get()}) {
+    scene->frame(0);
+    const Bytes snapshot = saved(*scene);
+    scene->soft().rotate(btQuaternion(btVector3(0, 0, 1), 1));
+    if (scene == bullets.get()) {
+      expectMismatch(*scene, snapshot, "other trees");
+    } else {
+      restore(*scene, snapshot);
+    }
+  }
+}
+
+TEST(SnapshotsOfSoftBodies, WithOtherAnchorsAreRefused) {
+  struct Anchored : Scene {
+    explicit Anchored(int node) {
+      bodies.push_back(added(worldOf, makeBox({8, 2, 2}, {2.0, 0.5, 0.5})));
+      world().addRigidBody(&box);
+      soft().appendDeformableAnchor(node, &box);
+    }
+    ~Anchored() override {
+      bodies.clear();
+      world().removeRigidBody(&box);
+    }
+    btBoxShape shape{btVector3(1, 1, 1)};
+    btRigidBody box{1, nullptr, &shape, btVector3(1, 1, 1)};
+  };
+  Anchored first(0), same(0), other(1);
+  expectMismatch(other, saved(first), "other anchors");
+  restore(same, saved(first));
+}
+
+TEST(SnapshotsOfSoftBodies, WithClustersAreNotSaved) {
+  const auto scene = withBar(kFarUp, false);
+  scene->soft().generateClusters(4);
+  const Status status = saveSnapshot(scene->world(), nullptr, 0).status();
+  EXPECT_EQ(status.code, StatusCode::NotSaved);
+  EXPECT_NE(status.message.find("clusters"), std::string::npos) << status.message;
+}
+
+TEST(SnapshotsOfSoftBodies, OfSettingsThatTheApplicationChanges) {
+  const auto make = [] {
+    auto scene = withBar(kFarUp, true);
+    scene->before = [own = scene.get()](int frame) {
+      DeformableBody& body = *own->bodies[0];
+      if (frame == 10) {
+        EXPECT_TRUE(body.setYoungsModulus(2 * body.youngsModulus()).ok());
+        EXPECT_TRUE(body.setGravity(btVector3(3, 0, 0)).ok());
+        body.body().m_cfg.drag = btScalar(0.01);
+        EXPECT_TRUE(body.setPinned(body.body().m_nodes.size() - 1, true).ok());
+      }
+      if (frame != 20) return;
+      EXPECT_TRUE(body.setPinned(body.body().m_nodes.size() - 1, false).ok());
+    };
+    return scene;
+  };
+  expectReplays(make, 30, {5, 15, 25});
+}
+
+TEST(SnapshotsOfSoftBodies, OfAKinematicBoxThatIsMovedOncePerFrame) {
+  struct Moved : Scene {
+    Moved() {
+      box.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+      box.setActivationState(DISABLE_DEACTIVATION);
+      place(0);
+      world().addRigidBody(&box);
+      before = [this](int frame) { place(frame); };
+    }
+    ~Moved() override { world().removeRigidBody(&box); }
+    void place(int frame) {
+      const auto x = btScalar(0.01) * static_cast<btScalar>(frame);
+      box.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(-0.55) + x, btScalar(0.5), 0)));
+    }
+    btBoxShape shape{btVector3(btScalar(0.5), btScalar(0.5), 1)};
+    btRigidBody box{0, nullptr, &shape};
+  };
+  const auto make = [] {
+    auto scene = std::make_unique<Moved>();
+    TetMesh bar = makeBox({8, 2, 2}, {2.0, 0.5, 0.5});
+    for (Eigen::Vector3d& p : bar.nodes) p.y() += 0.05;
+    scene->bodies.push_back(added(scene->worldOf, bar));
+    return scene;
+  };
+  expectReplays(make, 60, {0, 20, 45});
+}
+
+TEST(SnapshotsOfSoftBodies, OfRecordedForces) {
+  const auto run = [](Scene& scene, ForceRecord& record, int from, std::vector<btVector3>& forces) {
+    forces.clear();
+    for (int f = from; f < 40; ++f) {
+      scene.frame(f);
+      forces.push_back(record.forcesOn(scene.soft()).contact.force);
+    }
+  };
+  auto scene = withBar(0.05, false);
+  const auto record = ForceRecord::add(scene->world()).value();
+  std::vector<btVector3> first, again;
+  for (int f = 0; f < 25; ++f) scene->frame(f);
+  const Bytes snapshot = saved(*scene);
+  const btVector3 then = record->forcesOn(scene->soft()).contact.force;
+  run(*scene, *record, 25, first);
+  restore(*scene, snapshot);
+  EXPECT_EQ(record->forcesOn(scene->soft()).contact.force, then);
+  run(*scene, *record, 25, again);
+  EXPECT_GT(then.y(), 0);
+  EXPECT_EQ(first, again);
+}
+
+std::vector<btVector3> placesOf(const btSoftBody& body) {
+  std::vector<btVector3> places;
+  for (int n = 0; n < body.m_nodes.size(); ++n) places.push_back(body.m_nodes[n].m_x);
+  return places;
+}
+
+TEST(BodiesThatReturn, AreKnownToSnapshots) {
+  TetskinWorld world;
+  const auto stays = added(world, smallCageAbove(2));
+  const auto body = added(world, smallCageAbove(0.05));
+  step(world, 20);
+  std::vector<unsigned char> snapshot(saveSnapshot(world.deformable(), nullptr, 0).value());
+  ASSERT_TRUE(saveSnapshot(world.deformable(), snapshot.data(), snapshot.size()).ok());
+  step(world, 20);
+  const auto first = placesOf(body->body()), second = placesOf(stays->body());
+  body->removeFromWorld();
+  step(world, 5);
+  const auto restore = [&] { return restoreSnapshot(world.deformable(), snapshot.data(), snapshot.size()); };
+  EXPECT_EQ(restore().code, StatusCode::SnapshotMismatch);
+  ASSERT_TRUE(body->addToWorld(world.deformable()).ok());
+  ASSERT_TRUE(restore().ok()) << restore().message;
+  step(world, 20);
+  EXPECT_EQ(placesOf(body->body()), first);
+  EXPECT_EQ(placesOf(stays->body()), second);
+}
+
+}  // namespace
+}  // namespace tetskin::test

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Which components have a rigid motion of their own as an unknown, and where it is. Its products with dense matrices
+// are in test_system_solve.cpp.
+#include <tetskin/solver/src/forces/node_vectors.h>
+#include <tetskin/solver/src/rows/solver_bodies.h>
+#include <tetskin/solver/src/system/component_unknown.h>
+
+#include "deformable_test.h"
+
+namespace tetskin::test {
+
+using namespace bullet_detail;
+
+namespace {
+
+/// Two blocks that share no node, as one body in the middle of a step.
+class TwoBlocks {
+ public:
+  explicit TwoBlocks(double modulus, int pinned = -1) {
+    SoftBodyOptions options;
+    options.youngsModulus = modulus;
+    body = added(world, twoComponents(smallCageAbove(0)), options);
+    if (pinned >= 0) (void)body->setPinned(pinned);
+    btAlignedObjectArray<btSoftBody*> all, awake;
+    all.push_back(&body->body());
+    bodies.collect(all, false, awake);
+    bodies.assign(*world.bodySolver().getLagrangianForceArray());
+    readNodes(body->body(), dynamics());
+    dynamics().predict(1.0 / 240.0, nullptr);
+    dynamics().matrix().free();
+    dynamics().start(nullptr);
+  }
+  Dynamics& dynamics() { return *bodies.bodies()[0].dynamics; }
+  int last() const { return body->body().m_nodes.size() - 1; }
+  std::vector<ComponentUnknown> unknowns(std::size_t most = 9) {
+    return ComponentUnknown::makeAll(dynamics(), most, nullptr);
+  }
+  static CarriedPoint at(int node) {
+    CarriedPoint point;
+    point.add(node, 1);
+    return point;
+  }
+
+  TetskinWorld world;
+  std::unique_ptr<DeformableBody> body;
+  SolverBodies bodies;
+};
+
+TEST(ComponentUnknown, IsOneForEachComponentAndMovesItsOwnNodesAlone) {
+  TwoBlocks blocks(1e4);
+  const std::vector<ComponentUnknown> unknowns = blocks.unknowns();
+  ASSERT_EQ(unknowns.size(), 2u);
+  for (const int node : {0, blocks.last()}) {
+    for (const ComponentUnknown& unknown : unknowns) {
+      const bool own = blocks.dynamics().componentOf(static_cast<std::size_t>(node)) == unknown.component;
+      const RowMotions motions = unknown.motionsAt(blocks.dynamics(), TwoBlocks::at(node));
+      EXPECT_NE(isZero(motions), own) << node;
+      const Small3x3 translations = smallFrom<3, 3>(motions.values);
+      for (int k = 0; k < 3; ++k) {
+        Small3 expected;
+        if (own) expected[k] = 1.0;
+        EXPECT_LT(norm(translations.column(k) - expected), 1e-6);
+      }
+    }
+  }
+  double masses = 0.0;
+  for (const ComponentUnknown& unknown : unknowns) masses += unknown.mass(0, 0);
+  EXPECT_NEAR(masses, 1.0, 1e-4) << "the body has one kilogram";
+}
+
+TEST(ComponentUnknown, IsNoneOfAComponentThatIsPinnedOrBeyondTheMost) {
+  EXPECT_EQ(TwoBlocks(1e4).unknowns(1).size(), 1u);
+  TwoBlocks pinned(1e4, 3);
+  const std::vector<ComponentUnknown> unknowns = pinned.unknowns();
+  ASSERT_EQ(unknowns.size(), 1u);
+  EXPECT_NE(unknowns[0].component, pinned.dynamics().componentOf(3));
+}
+
+/// In float, rounding of the stiffness would hide the masses: the images of motions are then these alone.
+TEST(ComponentUnknown, OfAVeryStiffBodyHasTheMassesOfItsNodes) {
+  for (const double modulus : {1e4, 1e10}) {
+    TwoBlocks blocks(modulus);
+    const ComponentUnknown unknown = blocks.unknowns().front();
+    const auto& matrix = blocks.dynamics().matrix();
+    double off = 0.0, all = 0.0;
+    for (std::size_t n = 0; n < blocks.dynamics().nodeCount(); ++n) {
+      if (blocks.dynamics().componentOf(n) != unknown.component) continue;
+      const std::size_t at = matrix.wideOf(n) - unknown.begin;
+      const btVector3 image = fromWide(&unknown.images[0][at]),
+                      exact = matrix.mass(n) * fromWide(&unknown.motions[0][at]);
+      off += static_cast<double>((image - exact).length2());
+      all += static_cast<double>(exact.length2());
+    }
+    EXPECT_LE(off, 1e-4 * all) << modulus;
+    EXPECT_NEAR(unknown.mass(0, 0), 0.5, 0.01) << modulus;
+  }
+}
+
+}  // namespace
+}  // namespace tetskin::test

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What the rows of contacts between soft bodies begin a step with, made by hand.
+#include <tetskin/solver/src/forces/node_vectors.h>
+#include <tetskin/solver/src/rows/contact_rows.h>
+
+#include <initializer_list>
+#include <memory>
+
+#include "deformable_test.h"
+
+namespace tetskin::test {
+
+using namespace bullet_detail;
+
+namespace {
+
+constexpr btScalar kStepSeconds = btScalar(1) / 240;
+const btVector3 kUp(0, 1, 0);
+
+/// Two bodies, one above the other, whose contacts a test gives.
+class WarmRows : public testing::Test {
+ protected:
+  void SetUp() override {
+    btAlignedObjectArray<btSoftBody*> all, awake;
+    for (const auto& body : {upper_.get(), lower_.get()}) all.push_back(&body->body());
+    bodies_.collect(all, false, awake);
+    bodies_.assign(*world_.bodySolver().getLagrangianForceArray());
+    for (SolvedBody& solved : bodies_.bodies()) readNodes(*solved.body, *solved.dynamics);
+  }
+  PointContact contact(std::uint32_t point, std::uint32_t sample, const btVector3& normal = kUp) {
+    PointContact made;
+    made.body = &upper_->body();
+    made.point = point;
+    made.sample = sample;
+    made.at.add(static_cast<int>(sample), 1);  // another place in the body
+    made.object = &lower_->body();
+    made.onObject.add(0, 1);
+    made.position = made.at.position(upper_->body());
+    made.normal = normal;
+    made.friction = 1;
+    return made;
+  }
+  /// Begins a step with these contacts.
+  void begin(std::initializer_list<PointContact> contacts) {
+    contacts_ = contacts;
+    rows_.collect(bodies_, rigids_, kStepSeconds);
+    rows_.add(contacts_, bodies_, kStepSeconds);
+    ASSERT_EQ(rows_.rows().size(), contacts_.size());
+  }
+  /// Ends the step: each row has stuck, with this slip and impulse.
+  void end(std::initializer_list<std::pair<btVector3, btScalar>> found) {
+    auto row = rows_.rows().begin();
+    for (const auto& [slip, impulse] : found) {
+      row->state = ContactRow::State::Sticks;
+      row->slip = slip;
+      row->impulse = impulse * row->normal;
+      ++row;
+    }
+    rows_.finish(bodies_, kStepSeconds);
+  }
+  void expectRecalled(std::size_t row, const btVector3& offset, btScalar bound) {
+    const ContactRow& at = rows_.rows()[row];
+    EXPECT_LT((at.offsetVelocity - offset).length(), 1e-4);
+    EXPECT_NEAR(at.normalBound, bound, 1e-5);
+    EXPECT_EQ(at.stuck, bound > 0);
+  }
+
+  TetskinWorld world_;
+  std::unique_ptr<DeformableBody> upper_ = added(world_, smallCageAbove(1.0)),
+                                  lower_ = added(world_, smallCageAbove(0));
+  SolverBodies bodies_;
+  RigidUnknowns rigids_;
+  ContactRows rows_;
+  PointContacts contacts_;
+};
+
+const btVector3 kOneSlip(btScalar(0.2), 0, 0), kOtherSlip(0, 0, btScalar(-0.3));
+
+TEST_F(WarmRows, BeginWithNothing) {
+  begin({contact(7, 3)});
+  expectRecalled(0, btVector3(0, 0, 0), 0);
+}
+
+/// Whatever their order is, in this step and in the one before.
+TEST_F(WarmRows, OfTwoSamplesOfAPointRecallEachItsOwn) {
+  begin({contact(7, 3), contact(7, 9)});
+  end({{kOneSlip, 1}, {kOtherSlip, 2}});
+  begin({contact(7, 9), contact(7, 3)});
+  expectRecalled(0, kOtherSlip, 2);
+  expectRecalled(1, kOneSlip, 1);
+  end({{btVector3(0, 0, 0), 2}, {btVector3(0, 0, 0), 1}});
+  begin({contact(7, 3), contact(7, 9)});
+  expectRecalled(0, kOneSlip, 1);
+  expectRecalled(1, kOtherSlip, 2);
+}
+
+TEST_F(WarmRows, OfASampleThatIsNewRecallWhatItsPointHasDone) {
+  begin({contact(7, 3), contact(8, 4)});
+  end({{kOneSlip, 1}, {kOtherSlip, 2}});
+  begin({contact(7, 5), contact(9, 5)});
+  expectRecalled(0, kOneSlip, 1);
+  expectRecalled(1, btVector3(0, 0, 0), 0);
+}
+
+/// A fold is pushed several ways.
+TEST_F(WarmRows, OfOneSampleInTwoDirectionsRecallThatOfTheirs) {
+  const btVector3 aside(1, 0, 0), slipAside(0, btScalar(0.1), 0);
+  begin({contact(7, 3), contact(7, 3, aside)});
+  end({{kOtherSlip, 1}, {slipAside, 2}});
+  begin({contact(7, 3, aside), contact(7, 3), contact(7, 3, -kUp)});
+  expectRecalled(0, slipAside, 2);
+  expectRecalled(1, kOtherSlip, 1);
+  expectRecalled(2, btVector3(0, 0, 0), 0);
+}
+
+}  // namespace
+}  // namespace tetskin::test
