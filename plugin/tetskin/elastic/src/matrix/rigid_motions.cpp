@@ -48,7 +48,8 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) :
     component.inertia +=
         masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
   }
-  for (Component& component : components_) component.inertiaFactors = SymmetricFactors(component.inertia.data());
+  for (Component& component : components_)
+    component.inertiaFactors = SmallLdlt<3>(smallFrom<3, 3>(component.inertia.data()));
 }
 
 void RigidMotions::removeFrom(Fields& displacements) const {
@@ -65,9 +66,9 @@ void RigidMotions::removeFrom(Fields& displacements) const {
   for (std::size_t p = 0; p < components_.size(); ++p) {
     linear.middleRows<3>(rowOf(p)) /= components_[p].mass;
     for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
-      Eigen::Vector3d velocity = angular.block<3, 1>(rowOf(p), k);
-      components_[p].inertiaFactors.solve(velocity.data());
-      angular.block<3, 1>(rowOf(p), k) = velocity;
+      const Eigen::Vector3d momentumOf = angular.block<3, 1>(rowOf(p), k);
+      const Small3 velocity = components_[p].inertiaFactors.solve(smallFrom<3>(momentumOf.data()));
+      angular.block<3, 1>(rowOf(p), k) = Eigen::Vector3d::Map(velocity.values);
     }
   }
   for (std::size_t n = 0; n < partOf_.size(); ++n) {
