@@ -3,7 +3,6 @@
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/exported/skin_binding.h>
-#include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
 #include <cassert>
@@ -69,6 +68,7 @@ struct MeshSkin<Scalar>::Impl {
 
  private:
   const SkinData<Scalar>& bound() const { return dataOf(*binding); }
+  Bends<Scalar> bends() const { return {stencils(), stencils() ? &edges : nullptr}; }
   VertexOrder order() const { return bound().options.order; }
   Normals normalsKind() const { return options.disableNormals ? Normals::None : bound().options.normals; }
   PointView<float> normalsOut() { return options.normalTarget.empty() ? viewOf(normals) : options.normalTarget; }
@@ -101,11 +101,7 @@ struct MeshSkin<Scalar>::Impl {
                                          byScratch ? scratch.data() : nullptr,
                                          recomputed && byScratch ? padded.data() : nullptr};
     Box3* box = options.bounds ? &bounds : nullptr;
-    if (stencils()) {
-      skinQuadratic(bound().embedding, *stencils(), edges, nodes, output, box, options.threads);
-    } else {
-      skinLinear(bound().embedding, nodes, output, box, options.threads);
-    }
+    skinPoints(bound().embedding, nodes, bends(), output, box, options.threads);
     if (normalsKind() == Normals::Transformed) skinDirections();
     if (!recomputed) return;
     if (!byScratch) padPoints(viewOf(std::as_const(positions)), padded, options.threads);
@@ -115,7 +111,7 @@ struct MeshSkin<Scalar>::Impl {
   void skinDirections() {
     assert(bound().normals && normalsOut().size() == bound().embedding.vertexCount());
     const auto carry = [&](const DirectionFactors& factors, PointView<float> out, std::vector<Eigen::Vector3f>& room) {
-      transformDirections(bound().embedding, factors, stencils(), stencils() ? &edges : nullptr, nodes, out, order(),
+      transformDirections(bound().embedding, factors, bends(), nodes, out, order(),
                           room.empty() ? nullptr : room.front().data(), options.threads);
     };
     carry(*bound().normals, normalsOut(), normalScratch);
@@ -237,8 +233,6 @@ Status MeshSkin<Scalar>::setOrigin(const Eigen::Vector3d& origin) {
   return {};
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class MeshSkin<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(MeshSkin)
 
 }  // namespace tetskin

@@ -221,8 +221,6 @@ double ElasticBody<Scalar>::energy() {
   return impl_->dynamics.probeEnergy(nullptr);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class ElasticBody<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(ElasticBody)
 
 }  // namespace tetskin

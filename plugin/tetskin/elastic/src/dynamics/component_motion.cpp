@@ -111,6 +111,12 @@ RigidVelocity rigidVelocity(const Vector3d& about, const Vector3d& velocity, con
 
 }  // namespace
 
+Matrix3d nearestRotation(const Matrix3d& moments) {
+  const Eigen::JacobiSVD<Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
 void PinnedNodes::add(const Vector3d& point, const Vector3d& nodeVelocity) {
   // Sine of the angle up to which a node is on the line of those before: more than rounding of positions makes.
   constexpr double kOnLine = 1e-3;
@@ -145,9 +151,7 @@ void PinnedNodes::finish(double seconds) {
     turn = rotationBetween(axis.normalized(), moved.normalized());
     return;
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(spread + seconds * rates, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  turn = svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  turn = nearestRotation(spread + seconds * rates);
 }
 
 void ComponentMotion::find(const ComponentMoments& moments, const Vector3d& near, const PinnedNodes& pinned,

@@ -775,8 +775,6 @@ void BodyDynamics<S>::arrive(std::size_t node, const S* velocity) {
   }
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class BodyDynamics<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(BodyDynamics)
 
 }  // namespace tetskin::elastic_detail

@@ -388,8 +388,6 @@ void BlockMatrix<S>::clear() {
   for (AlignedVector<S>* v : {&direction_, &stepPoints_, &lowerPoints_}) v->assign(v->size(), S(0));
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class BlockMatrix<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(BlockMatrix)
 
 }  // namespace tetskin::elastic_detail

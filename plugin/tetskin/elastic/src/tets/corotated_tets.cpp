@@ -295,8 +295,6 @@ bool CorotatedTets<S>::visitAlphas(StateStream& stream, S alpha, Packed<Pack>& p
   return changed;
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class CorotatedTets<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(CorotatedTets)
 
 }  // namespace tetskin::elastic_detail
