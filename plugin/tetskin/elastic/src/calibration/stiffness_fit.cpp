@@ -136,7 +136,7 @@ LoadSet applied(const RefinedBodies& bodies, const Fields& accelerations) {
   return set;
 }
 
-/// The logarithm's weighted mean, as a factor.
+/// The weighted geometric mean; 1 where nothing has a weight.
 double geometricMean(const Eigen::RowVectorXd& values, const Eigen::RowVectorXd& weights) {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
