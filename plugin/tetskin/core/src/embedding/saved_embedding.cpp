@@ -24,6 +24,7 @@
 namespace tetskin {
 namespace {
 
+/// See above.
 constexpr SavedFormat kFormat{"tetskemb", 1, 9 * 8, "an embedding", "the saved embedding", "embed again"};
 
 struct Header {

@@ -22,6 +22,7 @@
 namespace tetskin {
 namespace {
 
+/// See above.
 constexpr SavedFormat kFormat{"tetskmod", 1, 8 * 8, "modes", "the saved set of modes", "compute it again"};
 
 /// The hash of the mesh, unless some tets are quadratic: a body with the same nodes then vibrates differently.
