@@ -116,7 +116,7 @@ void normalsTransformed(State& state, const Bench& bench) {
     throw InputError("the body has a node position that is not finite");
   std::vector<Eigen::Vector3f> normals(embedding.vertexCount());
   for (auto _ : state) {
-    transformDirections<btScalar>(embedding, factors, nullptr, nullptr, nodes, viewOf(normals), VertexOrder::Sorted);
+    transformDirections<btScalar>(embedding, factors, {}, nodes, viewOf(normals), VertexOrder::Sorted);
     benchmark::ClobberMemory();
   }
 }

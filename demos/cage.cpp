@@ -92,8 +92,8 @@ int run(CageCommand command) {
   return statusOf(fit);
 }
 
-/// Makes a cage of tets that fill a mesh: quadratic ones where the file has such, or where its tets are those of a
-/// uniform refinement; otherwise of each tet, if wanted.
+/// Makes a cage of tets that fill a mesh: quadratic ones where the file has such; otherwise of each tet, if
+/// wanted.
 int runFilled(const CageCommand& command) {
   Cage cage = scenes::loadCage(command.filled);
   const auto quadraticTetsOf = [](const Cage& made) {
@@ -102,7 +102,6 @@ int runFilled(const CageCommand& command) {
     return tets.value().size();
   };
   std::size_t count = quadraticTetsOf(cage);
-  if (count == 0) count = findQuadraticTets(cage);
   if (count == 0 && command.quadratic) {
     Result<Cage> refined = refineQuadratic(cage);
     if (!refined.ok()) throw InputError(command.filled + ": " + refined.status().message);
@@ -143,8 +142,7 @@ int main(int argc, char** argv) {
                     "a vertex lies outside the cage"});
   line.addMeshOptions(command.model);
   line.addInput("--filled", command.filled,
-                "Tets that fill the mesh, to be the cage: those of second order, and those that were refined "
-                "uniformly, become quadratic tets");
+                "Tets that fill the mesh, to be the cage: those of second order become quadratic tets");
   line.addFlag("--quadratic", command.quadratic,
                "With --filled: a quadratic tet, of eight tets, for each tet, unless the file has some");
   line.addOutput("-o,--output", command.output,

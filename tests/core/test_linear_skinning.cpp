@@ -4,7 +4,7 @@
 #include "support/odd_meshes.h"
 
 #include <gtest/gtest.h>
-#include <tetskin/core/src/skinning/linear_skinning.h>
+#include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <limits>
 
@@ -40,7 +40,7 @@ class LinearSkinning : public testing::Test {
     EXPECT_EQ(packed.pack(viewOf(nodes)), nodes.size());
     Surface surface(embedding.vertexCount());
     scratch.resize(scratchSize(surface.size()));
-    skinLinear(embedding, packed, Output{viewOf(surface), VertexOrder::Mesh, origin, scratch.data()}, &bounds);
+    skinPoints(embedding, packed, {}, Output{viewOf(surface), VertexOrder::Mesh, origin, scratch.data()}, &bounds);
     return surface;
   }
 
@@ -170,7 +170,7 @@ TYPED_TEST(LinearSkinning, WritesOnlyThePositionsOfAnInterleavedBuffer) {
   typename TestFixture::Output output;
   output.points = PointView<Out>(buffer[0].position, buffer.size(), sizeof(Vertex));
   output.scratch = this->scratch.data();
-  skinLinear(this->embedding, packed, output);
+  skinPoints(this->embedding, packed, {}, output);
   for (std::size_t v = 0; v < buffer.size(); ++v) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(buffer[v].position[k], expected[v][k]);
     EXPECT_EQ(buffer[v].before, Out(7));
@@ -198,7 +198,7 @@ TYPED_TEST(LinearSkinning, SortedOrderIsThatOfTheSlots) {
     output.points = PointView<Out>(points.front().data(), count, step * sizeof(Point));
     output.order = VertexOrder::Sorted;
     output.scratch = this->scratch.data();
-    skinLinear(this->embedding, packed, output, &sortedBounds);
+    skinPoints(this->embedding, packed, {}, output, &sortedBounds);
     for (std::size_t slot = 0; slot < count; ++slot) {
       EXPECT_EQ(points[step * slot], expected[this->embedding.slotVertices()[slot]]);
     }

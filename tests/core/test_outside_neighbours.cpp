@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/skinning/linear_skinning.h>
+#include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <algorithm>
 
@@ -88,7 +88,7 @@ TEST(OutsideNeighbours, VerticesThatPokeTowardsAnotherPartStayWithTheirOwn) {
     PackedNodes<double> packed(nodes.size());
     ASSERT_EQ(packed.pack(viewOf(std::as_const(nodes))), nodes.size());
     Points surface(mesh.vertexCount());
-    skinLinear(embedding, packed, SkinOutput<double, double>{viewOf(surface)});
+    skinPoints(embedding, packed, {}, SkinOutput<double, double>{viewOf(surface)});
     for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_LT((surface[v] - mesh.positions[v]).norm(), 1e-6);
   }
 }

@@ -357,7 +357,7 @@ TYPED_TEST(QuadraticOutput, IsTheSameInEveryOrderAndStride) {
     // Nothing between the points or beyond the last one is written.
     std::vector<Point> out(step * count + 20, Point::Constant(-77));
     const SkinOutput<Scalar, Out> output{{out.front().data(), count, step * sizeof(Point)}, order, origin};
-    skinQuadratic(points.embedding, points.stencils, points.edges, points.nodes, output, &bounds);
+    skinPoints(points.embedding, points.nodes, {&points.stencils, &points.edges}, output, &bounds);
     std::vector<Point> result;
     for (std::size_t k = 0; k < out.size(); ++k) {
       if (k % step == 0 && k < step * count) {

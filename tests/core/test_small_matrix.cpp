@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -64,34 +66,69 @@ TEST(SmallMatrix, NormsAndDotAndCrossProductsHaveTheBitsOfEigens) {
 }
 
 /// Symmetric, of the given rank.
-Eigen::Matrix<double, 6, 6> symmetricMatrix6(std::mt19937& random, int rank) {
-  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+template <int Size>
+Eigen::Matrix<double, Size, Size> symmetricMatrix(std::mt19937& random, int rank) {
+  Eigen::Matrix<double, Size, Size> sum = Eigen::Matrix<double, Size, Size>::Zero();
   for (int k = 0; k < rank; ++k) {
-    const Eigen::Matrix<double, 6, 1> v = randomMatrix<6>(random);
+    const Eigen::Matrix<double, Size, 1> v = randomMatrix<Size>(random);
     sum += (k % 3 == 2 ? -1.0 : 1.0) * v * v.transpose();
   }
   return sum;
 }
 
-TEST(SmallMatrix, SolutionsHaveTheBitsOfEigensAlsoForSingularMatrices) {
+template <int Size>
+void expectBitsOfEigensSolutions(const Eigen::Matrix<double, Size, Size>& m, std::mt19937& random) {
+  const Eigen::Matrix<double, Size, 1> right = randomMatrix<Size>(random);
+  Eigen::Matrix<double, Size, Size> lower = m;  // the rest is not read
+  lower.template triangularView<Eigen::StrictlyUpper>().setConstant(NAN);
+  expectSameBits(SmallLdlt<Size>(small(lower)).solve(small(right)),
+                 Eigen::Matrix<double, Size, 1>(m.ldlt().solve(right)));
+}
+
+TEST(SmallMatrix, SymmetricSolutionsHaveTheBitsOfEigensAlsoForSingularMatrices) {
   std::mt19937 random(3);
   for (int time = 0; time < kTimes; ++time) {
-    const Eigen::Matrix<double, 6, 6> m = symmetricMatrix6(random, time % 8);
-    const Eigen::Matrix<double, 6, 1> right = randomMatrix<6>(random);
-    expectSameBits(SmallLdlt<6>(small(m)).solve(small(right)), Eigen::Matrix<double, 6, 1>(m.ldlt().solve(right)));
+    expectBitsOfEigensSolutions<6>(symmetricMatrix<6>(random, time % 8), random);
+    expectBitsOfEigensSolutions<3>(symmetricMatrix<3>(random, time % 5), random);
   }
 }
 
-TEST(SmallMatrix, SolutionsOfMatricesWithZerosHaveTheBitsOfEigens) {
+TEST(SmallMatrix, SymmetricSolutionsOfMatricesWithZerosHaveTheBitsOfEigens) {
   std::mt19937 random(4);
   for (int time = 0; time < kTimes; ++time) {
-    Eigen::Matrix<double, 6, 6> m = symmetricMatrix6(random, 6);
+    Eigen::Matrix<double, 6, 6> m = symmetricMatrix<6>(random, 6);
     for (int k = 0; k < 6; ++k) {
       if (random() % 3 == 0) m.row(k).setZero(), m.col(k).setZero();
     }
-    const Eigen::Matrix<double, 6, 1> right = randomMatrix<6>(random);
-    expectSameBits(SmallLdlt<6>(small(m)).solve(small(right)), Eigen::Matrix<double, 6, 1>(m.ldlt().solve(right)));
+    expectBitsOfEigensSolutions<6>(m, random);
+    expectBitsOfEigensSolutions<3>(m.topLeftCorner<3, 3>(), random);
   }
+}
+
+template <int Size>
+void expectBitsOfEigensFactors(std::mt19937& random) {
+  const Eigen::Matrix<double, Size, Size> m = randomMatrix<Size, Size>(random);
+  const Eigen::Matrix<double, Size, 1> right = randomMatrix<Size>(random);
+  expectSameBits(solved(small(m), small(right)), Eigen::Matrix<double, Size, 1>(m.partialPivLu().solve(right)));
+}
+
+TEST(SmallMatrix, SolutionsHaveTheBitsOfEigens) {
+  std::mt19937 random(5);
+  for (int time = 0; time < kTimes; ++time) {
+    expectBitsOfEigensFactors<3>(random);
+    expectBitsOfEigensFactors<6>(random);
+  }
+}
+
+TEST(SmallMatrix, SolutionsDivideByNoSmallPivot) {
+  const SmallMatrix<2> x = solved<2>({{1e-20, 1.0, 1.0, 1.0}}, {{1.0, 2.0}});
+  EXPECT_DOUBLE_EQ(x[0], 1.0);
+  EXPECT_DOUBLE_EQ(x[1], 1.0);
+}
+
+TEST(SmallMatrix, SolutionsOfASingularMatrixAreNotFinite) {
+  const SmallMatrix<2> x = solved<2>({{1.0, 2.0, 2.0, 4.0}}, {{1.0, 1.0}});
+  EXPECT_FALSE(std::isfinite(x[0]) && std::isfinite(x[1]));
 }
 
 }  // namespace

@@ -116,10 +116,9 @@ TEST(CageFiles, QuadraticTetsReadBackExactlyAndAreTetsToOthers) {
   const TempFolder folder;
   for (const char* name : {"c.ele", "c.node"}) {
     ASSERT_TRUE(saveCage(cage, folder.path(name)).ok());
-    Cage read = loadCage(folder.path(name)).value();
+    const Cage read = loadCage(folder.path(name)).value();
     EXPECT_EQ(read.mesh.tets, cage.mesh.tets);
     EXPECT_TRUE(read.quadraticTet.empty());
-    EXPECT_EQ(findQuadraticTets(read), cage.mesh.tetCount() / kSubTets) << "they can be found again";
   }
 }
 

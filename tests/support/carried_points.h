@@ -6,7 +6,6 @@
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
-#include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 
 #include <algorithm>
@@ -45,12 +44,12 @@ class CarriedPoints {
   }
   Points linear() const {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> out(embedding.vertexCount());
-    skinLinear(embedding, nodes, SkinOutput<Scalar, Scalar>{viewOf(out)});
+    skinPoints(embedding, nodes, {}, SkinOutput<Scalar, Scalar>{viewOf(out)});
     return inDouble(out);
   }
   Points quadratic() const {
     std::vector<Eigen::Matrix<Scalar, 3, 1>> out(embedding.vertexCount());
-    skinQuadratic(embedding, stencils, edges, nodes, SkinOutput<Scalar, Scalar>{viewOf(out)});
+    skinPoints(embedding, nodes, {&stencils, &edges}, SkinOutput<Scalar, Scalar>{viewOf(out)});
     return inDouble(out);
   }
 

@@ -89,10 +89,9 @@ class TETSKIN_CORE_API BonePalette {
   using Binding = typename SkinBinding<Scalar>::Pointer;  ///< a binding, shared
 
   /// A palette of no bones.
-  BonePalette();
-  ~BonePalette();
-  BonePalette(BonePalette&& other) noexcept;
-  BonePalette& operator=(BonePalette&& other) noexcept;
+  BonePalette() = default;
+  BonePalette(BonePalette&& other) noexcept = default;
+  BonePalette& operator=(BonePalette&& other) noexcept = default;
 
   /// Allocates what updates need: some 100 bytes per node, in double twice as many.
   /// Errors: Empty without a binding; InvalidOption for `gradients` with a linear binding, or an origin that is not
@@ -119,7 +118,7 @@ class TETSKIN_CORE_API BonePalette {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;  ///< null: without a binding
+  std::shared_ptr<Impl> impl_;  ///< null: without a binding; never shared
 };
 
 }  // namespace tetskin

@@ -79,9 +79,8 @@ class TETSKIN_CORE_API CageLocator {
   /// Builds the search structure. Cost O(T log T) for T tets.
   /// cage  valid (see `validate`); not copied, must outlive this object
   explicit CageLocator(const Cage& cage);
-  ~CageLocator();
-  CageLocator(CageLocator&&) noexcept;
-  CageLocator& operator=(CageLocator&&) noexcept;
+  CageLocator(CageLocator&&) noexcept = default;
+  CageLocator& operator=(CageLocator&&) noexcept = default;
 
   /// Index of the tet that holds the point, among those reached through shared faces from the tets of the given
   /// vertices. If none of them holds it, the tet with the smallest barycentric distance among those visited. For a cage
@@ -94,7 +93,7 @@ class TETSKIN_CORE_API CageLocator {
 
  private:
   struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::shared_ptr<const Impl> impl_;
 };
 
 // Quadratic tets: ten nodes, whose displacement is a quadratic function between them. They bend as linear tets, which
@@ -130,14 +129,5 @@ TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cag
 /// Errors    those of `validate(const Cage&)`; InvalidOption: duplicate elements; Degenerate: flat tets; TooLarge: 8 T
 ///           tets are too many
 TETSKIN_CORE_API Result<Cage> refineQuadratic(const Cage& cage);
-
-/// Finds the quadratic tets of a mesh that was refined uniformly, wholly or in part, by any program: groups of eight
-/// tets that `refineQuadratic` could have made of one, in any order and orientation. For meshes that are filled by
-/// their body. Where tets could be grouped in several ways, as in a lattice or in a mesh that was refined twice, those
-/// groups come first that hang together, by whole faces, with the most others. Tets of no group stay linear.
-/// cage     valid (see `validate`); its `quadraticTet` is replaced, and becomes empty if there are none
-/// Returns  the number of quadratic tets
-/// Cost     O(T log T), some 2 microseconds per tet
-TETSKIN_CORE_API std::size_t findQuadraticTets(Cage& cage);
 
 }  // namespace tetskin

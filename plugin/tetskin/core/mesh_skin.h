@@ -167,10 +167,9 @@ class TETSKIN_CORE_API MeshSkin {
   using Binding = typename SkinBinding<Scalar>::Pointer;  ///< a binding, shared
 
   /// An unbound skin.
-  MeshSkin();
-  ~MeshSkin();
-  MeshSkin(MeshSkin&& other) noexcept;
-  MeshSkin& operator=(MeshSkin&& other) noexcept;
+  MeshSkin() = default;
+  MeshSkin(MeshSkin&& other) noexcept = default;
+  MeshSkin& operator=(MeshSkin&& other) noexcept = default;
 
   /// Creates a binding, and updates once with the cage's rest nodes. Returns the fit. On an error, this skin is left
   /// unchanged; for a report of a failed fit, call `SkinBinding::create`.
@@ -225,7 +224,7 @@ class TETSKIN_CORE_API MeshSkin {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;  ///< null: not bound
+  std::shared_ptr<Impl> impl_;  ///< null: not bound; never shared
   bool motionCleared_ = true;   ///< the previous positions are not to be shown
 };
 

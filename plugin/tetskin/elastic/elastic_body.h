@@ -65,10 +65,9 @@ template <class Scalar>
 class TETSKIN_ELASTIC_API ElasticBody {
  public:
   /// An empty body, equal to one that was moved from: it has no nodes, and its step does nothing. Use `create`.
-  ElasticBody();
-  ~ElasticBody();
-  ElasticBody(ElasticBody&&) noexcept;
-  ElasticBody& operator=(ElasticBody&&) noexcept;
+  ElasticBody() = default;
+  ElasticBody(ElasticBody&&) noexcept = default;
+  ElasticBody& operator=(ElasticBody&&) noexcept = default;
 
   /// Creates a body at rest, at the position of the cage.
   /// cage    valid (see `validate`), without flat tets; any unit; not kept. A plain TetMesh converts to one. Its volume
@@ -105,7 +104,7 @@ class TETSKIN_ELASTIC_API ElasticBody {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace tetskin

@@ -77,62 +77,49 @@ struct BonePalette<Scalar>::Impl {
   NodeGradients<Scalar> gradients;
   std::size_t firstBadNode = 0;
 
-  Impl(Binding made, const PaletteOptions& wanted);
-  void write(BoneView bones);
+  Impl(Binding made, const PaletteOptions& wanted)
+      : binding(std::move(made)), options(wanted), nodes(bound().embedding.nodeCount()) {
+    assert(bound().restNodes.size() == 4 * nodes.size());
+    if (!hasGradients()) {
+      gradients = NodeGradients<Scalar>(0);
+      gradientOf.assign(nodes.size(), 0);
+      return;
+    }
+    const std::vector<std::uint32_t>& gradientNodes = bound().quadratic->gradientNodes();
+    gradients = NodeGradients<Scalar>(gradientNodes.size());
+    gradientOf.assign(nodes.size(), static_cast<std::uint32_t>(gradientNodes.size()));
+    for (std::size_t g = 0; g < gradientNodes.size(); ++g) gradientOf[gradientNodes[g]] = static_cast<std::uint32_t>(g);
+  }
+
+  /// For the packed nodes.
+  void write(BoneView bones) {
+    assert(bones.count == nodes.size());
+    if (hasGradients()) gradients.update(*bound().quadratic, nodes, options.threads);
+    kernels::BoneWork<Scalar> work;
+    work.content = quadratic() ? kernels::BoneContent::HalfGradient : kernels::BoneContent::Gradient;
+    work.columns = options.layout == BoneLayout::Columns;
+    work.gradientOf = gradientOf.data();
+    work.gradients = gradients.data();
+    work.restNodes = bound().restNodes.data();
+    work.nodes = nodes.data();
+    for (int k = 0; k < 3; ++k) work.shift[k] = nodes.mean()[k] - static_cast<Scalar>(options.origin[k]);
+    work.bones = bones.data;
+    work.strideBytes = bones.strideBytes;
+    const std::size_t tasks = skin_tasks::taskCount(nodes.size(), kBonesPerTask);
+    runTasks(options.threads, tasks, [&](std::size_t task) {
+      kernels::BoneWork<Scalar> part = work;
+      part.firstNode = skin_tasks::firstItem(nodes.size(), tasks, task);
+      part.lastNode = skin_tasks::firstItem(nodes.size(), tasks, task + 1);
+      kernels::tableInUse<Scalar>().bones(part);
+    });
+  }
+
   bool quadratic() const { return bound().quadratic && !options.disableQuadratic; }
 
  private:
   const SkinData<Scalar>& bound() const { return dataOf(*binding); }
   bool hasGradients() const { return quadratic() || options.gradients; }
 };
-
-template <class Scalar>
-BonePalette<Scalar>::Impl::Impl(Binding made, const PaletteOptions& wanted)
-    : binding(std::move(made)), options(wanted), nodes(bound().embedding.nodeCount()) {
-  assert(bound().restNodes.size() == 4 * nodes.size());
-  if (!hasGradients()) {
-    gradients = NodeGradients<Scalar>(0);
-    gradientOf.assign(nodes.size(), 0);
-    return;
-  }
-  const std::vector<std::uint32_t>& gradientNodes = bound().quadratic->gradientNodes();
-  gradients = NodeGradients<Scalar>(gradientNodes.size());
-  gradientOf.assign(nodes.size(), static_cast<std::uint32_t>(gradientNodes.size()));
-  for (std::size_t g = 0; g < gradientNodes.size(); ++g) gradientOf[gradientNodes[g]] = static_cast<std::uint32_t>(g);
-}
-
-/// For the packed nodes.
-template <class Scalar>
-void BonePalette<Scalar>::Impl::write(BoneView bones) {
-  assert(bones.count == nodes.size());
-  if (hasGradients()) gradients.update(*bound().quadratic, nodes, options.threads);
-  kernels::BoneWork<Scalar> work;
-  work.content = quadratic() ? kernels::BoneContent::HalfGradient : kernels::BoneContent::Gradient;
-  work.columns = options.layout == BoneLayout::Columns;
-  work.gradientOf = gradientOf.data();
-  work.gradients = gradients.data();
-  work.restNodes = bound().restNodes.data();
-  work.nodes = nodes.data();
-  for (int k = 0; k < 3; ++k) work.shift[k] = nodes.mean()[k] - static_cast<Scalar>(options.origin[k]);
-  work.bones = bones.data;
-  work.strideBytes = bones.strideBytes;
-  const std::size_t tasks = skin_tasks::taskCount(nodes.size(), kBonesPerTask);
-  runTasks(options.threads, tasks, [&](std::size_t task) {
-    kernels::BoneWork<Scalar> part = work;
-    part.firstNode = skin_tasks::firstItem(nodes.size(), tasks, task);
-    part.lastNode = skin_tasks::firstItem(nodes.size(), tasks, task + 1);
-    kernels::tableInUse<Scalar>().bones(part);
-  });
-}
-
-template <class Scalar>
-BonePalette<Scalar>::BonePalette() = default;
-template <class Scalar>
-BonePalette<Scalar>::~BonePalette() = default;
-template <class Scalar>
-BonePalette<Scalar>::BonePalette(BonePalette&& other) noexcept = default;
-template <class Scalar>
-BonePalette<Scalar>& BonePalette<Scalar>::operator=(BonePalette&& other) noexcept = default;
 
 template <class Scalar>
 Result<BonePalette<Scalar>> BonePalette<Scalar>::create(Binding binding, const PaletteOptions& options) {
@@ -144,7 +131,7 @@ Result<BonePalette<Scalar>> BonePalette<Scalar>::create(Binding binding, const P
                   "disableQuadratic"};
   }
   BonePalette palette;
-  palette.impl_ = std::make_unique<Impl>(std::move(binding), options);
+  palette.impl_ = std::make_shared<Impl>(std::move(binding), options);
   return palette;
 }
 

@@ -3,7 +3,6 @@
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/core/src/exported/skin_binding.h>
-#include <tetskin/core/src/skinning/linear_skinning.h>
 #include <tetskin/core/src/skinning/skin_tasks.h>
 
 #include <cassert>
@@ -33,8 +32,35 @@ struct MeshSkin<Scalar>::Impl {
   std::size_t firstBadNode = 0;
 
   /// Allocates only what the options ask for.
-  Impl(Binding made, const InstanceOptions& wanted);
-  void skin();
+  Impl(Binding made, const InstanceOptions& wanted)
+      : binding(std::move(made)), options(wanted), nodes(bound().embedding.nodeCount()) {
+    const std::size_t vertexCount = bound().embedding.vertexCount();
+    const auto direct = [&](auto points) { return skin_tasks::isDirect<Scalar>(points, order()); };
+    bool positionsDirect = false;
+    const bool readAgain = normalsKind() == Normals::Recomputed;  // since the caller's memory must not be read
+    if (const auto* single = std::get_if<PointView<float>>(&options.target)) {
+      positionsDirect = direct(*single) && !readAgain;
+    } else if (const auto* twice = std::get_if<PointView<double>>(&options.target)) {
+      positionsDirect = direct(*twice) && !readAgain;
+    } else {
+      positions.resize(vertexCount);
+      positionsDirect = direct(viewOf(positions));
+    }
+    if (!positionsDirect) scratch.resize(scratchSize(vertexCount));
+    if (options.previousPositions) previous.resize(vertexCount);
+    if (stencils()) edges = EdgeVectors<Scalar>(*stencils());
+    if (normalsKind() != Normals::None) prepareNormals();
+  }
+
+  /// Updates for the packed nodes.
+  void skin() {
+    if (stencils()) edges.update(*stencils(), nodes, options.threads);
+    if (const auto* single = std::get_if<PointView<float>>(&options.target)) return skinTo(*single);
+    if (const auto* twice = std::get_if<PointView<double>>(&options.target)) return skinTo(*twice);
+    if (options.previousPositions) positions.swap(previous);
+    skinTo(viewOf(positions));
+  }
+
   /// The stencils of a quadratic surface; null for a linear one.
   const QuadraticStencils<Scalar>* stencils() const {
     return bound().quadratic && !options.disableQuadratic ? &*bound().quadratic : nullptr;
@@ -42,106 +68,56 @@ struct MeshSkin<Scalar>::Impl {
 
  private:
   const SkinData<Scalar>& bound() const { return dataOf(*binding); }
+  Bends<Scalar> bends() const { return {stencils(), stencils() ? &edges : nullptr}; }
   VertexOrder order() const { return bound().options.order; }
   Normals normalsKind() const { return options.disableNormals ? Normals::None : bound().options.normals; }
   PointView<float> normalsOut() { return options.normalTarget.empty() ? viewOf(normals) : options.normalTarget; }
   PointView<float> tangentsOut() { return options.tangentTarget.empty() ? viewOf(tangents) : options.tangentTarget; }
-  void prepareNormals();
+
+  void prepareNormals() {
+    assert(normalsOut().empty() || normalsOut().size() == bound().embedding.vertexCount());
+    const std::size_t vertexCount = bound().embedding.vertexCount();
+    if (options.normalTarget.empty()) normals.resize(vertexCount);
+    fill(normalsOut(), Eigen::Vector3f::UnitY());  // unit vectors initially: see transformDirections
+    if (normalsKind() == Normals::Recomputed) {
+      padded.resize(4 * vertexCount);
+      return;
+    }
+    const auto scratchFor = [&](PointView<float> out, const Eigen::Vector3f& unit, std::vector<Eigen::Vector3f>& room) {
+      if (!skin_tasks::isDirect<float>(out, order())) room.assign(vertexCount + 1, unit);
+    };
+    scratchFor(normalsOut(), Eigen::Vector3f::UnitY(), normalScratch);
+    if (!bound().tangents) return;
+    if (options.tangentTarget.empty()) tangents.resize(vertexCount);
+    fill(tangentsOut(), Eigen::Vector3f::UnitX());
+    scratchFor(tangentsOut(), Eigen::Vector3f::UnitX(), tangentScratch);
+  }
+
   template <class Out>
-  void skinTo(PointView<Out> out);
-  void skinDirections();
+  void skinTo(PointView<Out> out) {
+    assert(out.size() == bound().embedding.vertexCount());
+    const bool recomputed = normalsKind() == Normals::Recomputed, byScratch = !scratch.empty();
+    const SkinOutput<Scalar, Out> output{out, order(), options.origin.template cast<Scalar>(),
+                                         byScratch ? scratch.data() : nullptr,
+                                         recomputed && byScratch ? padded.data() : nullptr};
+    Box3* box = options.bounds ? &bounds : nullptr;
+    skinPoints(bound().embedding, nodes, bends(), output, box, options.threads);
+    if (normalsKind() == Normals::Transformed) skinDirections();
+    if (!recomputed) return;
+    if (!byScratch) padPoints(viewOf(std::as_const(positions)), padded, options.threads);
+    recomputeNormals(*bound().recomputed, padded, normalsOut(), options.threads);
+  }
+
+  void skinDirections() {
+    assert(bound().normals && normalsOut().size() == bound().embedding.vertexCount());
+    const auto carry = [&](const DirectionFactors& factors, PointView<float> out, std::vector<Eigen::Vector3f>& room) {
+      transformDirections(bound().embedding, factors, bends(), nodes, out, order(),
+                          room.empty() ? nullptr : room.front().data(), options.threads);
+    };
+    carry(*bound().normals, normalsOut(), normalScratch);
+    if (bound().tangents) carry(*bound().tangents, tangentsOut(), tangentScratch);
+  }
 };
-
-template <class Scalar>
-MeshSkin<Scalar>::Impl::Impl(Binding made, const InstanceOptions& wanted)
-    : binding(std::move(made)), options(wanted), nodes(bound().embedding.nodeCount()) {
-  const std::size_t vertexCount = bound().embedding.vertexCount();
-  const auto direct = [&](auto points) { return skin_tasks::isDirect<Scalar>(points, order()); };
-  bool positionsDirect = false;
-  const bool readAgain = normalsKind() == Normals::Recomputed;  // since the caller's memory must not be read
-  if (const auto* single = std::get_if<PointView<float>>(&options.target)) {
-    positionsDirect = direct(*single) && !readAgain;
-  } else if (const auto* twice = std::get_if<PointView<double>>(&options.target)) {
-    positionsDirect = direct(*twice) && !readAgain;
-  } else {
-    positions.resize(vertexCount);
-    positionsDirect = direct(viewOf(positions));
-  }
-  if (!positionsDirect) scratch.resize(scratchSize(vertexCount));
-  if (options.previousPositions) previous.resize(vertexCount);
-  if (stencils()) edges = EdgeVectors<Scalar>(*stencils());
-  if (normalsKind() != Normals::None) prepareNormals();
-}
-
-template <class Scalar>
-void MeshSkin<Scalar>::Impl::prepareNormals() {
-  assert(normalsOut().empty() || normalsOut().size() == bound().embedding.vertexCount());
-  const std::size_t vertexCount = bound().embedding.vertexCount();
-  if (options.normalTarget.empty()) normals.resize(vertexCount);
-  fill(normalsOut(), Eigen::Vector3f::UnitY());  // unit vectors initially: see transformDirections
-  if (normalsKind() == Normals::Recomputed) {
-    padded.resize(4 * vertexCount);
-    return;
-  }
-  const auto scratchFor = [&](PointView<float> out, const Eigen::Vector3f& unit, std::vector<Eigen::Vector3f>& room) {
-    if (!skin_tasks::isDirect<float>(out, order())) room.assign(vertexCount + 1, unit);
-  };
-  scratchFor(normalsOut(), Eigen::Vector3f::UnitY(), normalScratch);
-  if (!bound().tangents) return;
-  if (options.tangentTarget.empty()) tangents.resize(vertexCount);
-  fill(tangentsOut(), Eigen::Vector3f::UnitX());
-  scratchFor(tangentsOut(), Eigen::Vector3f::UnitX(), tangentScratch);
-}
-
-/// Updates for the packed nodes.
-template <class Scalar>
-void MeshSkin<Scalar>::Impl::skin() {
-  if (stencils()) edges.update(*stencils(), nodes, options.threads);
-  if (const auto* single = std::get_if<PointView<float>>(&options.target)) return skinTo(*single);
-  if (const auto* twice = std::get_if<PointView<double>>(&options.target)) return skinTo(*twice);
-  if (options.previousPositions) positions.swap(previous);
-  skinTo(viewOf(positions));
-}
-
-template <class Scalar>
-template <class Out>
-void MeshSkin<Scalar>::Impl::skinTo(PointView<Out> out) {
-  assert(out.size() == bound().embedding.vertexCount());
-  const bool recomputed = normalsKind() == Normals::Recomputed, byScratch = !scratch.empty();
-  const SkinOutput<Scalar, Out> output{out, order(), options.origin.template cast<Scalar>(),
-                                       byScratch ? scratch.data() : nullptr,
-                                       recomputed && byScratch ? padded.data() : nullptr};
-  Box3* box = options.bounds ? &bounds : nullptr;
-  if (stencils()) {
-    skinQuadratic(bound().embedding, *stencils(), edges, nodes, output, box, options.threads);
-  } else {
-    skinLinear(bound().embedding, nodes, output, box, options.threads);
-  }
-  if (normalsKind() == Normals::Transformed) skinDirections();
-  if (!recomputed) return;
-  if (!byScratch) padPoints(viewOf(std::as_const(positions)), padded, options.threads);
-  recomputeNormals(*bound().recomputed, padded, normalsOut(), options.threads);
-}
-
-template <class Scalar>
-void MeshSkin<Scalar>::Impl::skinDirections() {
-  assert(bound().normals && normalsOut().size() == bound().embedding.vertexCount());
-  const auto carry = [&](const DirectionFactors& factors, PointView<float> out, std::vector<Eigen::Vector3f>& room) {
-    transformDirections(bound().embedding, factors, stencils(), stencils() ? &edges : nullptr, nodes, out, order(),
-                        room.empty() ? nullptr : room.front().data(), options.threads);
-  };
-  carry(*bound().normals, normalsOut(), normalScratch);
-  if (bound().tangents) carry(*bound().tangents, tangentsOut(), tangentScratch);
-}
-
-template <class Scalar>
-MeshSkin<Scalar>::MeshSkin() = default;
-template <class Scalar>
-MeshSkin<Scalar>::~MeshSkin() = default;
-template <class Scalar>
-MeshSkin<Scalar>::MeshSkin(MeshSkin&& other) noexcept = default;
-template <class Scalar>
-MeshSkin<Scalar>& MeshSkin<Scalar>::operator=(MeshSkin&& other) noexcept = default;
 
 template <class Scalar>
 Result<EmbedReport> MeshSkin<Scalar>::bind(const Cage& cage, const TriangleMesh& mesh, const SkinOptions& options) {
@@ -168,7 +144,7 @@ Status MeshSkin<Scalar>::bind(Binding binding, PointView<const Scalar> nodes, co
   }
   if (Status status = checkInstance(options, embedding.vertexCount()); !status.ok()) return status;
   if (Status status = checkNodes(nodes); !status.ok()) return status;
-  impl_ = std::make_unique<Impl>(std::move(binding), options);
+  impl_ = std::make_shared<Impl>(std::move(binding), options);
   const StatusCode updated = update(nodes);
   assert(updated == StatusCode::Ok);
   (void)updated;
@@ -257,8 +233,6 @@ Status MeshSkin<Scalar>::setOrigin(const Eigen::Vector3d& origin) {
   return {};
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class MeshSkin<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(MeshSkin)
 
 }  // namespace tetskin

@@ -32,8 +32,6 @@ void StepHistory<Scalar>::nodesAt(Scalar alpha, PointView<Scalar> out) const {
   for (std::size_t i = 0; i < size(); ++i) std::copy_n(nodeAt(i, alpha).data(), 3, out[i]);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class StepHistory<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(StepHistory)
 
 }  // namespace tetskin

@@ -143,15 +143,6 @@ struct ElasticBody<Scalar>::Impl {
 };
 
 template <class Scalar>
-ElasticBody<Scalar>::ElasticBody() = default;
-template <class Scalar>
-ElasticBody<Scalar>::~ElasticBody() = default;
-template <class Scalar>
-ElasticBody<Scalar>::ElasticBody(ElasticBody&&) noexcept = default;
-template <class Scalar>
-ElasticBody<Scalar>& ElasticBody<Scalar>::operator=(ElasticBody&&) noexcept = default;
-
-template <class Scalar>
 Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const Cage& cage, const ElasticOptions& options) {
   Cage positive = cage;
   if (Status status = checkMesh(cage.mesh, repairTetMesh(positive.mesh)); !status.ok()) return status;
@@ -161,7 +152,7 @@ Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const Cage& cage, const 
   const Result<std::vector<QuadraticTet>> quadratic = quadraticTets(positive);
   if (!quadratic.ok()) return quadratic.status();
   ElasticBody body;
-  body.impl_ = std::make_unique<Impl>(elastic_detail::restTets(positive, quadratic.value(), options.stiffnessScale),
+  body.impl_ = std::make_shared<Impl>(elastic_detail::restTets(positive, quadratic.value(), options.stiffnessScale),
                                       positive.mesh, all);
   return body;
 }
@@ -230,8 +221,6 @@ double ElasticBody<Scalar>::energy() {
   return impl_->dynamics.probeEnergy(nullptr);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class ElasticBody<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(ElasticBody)
 
 }  // namespace tetskin

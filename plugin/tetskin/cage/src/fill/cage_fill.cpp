@@ -62,8 +62,7 @@ class FillSampler {
 
   /// True if the two tets share a node: fitting moves a tet over the material of those around it.
   bool goesWith(std::size_t tet, std::size_t other) const {
-    const Tet &a = cage_.mesh.tets[tet], &b = cage_.mesh.tets[other];
-    return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
+    return shareNode(cage_.mesh.tets[tet], cage_.mesh.tets[other]);
   }
 
   const CageTets& cage_;

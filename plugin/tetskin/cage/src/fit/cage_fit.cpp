@@ -172,12 +172,12 @@ class CageFit {
     const Eigen::Vector3d offset = sum / (3.0 * starSize(n));
     if (offset.norm() < kNearMean * half_) return false;
     const Eigen::Vector3d old = mesh_.nodes[n];
-    const Eigen::Vector3d centroid = old + 0.5 * offset;
+    const Eigen::Vector3d halfway = old + 0.5 * offset;
     const double before = worstShape(n);
-    mesh_.nodes[n] = centroid;
+    mesh_.nodes[n] = halfway;
     const double after = worstShape(n);
     mesh_.nodes[n] = old;
-    if (after <= before || !tryMove(n, centroid)) return false;
+    if (after <= before || !tryMove(n, halfway)) return false;
     for (int k = 0; k < starSize(n); ++k) {
       for (const int other : mesh_.tets[starTet(n, k)]) step_[other] = std::max(step_[other], kRetryStep);
     }

@@ -67,8 +67,8 @@ double firstSpacing(const Surface& surface, double target) {
   if (!(surface.area > 0.0)) return 3.0 * size / target;
   double low = 1e-9 * size, high = 10.0 * size;
   for (int i = 0; i < 60; ++i) {
-    const double centroid = std::sqrt(low * high);
-    (estimatedCount(surface, centroid) > target ? low : high) = centroid;
+    const double middle = std::sqrt(low * high);
+    (estimatedCount(surface, middle) > target ? low : high) = middle;
   }
   return high;
 }

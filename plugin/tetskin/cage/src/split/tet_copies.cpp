@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/split/tet_copies.h>
 #include <tetskin/core/src/base/disjoint_sets.h>
+#include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/progress.h>
 
 #include <algorithm>
@@ -121,19 +122,13 @@ class CopyLinks {
     for (std::size_t k = 0; k < reached.size() && reached.size() < kMaxAround; ++k) {
       for (std::uint32_t n = neighbours.starts[reached[k]]; n < neighbours.starts[reached[k] + 1]; ++n) {
         const int other = static_cast<int>(neighbours.values[n]);
-        if (!sharedNode(tet, piece(other).tet)) continue;
+        if (!shareNode(lattice_.mesh.tets[tet], lattice_.mesh.tets[piece(other).tet])) continue;
         if (std::find(reached.begin(), reached.end(), other) == reached.end()) reached.push_back(other);
       }
     }
     for (const int other : reached) {
       if (piece(other).tet == tet) same.unite(light, other);
     }
-  }
-
-  bool sharedNode(int a, int b) const {
-    const Tet &one = lattice_.mesh.tets[a], &other = lattice_.mesh.tets[b];
-    return std::any_of(one.begin(), one.end(),
-                       [&](int n) { return std::find(other.begin(), other.end(), n) != other.end(); });
   }
 
   void renumber(DisjointSets& same) {

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 namespace tetskin {
@@ -43,6 +45,10 @@ inline std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
   return hash.value();
 }
 
+/// Numbers with the bits of a float or a double.
+template <class Scalar>
+using BitsOf = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
+
 class ByteWriter {
  public:
   explicit ByteWriter(std::size_t size) { bytes_.reserve(size); }
@@ -51,18 +57,12 @@ class ByteWriter {
   void tag(const char* letters) { u64(readBytes(reinterpret_cast<const unsigned char*>(letters), 8)); }
   void u64(std::uint64_t value) { put(value, 8); }
   void u32(std::uint32_t value) { put(value, 4); }
-  void plane(const float* values, std::size_t count) {
+  template <class Scalar>
+  void plane(const Scalar* values, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
-      std::uint32_t bits;
+      BitsOf<Scalar> bits;
       std::memcpy(&bits, values + k, sizeof bits);
-      u32(bits);
-    }
-  }
-  void plane(const double* values, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      std::uint64_t bits;
-      std::memcpy(&bits, values + k, sizeof bits);
-      u64(bits);
+      put(bits, sizeof bits);
     }
   }
   /// Returns all bytes, followed by their hash.
@@ -72,8 +72,8 @@ class ByteWriter {
   }
 
  private:
-  void put(std::uint64_t value, int count) {
-    for (int k = 0; k < count; ++k) bytes_.push_back(static_cast<unsigned char>(value >> (8 * k)));
+  void put(std::uint64_t value, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) bytes_.push_back(static_cast<unsigned char>(value >> (8 * k)));
   }
   std::vector<unsigned char> bytes_;
 };
@@ -85,20 +85,12 @@ class ByteReader {
 
   std::uint64_t u64() { return take(8); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(take(4)); }
-  /// These functions return true if all values are finite.
-  bool plane(float* values, std::size_t count) {
+  /// Returns true if all values are finite.
+  template <class Scalar>
+  bool plane(Scalar* values, std::size_t count) {
     bool finite = true;
     for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t bits = u32();
-      std::memcpy(values + k, &bits, sizeof bits);
-      finite &= std::isfinite(values[k]);
-    }
-    return finite;
-  }
-  bool plane(double* values, std::size_t count) {
-    bool finite = true;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint64_t bits = u64();
+      const auto bits = static_cast<BitsOf<Scalar>>(take(sizeof(Scalar)));
       std::memcpy(values + k, &bits, sizeof bits);
       finite &= std::isfinite(values[k]);
     }
@@ -120,5 +112,29 @@ constexpr std::size_t kHashBytes = 8;
 inline bool hashIsRight(const unsigned char* bytes, std::size_t count) {
   return count >= kHashBytes && ByteReader(bytes + count - kHashBytes).u64() == hashOf(bytes, count - kHashBytes);
 }
+
+/// What is saved in bytes: eight letters and the version, the rest of a header, anything, and the hash.
+struct SavedFormat {
+  const char* letters;
+  std::uint64_t version;
+  std::size_t headerBytes;
+  const char *what, *name, *cure;  ///< for messages: "an embedding", "the saved embedding", "embed again"
+
+  Status damaged(const std::string& how) const {
+    return {StatusCode::Malformed, std::string(name) + " " + how + "; " + cure};
+  }
+  /// Ok if there is a header of this format.
+  Status check(const unsigned char* bytes, std::size_t count) const {
+    if (count < 8 || std::memcmp(bytes, letters, 8) != 0) {
+      return {StatusCode::UnsupportedFormat, std::string("these bytes are not ") + what + " saved by tetskin"};
+    }
+    if (count < headerBytes + kHashBytes) return damaged("ends within its header");
+    const std::uint64_t own = ByteReader(bytes + 8).u64();
+    if (own == version) return {};
+    return {StatusCode::UnsupportedFormat, std::string(name) + " has version " + std::to_string(own) +
+                                               ", but this library reads version " + std::to_string(version) +
+                                               " only; " + cure};
+  }
+};
 
 }  // namespace tetskin

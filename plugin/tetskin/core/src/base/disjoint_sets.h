@@ -38,6 +38,17 @@ class DisjointSets {
     return i;
   }
 
+  /// By member: the number of its set. Sets are numbered in the order of their lowest members.
+  std::vector<int> numbers() {
+    std::vector<int> numbers(parent_.size());
+    int count = 0;
+    for (int i = 0; i < static_cast<int>(numbers.size()); ++i) {
+      const int root = find(i);
+      numbers[static_cast<std::size_t>(i)] = root == i ? count++ : numbers[static_cast<std::size_t>(root)];
+    }
+    return numbers;
+  }
+
   /// 1 if i differs from its representative.
   int parity(int i) {
     int odd = 0;

@@ -24,10 +24,8 @@
 namespace tetskin {
 namespace {
 
-/// What a file begins with, see above.
-constexpr char kMagic[] = "tetskemb";
-constexpr std::uint64_t kVersion = 1;
-constexpr std::size_t kHeaderBytes = 9 * 8;
+/// See above.
+constexpr SavedFormat kFormat{"tetskemb", 1, 9 * 8, "an embedding", "the saved embedding", "embed again"};
 
 struct Header {
   std::uint64_t cageHash = 0;
@@ -35,7 +33,7 @@ struct Header {
 
   /// The size of all data. The counts must have passed `plausible`: then nothing overflows.
   std::uint64_t bytes() const {
-    return kHeaderBytes + 8 * runCount + 16 * vertexCount + 12 * (vertexCount - insideCount) + kHashBytes;
+    return kFormat.headerBytes + 8 * runCount + 16 * vertexCount + 12 * (vertexCount - insideCount) + kHashBytes;
   }
   bool plausible() const {
     return vertexCount > 0 && vertexCount < 0xFFFFFFFFu && insideCount <= vertexCount && runCount <= vertexCount &&
@@ -43,33 +41,21 @@ struct Header {
   }
 };
 
-Status damaged(const std::string& how) {
-  return {StatusCode::Malformed, "the saved embedding " + how + "; embed again"};
-}
-
 /// Reads everything up to the counts, and checks them against the number of bytes.
 Status readHeader(const unsigned char* bytes, std::size_t count, Header& header) {
-  const std::size_t tagBytes = sizeof kMagic - 1;
-  if (count < tagBytes || std::memcmp(bytes, kMagic, tagBytes) != 0) {
-    return {StatusCode::UnsupportedFormat, "these bytes are not an embedding saved by tetskin"};
-  }
-  if (count < kHeaderBytes + kHashBytes) return damaged("ends within its header");
-  ByteReader reader(bytes + tagBytes);
-  if (const std::uint64_t version = reader.u64(); version != kVersion) {
-    return {StatusCode::UnsupportedFormat, "the saved embedding has version " + std::to_string(version) +
-                                               ", but this library reads version " + std::to_string(kVersion) +
-                                               " only; embed again"};
-  }
+  if (Status status = kFormat.check(bytes, count); !status.ok()) return status;
+  ByteReader reader(bytes + 16);
   header.cageHash = reader.u64();
   for (std::uint64_t* value : {&header.nodeCount, &header.tetCount, &header.vertexCount, &header.insideCount,
                                &header.runCount, &header.insideRunCount}) {
     *value = reader.u64();
   }
-  if (!header.plausible()) return damaged("has inconsistent counts");
+  if (!header.plausible()) return kFormat.damaged("has inconsistent counts");
   if (header.bytes() != count) {
-    return damaged("should have " + std::to_string(header.bytes()) + " bytes, but has " + std::to_string(count));
+    return kFormat.damaged("should have " + std::to_string(header.bytes()) + " bytes, but has " +
+                           std::to_string(count));
   }
-  if (!hashIsRight(bytes, count)) return damaged("is damaged");
+  if (!hashIsRight(bytes, count)) return kFormat.damaged("is damaged");
   return {};
 }
 
@@ -124,9 +110,9 @@ std::vector<unsigned char> Embedding::save(const TetMesh& cage) const {
   const Header header{hashOf(cage),  d.nodeCount,       d.tetCount,      vertexCount(),
                       d.insideCount, d.runs.size() - 1, d.insideRunCount};
   ByteWriter writer(header.bytes());
-  writer.tag(kMagic);
-  for (const std::uint64_t value : {kVersion, header.cageHash, header.nodeCount, header.tetCount, header.vertexCount,
-                                    header.insideCount, header.runCount, header.insideRunCount}) {
+  writer.tag(kFormat.letters);
+  for (const std::uint64_t value : {kFormat.version, header.cageHash, header.nodeCount, header.tetCount,
+                                    header.vertexCount, header.insideCount, header.runCount, header.insideRunCount}) {
     writer.u64(value);
   }
   for (std::size_t r = 0; r < header.runCount; ++r) {
@@ -148,13 +134,13 @@ Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count,
   e->tetCount = cage.tetCount();
   e->insideCount = header.insideCount;
   e->insideRunCount = header.insideRunCount;
-  ByteReader reader(bytes + kHeaderBytes);
+  ByteReader reader(bytes + kFormat.headerBytes);
   e->runs.resize(header.runCount + 1);
   for (std::size_t r = 0; r < header.runCount; ++r) {
     EmbeddingData::Run& run = e->runs[r];
     run.tet = reader.u32();
     run.firstSlot = reader.u32();
-    if (run.tet >= cage.tetCount()) return damaged("refers to a tet that does not exist");
+    if (run.tet >= cage.tetCount()) return kFormat.damaged("refers to a tet that does not exist");
     std::copy_n(cage.tets[run.tet].begin(), 4, run.nodes);
   }
   e->runs.back() = {{}, static_cast<std::uint32_t>(header.vertexCount), static_cast<std::uint32_t>(e->tetCount)};
@@ -170,9 +156,9 @@ Result<Embedding> Embedding::load(const unsigned char* bytes, std::size_t count,
     plane.resize(outside + EmbeddingData::kPadding);
     finite &= reader.plane(plane.data(), outside);
   }
-  if (!finite) return damaged("has weights that are not finite");
-  if (!runsAreSound(*e)) return damaged("has runs out of order");
-  if (!orderVertices(*e)) return damaged("has vertices repeated, or out of order");
+  if (!finite) return kFormat.damaged("has weights that are not finite");
+  if (!runsAreSound(*e)) return kFormat.damaged("has runs out of order");
+  if (!orderVertices(*e)) return kFormat.damaged("has vertices repeated, or out of order");
   return Embedding(e);
 }
 

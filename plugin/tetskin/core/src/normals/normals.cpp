@@ -46,19 +46,13 @@ DirectionFactors DirectionFactors::ofTangents(const TetMesh& cage, const Embeddi
 }
 
 template <class Scalar>
-void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
-                         const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
+void transformDirections(const Embedding& embedding, const DirectionFactors& factors, const Bends<Scalar>& bends,
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order, float* scratch,
                          ParallelFor* threads) {
   assert(out.size() == embedding.vertexCount());
-  assert(!stencils == !edges);
   if (embedding.empty()) return;
   auto work = skin_tasks::workFor(dataOf(embedding), nodes);
-  work.surface = stencils ? kernels::Surface::Quadratic : kernels::Surface::Linear;
-  if (stencils) {
-    work.edges = edges->data();
-    work.runEdges = stencils->runEdges().data();
-  }
+  bends.addTo(work);
   kernels::DirectionPlanes planes;
   planes.kind = factors.areNormals() ? kernels::Direction::Normal : kernels::Direction::Tangent;
   assert(factors.plane(0));
@@ -78,10 +72,9 @@ void transformDirections(const Embedding& embedding, const DirectionFactors& fac
   if (!direct) skin_tasks::place(dataOf(embedding), sorted, out, order, threads);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar)                                                                              \
-  template void transformDirections(const Embedding&, const DirectionFactors&, const QuadraticStencils<Scalar>*, \
-                                    const EdgeVectors<Scalar>*, const PackedNodes<Scalar>&, PointView<float>,    \
-                                    VertexOrder, float*, ParallelFor*);
+#define TETSKIN_INSTANTIATE(Scalar)                                                                  \
+  template void transformDirections(const Embedding&, const DirectionFactors&, const Bends<Scalar>&, \
+                                    const PackedNodes<Scalar>&, PointView<float>, VertexOrder, float*, ParallelFor*);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 }  // namespace tetskin

@@ -42,15 +42,13 @@ class DirectionFactors {
 /// gradient is that of the closest point. A direction that has collapsed to nothing leaves what is there, so the
 /// caller's memory should hold unit vectors to begin with.
 ///
-/// stencils, edges  those of the quadratic surface, updated for these nodes; null for the linear one
 /// out              vertexCount x 3, caller-owned, any stride; world space
 /// scratch          scratchSize(vertexCount) floats of the caller's, unit vectors to begin with, which nobody else
 ///                  writes; not needed for `out` side by side in sorted order; without it, some is allocated, and `out`
 ///                  is read
 /// Cost             O(vertexCount), no allocation
 template <class Scalar>
-void transformDirections(const Embedding& embedding, const DirectionFactors& factors,
-                         const QuadraticStencils<Scalar>* stencils, const EdgeVectors<Scalar>* edges,
+void transformDirections(const Embedding& embedding, const DirectionFactors& factors, const Bends<Scalar>& bends,
                          const PackedNodes<Scalar>& nodes, PointView<float> out, VertexOrder order,
                          float* scratch = nullptr, ParallelFor* threads = nullptr);
 

@@ -17,10 +17,6 @@ std::int32_t indexOf(std::int32_t tet) {
   return tet >= 0 ? tet : ~tet;
 }
 
-bool sharedNode(const Tet& a, const Tet& b) {
-  return std::any_of(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); });
-}
-
 /// Edges from vertices outside, by the first vertex at a position.
 struct OutsideEdges {
   std::vector<std::uint32_t> vertices;  ///< vertices outside, ascending, one per position
@@ -208,7 +204,7 @@ class Walk {
       if (settled(other)) {
         others_.push_back(indexOf(tetOf_[other]));
         reach = std::max(reach, (vertices_[other] - point).norm());
-        local = local || sharedNode(cage_.tets[others_.back()], cage_.tets[nearest]);
+        local = local || shareNode(cage_.tets[others_.back()], cage_.tets[nearest]);
       } else if (state_[edges_.indexOf[other]] == State::Untouched) {
         push(edges_.indexOf[other]);
       }

@@ -188,28 +188,21 @@ void EdgeVectors<Scalar>::bendByTets(const QuadraticStencils<Scalar>& stencils, 
 }
 
 template <class Scalar, class Out>
-void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& stencils,
-                   const EdgeVectors<Scalar>& edges, const PackedNodes<Scalar>& nodes,
-                   const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
-  assert(edges.data() || stencils.edgeCount() == 0);
-  assert(stencils.runEdges().size() + 6 == 6 * dataOf(embedding).runs.size());
+void skinPoints(const Embedding& embedding, const PackedNodes<Scalar>& nodes, const Bends<Scalar>& bends,
+                const SkinOutput<Scalar, Out>& output, Box3* bounds, ParallelFor* threads) {
+  assert(!bends.stencils || bends.stencils->runEdges().size() + 6 == 6 * dataOf(embedding).runs.size());
   auto work = skin_tasks::workFor(dataOf(embedding), nodes);
-  work.surface = kernels::Surface::Quadratic;
-  work.edges = edges.data();
-  work.runEdges = stencils.runEdges().data();
+  bends.addTo(work);
   skin_tasks::skin(dataOf(embedding), work, nodes, output, bounds, threads);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar)         \
-  template class QuadraticStencils<Scalar>; \
-  template class NodeGradients<Scalar>;     \
-  template class EdgeVectors<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(QuadraticStencils)
+TETSKIN_INSTANTIATE_CLASS(NodeGradients)
+TETSKIN_INSTANTIATE_CLASS(EdgeVectors)
 
-#define TETSKIN_INSTANTIATE(Scalar, Out)                                                                      \
-  template void skinQuadratic(const Embedding&, const QuadraticStencils<Scalar>&, const EdgeVectors<Scalar>&, \
-                              const PackedNodes<Scalar>&, const SkinOutput<Scalar, Out>&, Box3*, ParallelFor*);
+#define TETSKIN_INSTANTIATE(Scalar, Out)                                                       \
+  template void skinPoints(const Embedding&, const PackedNodes<Scalar>&, const Bends<Scalar>&, \
+                           const SkinOutput<Scalar, Out>&, Box3*, ParallelFor*);
 TETSKIN_FOR_SCALAR_PAIRS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 

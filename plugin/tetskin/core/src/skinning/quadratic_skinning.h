@@ -125,12 +125,32 @@ class EdgeVectors {
   std::vector<Scalar> edges_;
 };
 
+/// What makes a surface quadratic: its stencils, and edge vectors that were updated for the current nodes. Both null:
+/// it is linear, x(v) = p3 + b0 (p0-p3) + b1 (p1-p3) + b2 (p2-p3).
+template <class Scalar>
+struct Bends {
+  const QuadraticStencils<Scalar>* stencils = nullptr;
+  const EdgeVectors<Scalar>* edges = nullptr;
+
+  void addTo(kernels::Work<Scalar>& work) const {
+    assert(!stencils == !edges);
+    work.surface = stencils ? kernels::Surface::Quadratic : kernels::Surface::Linear;
+    if (!stencils) return;
+    work.edges = edges->data();
+    work.runEdges = stencils->runEdges().data();
+  }
+};
+
 /// Writes the current position of every vertex by the formula above; outside, the map is continued to first order from
-/// the closest point of the tet. The other parameters are those of `skinLinear`.
-/// edges  updated for these nodes
+/// the closest point of the tet.
+///
+/// embedding  shared, read only
+/// nodes      nodeCount current positions, world space
+/// bounds     if given, becomes the box of the positions written
+/// threads    if given, lends its threads to large meshes
+/// Cost       O(vertexCount), no allocation; cannot fail, sizes are asserted
 template <class Scalar, class Out>
-void skinQuadratic(const Embedding& embedding, const QuadraticStencils<Scalar>& stencils,
-                   const EdgeVectors<Scalar>& edges, const PackedNodes<Scalar>& nodes,
-                   const SkinOutput<Scalar, Out>& output, Box3* bounds = nullptr, ParallelFor* threads = nullptr);
+void skinPoints(const Embedding& embedding, const PackedNodes<Scalar>& nodes, const Bends<Scalar>& bends,
+                const SkinOutput<Scalar, Out>& output, Box3* bounds = nullptr, ParallelFor* threads = nullptr);
 
 }  // namespace tetskin

@@ -46,8 +46,6 @@ std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   return size();
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class PackedNodes<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(PackedNodes)
 
 }  // namespace tetskin

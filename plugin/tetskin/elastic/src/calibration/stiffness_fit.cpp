@@ -54,31 +54,30 @@ Axes::Axes(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& mas
   directions = principal.eigenvectors();
 }
 
-/// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
-Fields sagAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
-  const Axes axes(nodes, masses);
-  Fields accelerations(masses.size(), 6);
+/// Accelerations by acceleration(position along the axes, axes, column).
+template <class Acceleration>
+Fields accelerationsAlong(const RefinedBodies& bodies, Eigen::Index columns, Acceleration&& acceleration) {
+  const std::vector<Eigen::Vector3d>& nodes = bodies.cage().mesh.nodes;
+  const Axes axes(nodes, bodies.masses(0));
+  Fields accelerations(bodies.masses(0).size(), columns);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Eigen::Vector3d along = axes.along(nodes[n]);
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      const double square = along[2 - k / 3] * along[2 - k / 3] / axes.variances[2];
-      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = square * axes.directions.col(k % 3);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = acceleration(along, axes, k);
     }
   }
   return accelerations;
 }
 
+/// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
+Eigen::Vector3d sagAcceleration(const Eigen::Vector3d& along, const Axes& axes, Eigen::Index k) {
+  const double square = along[2 - k / 3] * along[2 - k / 3] / axes.variances[2];
+  return square * axes.directions.col(k % 3);
+}
+
 /// Away from the middle, along one axis in each column, as the position there.
-Fields stretchAccelerations(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& masses) {
-  const Axes axes(nodes, masses);
-  Fields accelerations(masses.size(), 3);
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const Eigen::Vector3d along = axes.along(nodes[n]);
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      accelerations.block<3, 1>(static_cast<Eigen::Index>(3 * n), k) = along[k] * axes.directions.col(k);
-    }
-  }
-  return accelerations;
+Eigen::Vector3d stretchAcceleration(const Eigen::Vector3d& along, const Axes& axes, Eigen::Index k) {
+  return along[k] * axes.directions.col(k);
 }
 
 /// Share of the mass that takes part in a vibration: 1 where all of it moves alike, 1/N where one node of N moves.
@@ -137,7 +136,7 @@ LoadSet applied(const RefinedBodies& bodies, const Fields& accelerations) {
   return set;
 }
 
-/// The logarithm's weighted mean, as a factor.
+/// The weighted geometric mean; 1 where nothing has a weight.
 double geometricMean(const Eigen::RowVectorXd& values, const Eigen::RowVectorXd& weights) {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -193,6 +192,22 @@ std::vector<bool> exactTets(const Cage& cage) {
   return std::find(exact.begin(), exact.end(), true) == exact.end() ? std::vector<bool>() : exact;
 }
 
+Cage withFactors(Cage cage, const std::vector<double>& factors) {
+  cage.stiffnessFactor = factors;
+  return cage;
+}
+
+/// The cage with other stiffness factors.
+struct CageWith {
+  RestBody body;
+  DirectSolver solver;
+
+  CageWith(const RefinedBodies& bodies, const std::vector<double>& factors)
+      : body(withFactors(bodies.cage(), factors), bodies.poissonRatio(), {}, bodies.masses(0)), solver(body) {}
+  /// Loads times their displacements.
+  Eigen::RowVectorXd works(const Fields& loads) const { return products(loads, solver.solve(loads)); }
+};
+
 /// Passes in which one factor is found for a part of the tets.
 constexpr int kFactorPasses = 4;
 
@@ -207,7 +222,7 @@ StiffnessFit::StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress&
     modes_.weights[k] *= lacks ? 0.0 : participation(modes_.accelerations.col(k), masses);
   }
   if (!progress.reach(kModesDone)) return;
-  sags_ = applied(bodies, sagAccelerations(bodies.cage().mesh.nodes, masses));
+  sags_ = applied(bodies, accelerationsAlong(bodies, 6, sagAcceleration));
 
   if (!progress.reach(kSagsDone)) return;
   fitOneFactor();
@@ -240,7 +255,7 @@ void StiffnessFit::fitOneFactor() {
 }
 
 void StiffnessFit::measureStretch() {
-  const Fields accelerations = stretchAccelerations(bodies_.cage().mesh.nodes, bodies_.masses(0));
+  const Fields accelerations = accelerationsAlong(bodies_, 3, stretchAcceleration);
   const Fields finer = bodies_.refined(0, accelerations);
   Fields fineLoads = bodies_.masses(1).asDiagonal() * finer;
   bodies_.balance(1, fineLoads);
@@ -249,14 +264,11 @@ void StiffnessFit::measureStretch() {
   const Eigen::RowVectorXd finest = products(fineLoads, bodies_.solve(1, fineLoads, bodies_.refined(0, plain)));
   const Eigen::RowVectorXd limit = bodies_.levelCount() > 2 ? limitOf(works, finest) : finest;
   const Eigen::RowVectorXd weights = limit.cwiseQuotient(products(fineLoads, finer)).cwiseMax(0.0);
-  Cage cage = bodies_.cage();
-  cage.stiffnessFactor = factors_;
-  const RestBody calibrated(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
   const auto errorOf = [&](const Eigen::RowVectorXd& found) {
     return geometricMean(found.cwiseQuotient(limit), weights) - 1.0;
   };
   plainStretchError_ = errorOf(works);
-  stretchError_ = errorOf(products(loads, DirectSolver(calibrated).solve(loads)));
+  stretchError_ = errorOf(CageWith(bodies_, factors_).works(loads));
 }
 
 /// Factors by region, about as large as that of the whole body.
@@ -289,28 +301,21 @@ double StiffnessFit::spreadWith(const std::vector<double>& factors, const LoadSe
   Eigen::RowVectorXd ratios = loads.ratios(0);
   if (!factors.empty()) {
     Progress::goOnWithRound();
-    Cage cage = bodies_.cage();
-    cage.stiffnessFactor = factors;
-    const RestBody body(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
-    const DirectSolver solver(body);
-    if (!solver.ok()) return HUGE_VAL;
-    ratios = products(loads.loads, solver.solve(loads.loads)).cwiseQuotient(loads.limits);
+    const CageWith cage(bodies_, factors);
+    if (!cage.solver.ok()) return HUGE_VAL;
+    ratios = cage.works(loads.loads).cwiseQuotient(loads.limits);
   }
   return rootMeanSquare(ratios.array() / geometricMean(ratios, loads.weights) - 1.0, loads.weights);
 }
 
 StiffnessFit::Ratios StiffnessFit::ratiosWith(const std::vector<double>& factors) const {
   Progress::goOnWithRound();
-  Cage cage = bodies_.cage();
-  cage.stiffnessFactor = factors;
-  const RestBody body(cage, bodies_.poissonRatio(), {}, bodies_.masses(0));
-  const DirectSolver solver(body);
-  Fields own = body.masses.asDiagonal() * modes_.accelerations;
-  body.rigid.balance(own);
-  const Eigen::RowVectorXd response =
-      products(own, solver.solve(own)).cwiseQuotient(products(own, modes_.accelerations));
+  const CageWith cage(bodies_, factors);
+  Fields own = bodies_.masses(0).asDiagonal() * modes_.accelerations;
+  bodies_.balance(0, own);
+  const Eigen::RowVectorXd response = cage.works(own).cwiseQuotient(products(own, modes_.accelerations));
   return {response.cwiseQuotient(modes_.limits.cwiseQuotient(modes_.reach)),
-          products(sags_.loads, solver.solve(sags_.loads)).cwiseQuotient(sags_.limits)};
+          cage.works(sags_.loads).cwiseQuotient(sags_.limits)};
 }
 
 /// Vibrations and sags count alike.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/arithmetic/small_matrix.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
 #include <tetskin/core/src/base/cross_matrix.h>
-#include <tetskin/elastic/src/base/small_solves.h>
 #include <tetskin/elastic/src/dynamics/component_motion.h>
 
 #include <Eigen/Eigenvalues>
@@ -40,9 +40,8 @@ Matrix3d inertiaOf(const Matrix3d& turn, const Matrix3d& spread) {
 }
 
 /// x such that A x = b.
-Vector3d solved(Matrix3d a, Vector3d b) {
-  solveSmall(3, a.data(), b.data());
-  return b;
+Vector3d solutionOf(const Matrix3d& a, const Vector3d& b) {
+  return vectorOf(solved(smallFrom<3, 3>(a.data()), smallFrom<3>(b.data())).values);
 }
 
 Matrix3d rotationBy(const Vector3d& angle) {
@@ -74,8 +73,8 @@ Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
   constexpr int kMaxSteps = 12;
   // Radians: the next step would be below the last digit.
   constexpr double kConverged = 1e-14;
-  Vector3d step = moment;
-  SymmetricFactors(inertiaOf(Matrix3d::Identity(), spread).data()).solve(step.data());
+  const Matrix3d inertia = inertiaOf(Matrix3d::Identity(), spread);
+  Vector3d step = vectorOf(SmallLdlt<3>(smallFrom<3, 3>(inertia.data())).solve(smallFrom<3>(moment.data())).values);
   const double sine = step.norm();
   if (!std::isfinite(sine)) return Matrix3d::Identity();
   if (sine > kMaxSineOfTurn) {
@@ -86,7 +85,7 @@ Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
   for (int k = 0; k < kMaxSteps; ++k) {
     turn = rotationBy(step) * turn;
     if (step.norm() < kConverged) break;
-    step = solved(inertiaOf(turn, spread), moment - momentOf(turn, spread));
+    step = solutionOf(inertiaOf(turn, spread), moment - momentOf(turn, spread));
     if (!(step.norm() < 1.0)) return Matrix3d::Identity();
   }
   return turn;
@@ -111,6 +110,12 @@ RigidVelocity rigidVelocity(const Vector3d& about, const Vector3d& velocity, con
 }
 
 }  // namespace
+
+Matrix3d nearestRotation(const Matrix3d& moments) {
+  const Eigen::JacobiSVD<Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
 
 void PinnedNodes::add(const Vector3d& point, const Vector3d& nodeVelocity) {
   // Sine of the angle up to which a node is on the line of those before: more than rounding of positions makes.
@@ -146,9 +151,7 @@ void PinnedNodes::finish(double seconds) {
     turn = rotationBetween(axis.normalized(), moved.normalized());
     return;
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(spread + seconds * rates, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  turn = svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  turn = nearestRotation(spread + seconds * rates);
 }
 
 void ComponentMotion::find(const ComponentMoments& moments, const Vector3d& near, const PinnedNodes& pinned,
@@ -240,11 +243,11 @@ RigidVelocity ComponentMotion::excess(const ComponentMomentum& now, const Vector
   Resistance inertia = held;
   inertia.topLeftCorner<3, 3>().diagonal().array() += mass_;
   inertia.bottomRightCorner<3, 3>() += inertiaOf(turn_, second_);
-  double found[6];
-  keep(momentum, found);
-  keep(spin, found + 3);
-  solveSmall(6, inertia.data(), found);
-  const Vector3d push = vectorOf(found), rate = vectorOf(found + 3);
+  Small6 momenta;
+  keep(momentum, momenta.values);
+  keep(spin, momenta.values + 3);
+  const Small6 found = solved(smallFrom<6, 6>(inertia.data()), momenta);
+  const Vector3d push = vectorOf(found.values), rate = vectorOf(found.values + 3);
   if (!(push.allFinite() && rate.allFinite())) return {};
   return rigidVelocity(about_, push, crossMatrix(rate) * turn_);
 }
@@ -265,7 +268,7 @@ RigidVelocity ComponentMotion::rigidWith(const Vector3d& momentum, const Vector3
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();
   const Matrix3d inertia = inertiaOf(turn, second_);
   if (pinned_.kind == PinnedNodes::Nothing && mass_ > 0.0) push = momentum / mass_;
-  if (pinned_.kind == PinnedNodes::Nothing || pinned_.kind == PinnedNodes::Point) rate = solved(inertia, spin);
+  if (pinned_.kind == PinnedNodes::Nothing || pinned_.kind == PinnedNodes::Point) rate = solutionOf(inertia, spin);
   if (pinned_.kind == PinnedNodes::Line)
     rate = pinned_.axis * (pinned_.axis.dot(spin) / pinned_.axis.dot(inertia * pinned_.axis));
   if (!push.allFinite()) push.setZero();

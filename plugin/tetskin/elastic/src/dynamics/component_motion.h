@@ -85,6 +85,9 @@ struct RigidVelocity {
   RigidVelocity operator-(const RigidVelocity& other) const;
 };
 
+/// The rotation R nearest to a matrix M: that with the largest tr(R^T M).
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& moments);
+
 /// Maps a velocity of a component, and its rate of rotation about `ComponentMotion::about`, to the change of momentum
 /// and angular momentum by what resists them.
 using Resistance = Eigen::Matrix<double, 6, 6>;

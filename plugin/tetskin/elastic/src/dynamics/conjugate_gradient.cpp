@@ -109,8 +109,6 @@ bool ConjugateGradient<S>::iterate(int maximum, ParallelFor* threads) {
   return converged();
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class ConjugateGradient<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(ConjugateGradient)
 
 }  // namespace tetskin::elastic_detail

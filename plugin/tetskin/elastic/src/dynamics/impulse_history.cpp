@@ -21,21 +21,6 @@ constexpr double kMostGrowth = 2.5;
 constexpr double kMostChange = 0.1;
 constexpr int kResolved = 4;
 
-template <class S>
-void turnAll(S* wide, const std::vector<std::array<S, 9>>& turns, const std::vector<std::uint32_t>& partOf) {
-  const bool several = turns.size() > 1;
-  for (std::size_t chunk = 0; chunk < partOf.size() / kGroup; ++chunk) {
-    S* first = wide + kWideVector * chunk;
-    for (std::size_t lane = 0; lane < kGroup; ++lane) {
-      const std::array<S, 9>& turn = turns[several ? partOf[kGroup * chunk + lane] : 0];
-      const S x = first[lane], y = first[kGroup + lane], z = first[2 * kGroup + lane];
-      first[lane] = turn[0] * x + turn[1] * y + turn[2] * z;
-      first[kGroup + lane] = turn[3] * x + turn[4] * y + turn[5] * z;
-      first[2 * kGroup + lane] = turn[6] * x + turn[7] * y + turn[8] * z;
-    }
-  }
-}
-
 }  // namespace
 
 template <class S>
@@ -57,7 +42,17 @@ void turnWide(S* wide, const std::vector<std::array<double, 9>>& turns, const st
   for (std::size_t part = 0; part < turns.size(); ++part) {
     for (std::size_t k = 0; k < 9; ++k) factors[part][k] = static_cast<S>(turns[part][k]);
   }
-  turnAll(wide, factors, partOf);
+  const bool several = turns.size() > 1;
+  for (std::size_t chunk = 0; chunk < partOf.size() / kGroup; ++chunk) {
+    S* first = wide + kWideVector * chunk;
+    for (std::size_t lane = 0; lane < kGroup; ++lane) {
+      const std::array<S, 9>& turn = factors[several ? partOf[kGroup * chunk + lane] : 0];
+      const S x = first[lane], y = first[kGroup + lane], z = first[2 * kGroup + lane];
+      first[lane] = turn[0] * x + turn[1] * y + turn[2] * z;
+      first[kGroup + lane] = turn[3] * x + turn[4] * y + turn[5] * z;
+      first[2 * kGroup + lane] = turn[6] * x + turn[7] * y + turn[8] * z;
+    }
+  }
 }
 
 template <class S>

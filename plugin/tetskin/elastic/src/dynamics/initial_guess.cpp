@@ -133,8 +133,6 @@ void InitialGuess<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
   if (known_ > 1) visit(before_);
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class InitialGuess<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(InitialGuess)
 
 }  // namespace tetskin::elastic_detail

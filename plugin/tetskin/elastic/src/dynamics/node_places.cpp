@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/elastic/src/dynamics/component_motion.h>
 #include <tetskin/elastic/src/dynamics/node_places.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -139,9 +139,7 @@ bool NodePlaces<S>::takeRigid(const AlignedVector<S>& points) {
     Matrix3d moments = Matrix3d::Zero();
     for (const std::uint32_t slot : slotOf_) moments += (given(slot) - after) * (placeAt(slot) - before).transpose();
     if (!moments.allFinite()) return false;
-    const Eigen::JacobiSVD<Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    turn = svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+    turn = nearestRotation(moments);
     if (!fits(turn)) return false;
   }
   for (const std::uint32_t slot : slotOf_) {
@@ -259,8 +257,6 @@ void NodePlaces<S>::visitState(StateStream& stream) {
   if (stream.restoring()) publish();
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class NodePlaces<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(NodePlaces)
 
 }  // namespace tetskin::elastic_detail

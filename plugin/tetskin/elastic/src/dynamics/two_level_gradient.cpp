@@ -113,8 +113,6 @@ bool TwoLevelGradient<S>::advance(double& before) {
   return true;
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class TwoLevelGradient<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(TwoLevelGradient)
 
 }  // namespace tetskin::elastic_detail

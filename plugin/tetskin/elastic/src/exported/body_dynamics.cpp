@@ -90,13 +90,8 @@ std::vector<std::uint32_t> BodyDynamics<S>::components(const RestTets& rest, con
   for (const Tet& tet : rest.tets) connect(tet);
   for (const RestQuadraticTet& tet : rest.quadratic) connect(tet.nodes);
   std::vector<std::uint32_t> partOf(std::max<std::size_t>(matrix.slotCount(), 1), 0);
-  std::vector<std::uint32_t> numbers(matrix.nodeCount(), 0);  // numbers begin at 1
-  std::uint32_t found = 0;
-  for (std::size_t n = 0; n < matrix.nodeCount(); ++n) {
-    std::uint32_t& number = numbers[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
-    if (number == 0) number = ++found;
-    partOf[matrix.slotOf(n)] = number - 1;
-  }
+  const std::vector<int> numbers = sets.numbers();
+  for (std::size_t n = 0; n < numbers.size(); ++n) partOf[matrix.slotOf(n)] = static_cast<std::uint32_t>(numbers[n]);
   return partOf;
 }
 
@@ -444,12 +439,15 @@ template <class S>
 void BodyDynamics<S>::start(ParallelFor* threads) {
   startLater();
   stage_ = Stage::Solvable;
-  S* residual = matrix_.residual();
-  if (!tets_ || (stiff_ && pinned_ == 0)) {
-    std::copy(rightSide_.begin(), rightSide_.end(), residual);
-    return;
-  }
+  if (tets_ && !(stiff_ && pinned_ == 0)) return findResidual(threads);
+  std::copy(rightSide_.begin(), rightSide_.end(), matrix_.residual());
+}
+
+/// Of the solution, which `relative_` has as points.
+template <class S>
+void BodyDynamics<S>::findResidual(ParallelFor* threads) {
   matrix_.multiply(relative_.data(), image_.data(), threads);
+  S* residual = matrix_.residual();
   for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
 }
 
@@ -552,24 +550,40 @@ void BodyDynamics<S>::restart(ParallelFor* threads) {
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     for (std::size_t k = 0; k < 3; ++k) relative_[4 * slot + k] = solution[wide + k * kGroup];
   });
-  matrix_.multiply(relative_.data(), image_.data(), threads);
-  S* residual = matrix_.residual();
-  for (std::size_t k = 0; k < rightSide_.size(); ++k) residual[k] = rightSide_[k] - image_[k];
+  findResidual(threads);
 }
 
-/// Moments of the velocities of the current solution.
+/// Moments of the velocities of the current solution, with those of the rigid motion or without.
 template <class S>
-std::vector<ComponentMomentum> BodyDynamics<S>::momentaNow() const {
+std::vector<ComponentMomentum> BodyDynamics<S>::momentaNow(bool withRigid) const {
   const S* solution = matrix_.solution();
   std::vector<ComponentMomentum> now(motions_.size());
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    const S* v = &velocities_[4 * slot];
     double velocity[3];
-    for (std::size_t k = 0; k < 3; ++k) velocity[k] = static_cast<double>(v[k]) + solution[wide + k * kGroup];
+    for (std::size_t k = 0; k < 3; ++k) {
+      velocity[k] = solution[wide + k * kGroup];
+      if (withRigid) velocity[k] += static_cast<double>(velocities_[4 * slot + k]);
+    }
     const std::uint32_t component = partOf_[slot];
     now[component].add(matrix_.massAt(slot), places_.at(slot), velocity, motions_[component].about().data());
   });
   return now;
+}
+
+/// Makes change(solution, velocity) of the solution where a node is not pinned, with the velocity of its component.
+template <class S>
+template <class Change>
+void BodyDynamics<S>::changeSolution(const std::vector<RigidVelocity>& velocities, Change&& change) {
+  S* solution = matrix_.solution();
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    if (matrix_.massAt(slot) == S(0)) return;
+    double v[3];
+    velocities[partOf_[slot]].at(places_.at(slot), v);
+    for (std::size_t k = 0; k < 3; ++k) {
+      S& own = solution[wide + k * kGroup];
+      own = change(own, static_cast<S>(v[k]));
+    }
+  });
 }
 
 template <class S>
@@ -588,12 +602,7 @@ void BodyDynamics<S>::bendTurns(double seconds) {
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     chords.push_back(motions_[k].chord(now[k], moments[k], motions_[k].about(), seconds));
   }
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    if (matrix_.massAt(slot) == S(0)) return;
-    double v[3];
-    chords[partOf_[slot]].at(places_.at(slot), v);
-    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] += static_cast<S>(v[k]);
-  });
+  changeSolution(chords, [](S own, S chord) { return own + chord; });
 }
 
 template <class S>
@@ -631,21 +640,10 @@ bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&mot
 
 template <class S>
 void BodyDynamics<S>::projectToRigidMotion() {
-  S* solution = matrix_.solution();
-  std::vector<ComponentMomentum> own(motions_.size());
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    double v[3];
-    for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<double>(solution[wide + k * kGroup]);
-    own[partOf_[slot]].add(matrix_.massAt(slot), places_.at(slot), v, motions_[partOf_[slot]].about().data());
-  });
+  const std::vector<ComponentMomentum> own = momentaNow(false);
   std::vector<RigidVelocity> rigid;
   for (std::size_t k = 0; k < motions_.size(); ++k) rigid.push_back(motions_[k].withMomentum(own[k]));
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    if (matrix_.massAt(slot) == S(0)) return;
-    double v[3];
-    rigid[partOf_[slot]].at(places_.at(slot), v);
-    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] = static_cast<S>(v[k]);
-  });
+  changeSolution(rigid, [](S, S motion) { return motion; });
 }
 
 template <class S>
@@ -697,13 +695,7 @@ void BodyDynamics<S>::removeMomentum(const std::function<std::array<double, 3>(s
       for (std::size_t k = 0; k < 3; ++k) point.change[k] = -v[k];
     }
   }
-  S* solution = matrix_.solution();
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    if (matrix_.massAt(slot) == S(0)) return;
-    double v[3];
-    excess[partOf_[slot]].at(places_.at(slot), v);
-    for (std::size_t k = 0; k < 3; ++k) solution[wide + k * kGroup] -= static_cast<S>(v[k]);
-  });
+  changeSolution(excess, [](S own, S wrong) { return own - wrong; });
 }
 
 template <class S>
@@ -783,8 +775,6 @@ void BodyDynamics<S>::arrive(std::size_t node, const S* velocity) {
   }
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class BodyDynamics<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(BodyDynamics)
 
 }  // namespace tetskin::elastic_detail

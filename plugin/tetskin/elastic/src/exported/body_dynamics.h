@@ -231,7 +231,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   int solveInTwoLevels(ConjugateGradient<S>& gradient, SolveLimits limits, ParallelFor* threads);
   void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
-  std::vector<ComponentMomentum> momentaNow() const;
+  std::vector<ComponentMomentum> momentaNow(bool withRigid = true) const;
+  template <class Change>
+  void changeSolution(const std::vector<RigidVelocity>& velocities, Change&& change);
+  void findResidual(ParallelFor* threads);
   Eigen::Vector3d placeOf(const HeldPoint<S>& point) const;
 
   BlockMatrix<S> matrix_;

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 namespace tetskin::elastic_detail {
 
@@ -30,6 +31,19 @@ void invertSymmetric(const S block[6], S out[6]) {
   const S scale = unit / (d[0] * c00 + d[1] * c01 + d[2] * c02);
   const S inverse[6] = {c00, c01, c02, d[0] * d[5] - d[2] * d[2], d[1] * d[2] - d[0] * d[4], d[0] * d[3] - d[1] * d[1]};
   for (int k = 0; k < 6; ++k) out[k] = scale * inverse[k];
+}
+
+/// The symmetric block of a slot in wide blocks.
+template <class S>
+void readBlock(const AlignedVector<S>& blocks, std::size_t slot, S out[6]) {
+  const S* from = &blocks[slot / kGroup * kWideSymmetric + slot % kGroup];
+  for (std::size_t k = 0; k < 6; ++k) out[k] = from[k * kGroup];
+}
+
+template <class S>
+void writeBlock(const S block[6], std::size_t slot, AlignedVector<S>& blocks) {
+  S* to = &blocks[slot / kGroup * kWideSymmetric + slot % kGroup];
+  for (std::size_t k = 0; k < 6; ++k) to[k * kGroup] = block[k];
 }
 
 }  // namespace
@@ -92,58 +106,40 @@ double BlockMatrix<S>::totalMass() const {
   return std::accumulate(masses_.begin(), masses_.end(), 0.0);
 }
 
-/// Calls kernel(range, first chunk, last chunk) for all ranges.
+/// Calls kernel(its work, the table) for all ranges. Returns the sum of what it returns, if that are numbers, in an
+/// order that does not depend on the number of threads.
 template <class S>
 template <class Kernel>
-void BlockMatrix<S>::everywhere(ParallelFor* threads, Kernel&& kernel) const {
-  runTasks(threads, pattern_.taskCount(), [&](std::size_t task) {
-    for (std::size_t r = pattern_.tasks[task]; r < pattern_.tasks[task + 1]; ++r) {
-      kernel(r, pattern_.rangeChunks[r], pattern_.rangeChunks[r + 1]);
+double BlockMatrix<S>::sweep(Order order, ParallelFor* threads, Kernel&& kernel) const {
+  const auto& table = kernels::elasticInUse<S>(deterministic_);
+  auto runTask = [&](std::size_t task) {
+    const std::size_t first = pattern_.tasks[task], count = pattern_.tasks[task + 1] - first;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t range = first + (order == Order::Backward ? count - 1 - k : k);
+      kernels::RowWork<S> part = work(pattern_.rangeChunks[range], pattern_.rangeChunks[range + 1]);
+      if constexpr (std::is_void_v<decltype(kernel(part, table))>) {
+        kernel(part, table);
+      } else {
+        partial_[range] = kernel(part, table);
+      }
     }
-  });
-}
-
-/// The same, each row after those of its neighbours that are before it.
-template <class S>
-template <class Kernel>
-void BlockMatrix<S>::forwards(ParallelFor* threads, Kernel&& kernel) const {
-  for (std::size_t phase = 0; phase + 1 < pattern_.phases.size(); ++phase) {
-    const std::size_t first = pattern_.phases[phase];
-    runTasks(threads, pattern_.phases[phase + 1] - first, [&](std::size_t k) {
-      for (std::size_t r = pattern_.tasks[first + k]; r < pattern_.tasks[first + k + 1]; ++r) {
-        kernel(r, pattern_.rangeChunks[r], pattern_.rangeChunks[r + 1]);
-      }
-    });
+  };
+  if (order == Order::Any) {
+    runTasks(threads, pattern_.taskCount(), runTask);
+  } else {
+    const std::size_t phases = pattern_.phases.size() - 1;
+    for (std::size_t k = 0; k < phases; ++k) {
+      const std::size_t phase = order == Order::Backward ? phases - 1 - k : k, first = pattern_.phases[phase];
+      runTasks(threads, pattern_.phases[phase + 1] - first, [&](std::size_t task) { runTask(first + task); });
+    }
   }
-}
-
-template <class S>
-template <class Kernel>
-void BlockMatrix<S>::backwards(ParallelFor* threads, Kernel&& kernel) const {
-  for (std::size_t phase = pattern_.phases.size() - 1; phase-- > 0;) {
-    const std::size_t first = pattern_.phases[phase];
-    runTasks(threads, pattern_.phases[phase + 1] - first, [&](std::size_t k) {
-      for (std::size_t r = pattern_.tasks[first + k + 1]; r-- > pattern_.tasks[first + k];) {
-        kernel(r, pattern_.rangeChunks[r], pattern_.rangeChunks[r + 1]);
-      }
-    });
-  }
-}
-
-/// Sums in an order that does not depend on the number of threads.
-template <class S>
-double BlockMatrix<S>::summed() const {
-  double total = 0.0;
-  for (const S part : partial_) total += static_cast<double>(part);
-  return total;
+  return std::accumulate(partial_.begin(), partial_.end(), 0.0);
 }
 
 template <class S>
 void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads) {
   assert(corners || pattern_.neighbours.empty());
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    auto part = work(first, last);
+  sweep(Order::Any, threads, [&](Work& part, const Table& table) {
     part.corners = corners;
     part.ratio = ratio;
     part.minMass = kMinMass<S>;
@@ -247,41 +243,28 @@ void BlockMatrix<S>::resist(std::size_t node, const S block[6]) {
   assert(node < nodeCount());
   if (mass(node) == S(0)) return;
   changed_ = true;
-  const std::size_t slot = slotOf(node);
-  S* d = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
-  for (std::size_t k = 0; k < 6; ++k) d[k * kGroup] += block[k];
   S m[6], inverse[6];
   diagonal(node, m);
+  for (std::size_t k = 0; k < 6; ++k) m[k] += block[k];
+  writeBlock(m, slotOf(node), diagonal_);
   invertSymmetric(m, inverse);
-  setInverse(slot, inverse);
-}
-
-template <class S>
-void BlockMatrix<S>::setInverse(std::size_t slot, const S inverse[6]) {
-  assert(slot < slotCount());
-  S* to = &inverse_[slot / kGroup * kWideSymmetric + slot % kGroup];
-  for (std::size_t k = 0; k < 6; ++k) to[k * kGroup] = inverse[k];
+  writeBlock(inverse, slotOf(node), inverse_);
 }
 
 template <class S>
 void BlockMatrix<S>::fix(std::size_t node) {
   const S none[6] = {};
-  setInverse(slotOf(node), none);
+  writeBlock(none, slotOf(node), inverse_);
 }
 
 template <class S>
 void BlockMatrix<S>::freeInverse(std::size_t node, S out[6]) const {
-  const std::size_t slot = slotOf(node);
-  const S* from = &freeInverse_[slot / kGroup * kWideSymmetric + slot % kGroup];
-  for (std::size_t k = 0; k < 6; ++k) out[k] = from[k * kGroup];
+  readBlock(freeInverse_, slotOf(node), out);
 }
 
 template <class S>
 void BlockMatrix<S>::diagonal(std::size_t node, S out[6]) const {
-  assert(node < nodeCount());
-  const std::size_t slot = slotOf(node);
-  const S* from = &diagonal_[slot / kGroup * kWideSymmetric + slot % kGroup];
-  for (std::size_t k = 0; k < 6; ++k) out[k] = from[k * kGroup];
+  readBlock(diagonal_, slotOf(node), out);
 }
 
 /// The matrix d (d^T D d)^-1 d^T.
@@ -295,7 +278,7 @@ void BlockMatrix<S>::fixAllBut(std::size_t node, const S d[3]) {
   const S scale = bend > S(0) ? 1 / bend : S(0);
   const S inverse[6] = {scale * d[0] * d[0], scale * d[0] * d[1], scale * d[0] * d[2],
                         scale * d[1] * d[1], scale * d[1] * d[2], scale * d[2] * d[2]};
-  setInverse(slotOf(node), inverse);
+  writeBlock(inverse, slotOf(node), inverse_);
 }
 
 /// With B the inverse of the block, B - B n (n^T B n)^-1 n^T B is its inverse in the plane.
@@ -311,15 +294,13 @@ void BlockMatrix<S>::fixAlong(std::size_t node, const S n[3]) {
   const S scale = along > S(0) ? 1 / along : S(0);
   const S inverse[6] = {b[0] - scale * bn[0] * bn[0], b[1] - scale * bn[0] * bn[1], b[2] - scale * bn[0] * bn[2],
                         b[3] - scale * bn[1] * bn[1], b[4] - scale * bn[1] * bn[2], b[5] - scale * bn[2] * bn[2]};
-  setInverse(slotOf(node), inverse);
+  writeBlock(inverse, slotOf(node), inverse_);
 }
 
 template <class S>
 void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) const {
   assert(points && wide);
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  everywhere(threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    auto part = work(first, last);
+  sweep(Order::Any, threads, [&](Work& part, const Table& table) {
     part.stepPoints = const_cast<S*>(points);
     part.rest = wide;
     part.minMass = kMinMass<S>;
@@ -338,14 +319,11 @@ double BlockMatrix<S>::precondition(const S* impulses, S* velocities, ParallelFo
 
 template <class S>
 double BlockMatrix<S>::lowerInto(const S* impulses, S* wide, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
-    auto part = work(first, last);
+  return sweep(Order::Forward, threads, [&](Work& part, const Table& table) {
     part.residual = const_cast<S*>(impulses);  // this kernel only reads it
     part.rest = wide;
-    partial_[range] = table.lower(part);
+    return table.lower(part);
   });
-  return summed();
 }
 
 template <class S>
@@ -362,9 +340,7 @@ template <class S>
 void BlockMatrix<S>::multiplyDifference(const S* first, const S* second, S* difference, S* image,
                                         ParallelFor* threads) {
   assert(first && difference && image);
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  everywhere(threads, [&](std::size_t, std::size_t firstChunk, std::size_t lastChunk) {
-    auto part = work(firstChunk, lastChunk);
+  sweep(Order::Any, threads, [&](Work& part, const Table& table) {
     part.first = first;
     part.second = second;
     part.step = difference;
@@ -376,21 +352,16 @@ void BlockMatrix<S>::multiplyDifference(const S* first, const S* second, S* diff
 template <class S>
 double BlockMatrix<S>::inner(const S* first, const S* second, ParallelFor* threads) const {
   assert(first && second);
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  everywhere(threads, [&](std::size_t range, std::size_t firstChunk, std::size_t lastChunk) {
-    auto part = work(firstChunk, lastChunk);
+  return sweep(Order::Any, threads, [&](Work& part, const Table& table) {
     part.first = first;
     part.second = second;
-    partial_[range] = table.inner(part);
+    return table.inner(part);
   });
-  return summed();
 }
 
 template <class S>
 void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  backwards(threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    auto part = work(first, last);
+  sweep(Order::Backward, threads, [&](Work& part, const Table& table) {
     part.factor = factor;
     table.backward(part);
   });
@@ -398,13 +369,18 @@ void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
 
 template <class S>
 double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  forwards(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
-    auto part = work(first, last);
+  return sweep(Order::Forward, threads, [&](Work& part, const Table& table) {
     part.extra = extra;
-    partial_[range] = table.forward(part);
+    return table.forward(part);
   });
-  return summed();
+}
+
+template <class S>
+double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
+  return sweep(Order::Any, threads, [&](Work& part, const Table& table) {
+    part.factor = factor;
+    return table.advance(part);
+  });
 }
 
 template <class S>
@@ -412,19 +388,6 @@ void BlockMatrix<S>::clear() {
   for (AlignedVector<S>* v : {&direction_, &stepPoints_, &lowerPoints_}) v->assign(v->size(), S(0));
 }
 
-template <class S>
-double BlockMatrix<S>::advance(S factor, ParallelFor* threads) {
-  const auto& table = kernels::elasticInUse<S>(deterministic_);
-  everywhere(threads, [&](std::size_t range, std::size_t first, std::size_t last) {
-    auto part = work(first, last);
-    part.factor = factor;
-    partial_[range] = table.advance(part);
-  });
-  return summed();
-}
-
-#define TETSKIN_INSTANTIATE(Scalar) template class BlockMatrix<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(BlockMatrix)
 
 }  // namespace tetskin::elastic_detail

@@ -139,19 +139,18 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   const S* step() const { return step_.data(); }
 
  private:
-  kernels::RowWork<S> work(std::size_t firstChunk, std::size_t lastChunk) const;
+  using Work = kernels::RowWork<S>;
+  using Table = kernels::ElasticTable<S>;
+  /// Forward: each row after those of its neighbours that are before it; backward: after those that are after it.
+  enum class Order { Any, Forward, Backward };
+
+  Work work(std::size_t firstChunk, std::size_t lastChunk) const;
   template <class Kernel>
-  void everywhere(ParallelFor* threads, Kernel&& kernel) const;
-  template <class Kernel>
-  void forwards(ParallelFor* threads, Kernel&& kernel) const;
-  template <class Kernel>
-  void backwards(ParallelFor* threads, Kernel&& kernel) const;
+  double sweep(Order order, ParallelFor* threads, Kernel&& kernel) const;
   double lowerInto(const S* impulses, S* wide, ParallelFor* threads);
-  double summed() const;
 
   bool deterministic_ = false;
   bool changed_ = false;  ///< by `resist` or `couple`
-  void setInverse(std::size_t slot, const S inverse[6]);
   /// Index of the first scalar of the block of two slots, which is one of nine per lane of a group.
   std::optional<std::size_t> blockOf(std::size_t slot, std::size_t neighbour) const;
 

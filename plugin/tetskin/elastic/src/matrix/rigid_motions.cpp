@@ -3,6 +3,7 @@
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/elastic/src/matrix/rigid_motions.h>
 
+#include <algorithm>
 #include <cassert>
 
 namespace tetskin::elastic_detail {
@@ -23,23 +24,18 @@ void addCross(const Eigen::Vector3d& arm, const Vectors& vectors, Sums&& sums) {
 
 }  // namespace
 
-RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) : partOf_(mesh.nodeCount()) {
+RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) {
   assert(masses.size() == rowOf(mesh.nodeCount()));
   DisjointSets sets(mesh.nodeCount());
   for (const Tet& tet : mesh.tets) {
     for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
-  std::vector<int> number(mesh.nodeCount(), -1);
+  partOf_ = sets.numbers();
+  components_.resize(static_cast<std::size_t>(1 + *std::max_element(partOf_.begin(), partOf_.end())));
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
-    int& component = number[static_cast<std::size_t>(sets.find(static_cast<int>(n)))];
-    if (component < 0) {
-      component = static_cast<int>(components_.size());
-      components_.emplace_back();
-    }
-    partOf_[n] = component;
     masses_.push_back(masses[rowOf(n)]);
-    components_[component].mass += masses_[n];
-    components_[component].centroid += masses_[n] * mesh.nodes[n];
+    components_[partOf_[n]].mass += masses_[n];
+    components_[partOf_[n]].centroid += masses_[n] * mesh.nodes[n];
   }
   for (Component& component : components_) component.centroid /= component.mass;
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
@@ -48,7 +44,8 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) :
     component.inertia +=
         masses_[n] * (arms_[n].squaredNorm() * Eigen::Matrix3d::Identity() - arms_[n] * arms_[n].transpose());
   }
-  for (Component& component : components_) component.inertiaFactors = SymmetricFactors(component.inertia.data());
+  for (Component& component : components_)
+    component.inertiaFactors = SmallLdlt<3>(smallFrom<3, 3>(component.inertia.data()));
 }
 
 void RigidMotions::removeFrom(Fields& displacements) const {
@@ -65,9 +62,9 @@ void RigidMotions::removeFrom(Fields& displacements) const {
   for (std::size_t p = 0; p < components_.size(); ++p) {
     linear.middleRows<3>(rowOf(p)) /= components_[p].mass;
     for (Eigen::Index k = 0; k < displacements.cols(); ++k) {
-      Eigen::Vector3d velocity = angular.block<3, 1>(rowOf(p), k);
-      components_[p].inertiaFactors.solve(velocity.data());
-      angular.block<3, 1>(rowOf(p), k) = velocity;
+      const Eigen::Vector3d momentumOf = angular.block<3, 1>(rowOf(p), k);
+      const Small3 velocity = components_[p].inertiaFactors.solve(smallFrom<3>(momentumOf.data()));
+      angular.block<3, 1>(rowOf(p), k) = Eigen::Vector3d::Map(velocity.values);
     }
   }
   for (std::size_t n = 0; n < partOf_.size(); ++n) {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
-#include <tetskin/elastic/src/base/small_solves.h>
+#include <tetskin/core/src/base/arithmetic/small_matrix.h>
 #include <tetskin/elastic/src/matrix/linear_elasticity.h>
 
 #include <vector>
@@ -34,7 +34,7 @@ class RigidMotions {
     double mass = 0.0;
     Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-    SymmetricFactors inertiaFactors;
+    SmallLdlt<3> inertiaFactors{{}};
   };
 
   std::vector<int> partOf_;            ///< by node

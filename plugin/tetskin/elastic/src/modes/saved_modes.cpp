@@ -22,10 +22,8 @@
 namespace tetskin {
 namespace {
 
-/// What a file begins with, see above.
-constexpr char kMagic[] = "tetskmod";
-constexpr std::uint64_t kVersion = 1;
-constexpr std::size_t kHeaderBytes = 8 * 8;
+/// See above.
+constexpr SavedFormat kFormat{"tetskmod", 1, 8 * 8, "modes", "the saved set of modes", "compute it again"};
 
 /// The hash of the mesh, unless some tets are quadratic: a body with the same nodes then vibrates differently.
 std::uint64_t hashOfTets(const Cage& cage) {
@@ -38,10 +36,6 @@ std::uint64_t hashOfTets(const Cage& cage) {
   return hash.value();
 }
 
-Status damaged(const std::string& how) {
-  return {StatusCode::Malformed, "the saved modes " + how + "; compute them again"};
-}
-
 struct Header {
   std::uint64_t tetsHash = 0, nodeCount = 0, tetCount = 0, modeCount = 0, pinnedCount = 0;
 
@@ -50,27 +44,20 @@ struct Header {
     const std::uint64_t maximum = bytes / 8;
     if (nodeCount > maximum || pinnedCount > nodeCount || modeCount > maximum) return false;
     if (nodeCount > 0 && modeCount > maximum / (3 * nodeCount)) return false;
-    return kHeaderBytes + 8 * (nodeCount + pinnedCount + modeCount + 3 * modeCount * nodeCount) + kHashBytes == bytes;
+    return kFormat.headerBytes + 8 * (nodeCount + pinnedCount + modeCount + 3 * modeCount * nodeCount) + kHashBytes ==
+           bytes;
   }
 };
 
 Status readHeader(const unsigned char* bytes, std::size_t count, Header& header) {
-  if (count < 8 || std::memcmp(bytes, kMagic, 8) != 0) {
-    return {StatusCode::UnsupportedFormat, "these bytes are not modes saved by tetskin"};
-  }
-  if (count < kHeaderBytes + kHashBytes) return damaged("end within their header");
-  ByteReader reader(bytes + 8);
-  if (const std::uint64_t version = reader.u64(); version != kVersion) {
-    return {StatusCode::UnsupportedFormat, "the saved modes have version " + std::to_string(version) +
-                                               ", but this library reads version " + std::to_string(kVersion) +
-                                               " only; compute them again"};
-  }
+  if (Status status = kFormat.check(bytes, count); !status.ok()) return status;
+  ByteReader reader(bytes + 16);
   for (std::uint64_t* value :
        {&header.tetsHash, &header.nodeCount, &header.tetCount, &header.modeCount, &header.pinnedCount}) {
     *value = reader.u64();
   }
-  if (!header.isOf(count)) return damaged("have another number of bytes than their header states");
-  if (!hashIsRight(bytes, count)) return damaged("are damaged");
+  if (!header.isOf(count)) return kFormat.damaged("has another number of bytes than its header states");
+  if (!hashIsRight(bytes, count)) return kFormat.damaged("is damaged");
   return {};
 }
 
@@ -94,11 +81,11 @@ bool makeSense(const VibrationModes& modes) {
 std::vector<unsigned char> VibrationModes::save(const Cage& cage) const {
   const TetMesh& tets = cage.mesh;
   assert(tets.nodeCount() == nodeCount() && shapes.size() == modeCount());
-  ByteWriter writer(kHeaderBytes + 8 * (masses.size() + pinned.size() + modeCount() * (1 + 3 * nodeCount())) +
+  ByteWriter writer(kFormat.headerBytes + 8 * (masses.size() + pinned.size() + modeCount() * (1 + 3 * nodeCount())) +
                     kHashBytes);
-  writer.tag(kMagic);
+  writer.tag(kFormat.letters);
   for (const std::uint64_t value :
-       {kVersion, hashOfTets(cage), std::uint64_t{nodeCount()}, std::uint64_t{tets.tetCount()},
+       {kFormat.version, hashOfTets(cage), std::uint64_t{nodeCount()}, std::uint64_t{tets.tetCount()},
         std::uint64_t{modeCount()}, std::uint64_t{pinned.size()}}) {
     writer.u64(value);
   }
@@ -127,18 +114,18 @@ Result<VibrationModes> VibrationModes::load(const unsigned char* bytes, std::siz
   modes.masses.resize(header.nodeCount);
   modes.eigenvalues.resize(header.modeCount);
   modes.shapes.assign(header.modeCount, std::vector<double>(3 * header.nodeCount));
-  ByteReader reader(bytes + kHeaderBytes - 8);
+  ByteReader reader(bytes + kFormat.headerBytes - 8);
   bool finite = reader.plane(&modes.poissonRatio, 1);
   finite &= reader.plane(modes.masses.data(), modes.masses.size());
   for (std::uint64_t k = 0; k < header.pinnedCount; ++k) {
     const std::uint64_t node = reader.u64();
-    if (node >= header.nodeCount) return damaged("refer to a node that does not exist");
+    if (node >= header.nodeCount) return kFormat.damaged("refers to a node that does not exist");
     modes.pinned.push_back(static_cast<int>(node));
   }
   finite &= reader.plane(modes.eigenvalues.data(), modes.eigenvalues.size());
   for (std::vector<double>& shape : modes.shapes) finite &= reader.plane(shape.data(), shape.size());
-  if (!finite) return damaged("have numbers that are not finite");
-  if (!makeSense(modes)) return damaged("contain invalid masses, frequencies or material parameters");
+  if (!finite) return kFormat.damaged("has numbers that are not finite");
+  if (!makeSense(modes)) return kFormat.damaged("has invalid masses, frequencies or material parameters");
   return modes;
 }
 

@@ -56,20 +56,25 @@ Fields picked(const Fields& from, const std::vector<Eigen::Index>& columns) {
   return result;
 }
 
+/// The number of vectors: of bodies with few degrees of freedom, all that there are.
+Eigen::Index widthFor(const VibrationProblem& problem, int wanted) {
+  const Eigen::Index all = problem.freedoms() - problem.rigidCount(), width = wanted + std::max(kGuards, wanted / 4);
+  return problem.freedoms() < kFewFreedoms * width ? all : width;
+}
+
 class Iteration {
  public:
   Iteration(const VibrationProblem& problem, int wanted)
       : problem_(problem), wanted_(wanted), width_(widthFor(problem, wanted)) {
     // By reflections, which keep all columns: those of slender bodies are nearly linearly dependent.
-    space_.vectors = orthonormalColumns(problem.precondition(startVectors(problem.size(), width_)));
+    const Fields start = startVectors(problem.size(), width_);
+    space_.vectors = orthonormalColumns(isComplete() ? problem.possible(start) : problem.precondition(start));
     space_.images = problem.times(space_.vectors);
     rotate();
   }
 
-  static Eigen::Index widthFor(const VibrationProblem& problem, int wanted) {
-    const Eigen::Index all = problem.freedoms() - problem.rigidCount();
-    return std::min<Eigen::Index>(wanted + std::max(kGuards, wanted / 4), all);
-  }
+  /// True if the first vectors span all that there is: then they are found.
+  bool isComplete() const { return width_ == problem_.freedoms() - problem_.rigidCount(); }
 
   /// Returns how far the wanted vectors are from their tolerance, at most 1; 0: all are found.
   double advance() {
@@ -144,24 +149,6 @@ class Iteration {
   Eigen::VectorXd values_;
 };
 
-Vibrations allAtOnce(const VibrationProblem& problem, int count) {
-  // Rigid motions, which only a free body has, become the stiffest.
-  Eigen::MatrixXd matrix = problem.dense();
-  if (problem.rigidCount() > 0) {
-    const Fields identity = Fields::Identity(problem.size(), problem.size());
-    Fields withoutRigid = identity;
-    problem.removeRigid(withoutRigid);
-    matrix += 2.0 * matrix.norm() * (identity - withoutRigid);
-  }
-  const Eigenpairs eigen = eigenpairsOf(matrix);
-  Fields vectors = Fields::Zero(problem.size(), count);
-  const std::vector<Eigen::Index> rows = problem.freeRows();
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    vectors.row(rows[k]) = eigen.vectors.row(static_cast<Eigen::Index>(k)).head(count);
-  }
-  return {eigen.values.head(count), std::move(vectors), 0, true};
-}
-
 }  // namespace
 
 Vibrations softestVibrations(const VibrationProblem& problem, int count, const std::function<void(double)>& progress) {
@@ -169,14 +156,11 @@ Vibrations softestVibrations(const VibrationProblem& problem, int count, const s
   const auto tell = [&](double fraction) {
     if (progress) progress(fraction);
   };
-  if (problem.freedoms() < kFewFreedoms * Iteration::widthFor(problem, count)) {
-    Vibrations result = allAtOnce(problem, count);
-    tell(1.0);
-    return result;
-  }
   Iteration iteration(problem, count);
   Vibrations result;
+  result.converged = iteration.isComplete();
   double told = 0.0;
+  if (result.converged) tell(1.0);
   while (!result.converged && result.iterations < kMaxModeIterations) {
     Progress::goOnWithRound();
     const double left = iteration.advance();

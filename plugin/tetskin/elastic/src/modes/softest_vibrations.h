@@ -32,11 +32,11 @@ class VibrationProblem {
   Fields precondition(const Fields& vectors) const;
   /// The number of rigid motions: 6 for a free body, otherwise none.
   Eigen::Index rigidCount() const { return rigid_ ? rigid_->count() : 0; }
-  void removeRigid(Fields& vectors) const;
-  /// The rows of free nodes, ascending, as many as freedoms.
-  std::vector<Eigen::Index> freeRows() const;
-  /// The matrix of the free rows, for bodies with few of them.
-  Eigen::MatrixXd dense() const;
+  void removeRigid(Fields& vectors) const {
+    if (rigid_) vectors = possible(vectors);
+  }
+  /// Vectors without rigid motions, and 0 where a node is pinned.
+  Fields possible(const Fields& vectors) const;
   Fields displacements(const Fields& vectors) const { return inverseRoots_.asDiagonal() * vectors; }
 
  private:

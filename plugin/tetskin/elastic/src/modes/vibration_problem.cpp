@@ -40,37 +40,10 @@ Fields VibrationProblem::precondition(const Fields& vectors) const {
   return roots_.asDiagonal() * moved;
 }
 
-void VibrationProblem::removeRigid(Fields& vectors) const {
-  if (!rigid_) return;
+Fields VibrationProblem::possible(const Fields& vectors) const {
   Fields moved = displacements(vectors);
-  rigid_->removeFrom(moved);
-  vectors = roots_.asDiagonal() * moved;
-}
-
-std::vector<Eigen::Index> VibrationProblem::freeRows() const {
-  std::vector<Eigen::Index> rows;
-  for (Eigen::Index k = 0; k < size(); ++k) {
-    if (roots_[k] > 0.0) rows.push_back(k);
-  }
-  return rows;
-}
-
-Eigen::MatrixXd VibrationProblem::dense() const {
-  std::vector<Eigen::Index> indexOf(static_cast<std::size_t>(size()), -1);
-  Eigen::Index count = 0;
-  for (const Eigen::Index row : freeRows()) indexOf[static_cast<std::size_t>(row)] = count++;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-  const auto sparse = stiffness_.sparse();
-  using Sparse = std::remove_const_t<decltype(sparse)>;
-  for (Eigen::Index outer = 0; outer < sparse.outerSize(); ++outer) {
-    for (typename Sparse::InnerIterator entry(sparse, outer); entry; ++entry) {
-      const Eigen::Index i = indexOf[static_cast<std::size_t>(entry.row())];
-      const Eigen::Index j = indexOf[static_cast<std::size_t>(entry.col())];
-      if (i < 0 || j < 0) continue;
-      matrix(i, j) = inverseRoots_[entry.row()] * entry.value() * inverseRoots_[entry.col()];
-    }
-  }
-  return matrix;
+  if (rigid_) rigid_->removeFrom(moved);
+  return roots_.asDiagonal() * moved;
 }
 
 }  // namespace tetskin::elastic_detail

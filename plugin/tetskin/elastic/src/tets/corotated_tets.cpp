@@ -40,8 +40,7 @@ CorotatedTets<S>::CorotatedTets(RestTets rest, const std::vector<std::uint32_t>&
   makePacks(rest_.quadratic.size(), rest_.quadraticCorner(0), quadratic_);
   corners_.assign(4 * rest_.cornerCount(), S(0));
   findings_.resize(linear_.tasks + quadratic_.tasks);
-  fillLinear(slotOf);
-  fillQuadratic(slotOf);
+  fillPacks(slotOf);
   listCorners(slotOf);
 }
 
@@ -61,28 +60,21 @@ void CorotatedTets<S>::makePacks(std::size_t tets, std::size_t firstCorner, Pack
 
 /// The last tet is repeated, without stiffness, in what is left of the last pack.
 template <class S>
-void CorotatedTets<S>::fillLinear(const std::vector<std::uint32_t>& slotOf) {
+void CorotatedTets<S>::fillPacks(const std::vector<std::uint32_t>& slotOf) {
+  const auto fill = [&](auto& pack, std::size_t lane, const auto& nodes, const std::array<double, 9>& gradients) {
+    for (std::size_t i = 0; i < 9; ++i) pack.gradients[i][lane] = static_cast<S>(gradients[i]);
+    for (std::size_t i = 0; i < nodes.size(); ++i) pack.nodes[i][lane] = slotOf[static_cast<std::size_t>(nodes[i])];
+    pack.shear[lane] = pack.bulk[lane] = S(0);
+  };
   for (std::size_t k = 0; k < kGroup * linear_.packs.size(); ++k) {
-    kernels::TetPack<S>& pack = linear_.packs[k / kGroup];
-    const std::size_t lane = k % kGroup, tet = std::min(k, rest_.count() - 1);
-    for (std::size_t i = 0; i < 9; ++i) pack.gradients[i][lane] = static_cast<S>(rest_.gradients[tet][i]);
-    for (std::size_t i = 0; i < 4; ++i) pack.nodes[i][lane] = slotOf[static_cast<std::size_t>(rest_.tets[tet][i])];
-    pack.shear[lane] = pack.bulk[lane] = S(0);
+    const std::size_t tet = std::min(k, rest_.count() - 1);
+    fill(linear_.packs[k / kGroup], k % kGroup, rest_.tets[tet], rest_.gradients[tet]);
   }
-}
-
-template <class S>
-void CorotatedTets<S>::fillQuadratic(const std::vector<std::uint32_t>& slotOf) {
   for (std::size_t k = 0; k < kGroup * quadratic_.packs.size(); ++k) {
-    kernels::QuadraticPack<S>& pack = quadratic_.packs[k / kGroup];
-    const std::size_t lane = k % kGroup;
     const RestQuadraticTet& tet = rest_.quadratic[std::min(k, rest_.quadratic.size() - 1)];
-    for (std::size_t i = 0; i < tet.gradients.size(); ++i) pack.gradients[i][lane] = static_cast<S>(tet.gradients[i]);
-    for (std::size_t i = 0; i < tet.points.size(); ++i) pack.points[i][lane] = static_cast<S>(tet.points[i]);
-    for (std::size_t i = 0; i < tet.nodes.size(); ++i) {
-      pack.nodes[i][lane] = slotOf[static_cast<std::size_t>(tet.nodes[i])];
-    }
-    pack.shear[lane] = pack.bulk[lane] = S(0);
+    auto& pack = quadratic_.packs[k / kGroup];
+    fill(pack, k % kGroup, tet.nodes, tet.gradients);
+    for (std::size_t i = 0; i < tet.points.size(); ++i) pack.points[i][k % kGroup] = static_cast<S>(tet.points[i]);
   }
 }
 
@@ -90,17 +82,11 @@ void CorotatedTets<S>::fillQuadratic(const std::vector<std::uint32_t>& slotOf) {
 template <class S>
 void CorotatedTets<S>::listCorners(const std::vector<std::uint32_t>& slotOf) {
   Lists<> corners = packLists(slots_, [&](auto&& visit) {
-    for (std::size_t t = 0; t < rest_.count(); ++t) {
-      for (std::size_t a = 0; a < 4; ++a) {
-        visit(slotOf[static_cast<std::size_t>(rest_.tets[t][a])], static_cast<std::uint32_t>(4 * t + a));
-      }
-    }
-    for (std::size_t t = 0; t < rest_.quadratic.size(); ++t) {
-      for (std::size_t a = 0; a < kQuadraticNodes; ++a) {
-        visit(slotOf[static_cast<std::size_t>(rest_.quadratic[t].nodes[a])],
-              static_cast<std::uint32_t>(rest_.quadraticCorner(t) + a));
-      }
-    }
+    const auto list = [&](const auto& nodes, std::size_t corner) {
+      for (const int n : nodes) visit(slotOf[static_cast<std::size_t>(n)], static_cast<std::uint32_t>(corner++));
+    };
+    for (std::size_t t = 0; t < rest_.count(); ++t) list(rest_.tets[t], 4 * t);
+    for (std::size_t t = 0; t < rest_.quadratic.size(); ++t) list(rest_.quadratic[t].nodes, rest_.quadraticCorner(t));
   });
   cornerStarts_ = std::move(corners.starts);
   cornersAt_ = std::move(corners.values);
@@ -236,12 +222,10 @@ template <class S>
 const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha) {
   flatAlpha_ = flatAlpha > alpha ? flatAlpha : S(0);
   assert(points_ || flatAlpha_ == S(0));
-  linear_.assembled = linear_.rotations;
-  quadratic_.assembled = quadratic_.rotations;
-  if (flatAlpha_ > S(0)) {
-    linear_.alphas.resize(linear_.rotations.size() / 4);
-    quadratic_.alphas.resize(quadratic_.rotations.size() / 4);
-  }
+  forBoth([&](auto& packed) {
+    packed.assembled = packed.rotations;
+    if (flatAlpha_ > S(0)) packed.alphas.resize(packed.rotations.size() / 4);
+  });
   return corners(alpha, points_, threads);
 }
 
@@ -265,17 +249,13 @@ const S* CorotatedTets<S>::corners(S alpha, const S* points, ParallelFor* thread
 
 template <class S>
 bool CorotatedTets<S>::visitState(StateStream& stream, S alpha, bool ofMatrix) {
-  stream.plain(linear_.rotations.data(), linear_.rotations.size());
-  stream.plain(quadratic_.rotations.data(), quadratic_.rotations.size());
+  forBoth([&](auto& packed) { stream.plain(packed.rotations.data(), packed.rotations.size()); });
   if (!ofMatrix) return false;
   const S flatAlpha = flatAlpha_;
   stream(flatAlpha_);
   bool changed = flatAlpha != flatAlpha_;
-  changed |= visitAssembled(stream, linear_);
-  changed |= visitAssembled(stream, quadratic_);
-  if (!(flatAlpha_ > S(0))) return changed;
-  changed |= visitAlphas(stream, alpha, linear_);
-  changed |= visitAlphas(stream, alpha, quadratic_);
+  forBoth([&](auto& packed) { changed |= visitAssembled(stream, packed); });
+  if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= visitAlphas(stream, alpha, packed); });
   return changed;
 }
 
@@ -315,8 +295,6 @@ bool CorotatedTets<S>::visitAlphas(StateStream& stream, S alpha, Packed<Pack>& p
   return changed;
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template class CorotatedTets<Scalar>;
-TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
-#undef TETSKIN_INSTANTIATE
+TETSKIN_INSTANTIATE_CLASS(CorotatedTets)
 
 }  // namespace tetskin::elastic_detail

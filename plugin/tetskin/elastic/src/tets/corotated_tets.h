@@ -73,8 +73,12 @@ class TETSKIN_ELASTIC_API CorotatedTets {
 
   template <class Pack>
   void makePacks(std::size_t tets, std::size_t firstCorner, Packed<Pack>& packed);
-  void fillLinear(const std::vector<std::uint32_t>& slotOf);
-  void fillQuadratic(const std::vector<std::uint32_t>& slotOf);
+  void fillPacks(const std::vector<std::uint32_t>& slotOf);
+  template <class Visit>
+  void forBoth(Visit&& visit) {
+    visit(linear_);
+    visit(quadratic_);
+  }
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
   kernels::TetWork<S, Pack> work(Packed<Pack>& packed, std::size_t task);

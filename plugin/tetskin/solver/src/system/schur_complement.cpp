@@ -134,7 +134,7 @@ void SchurComplement::addProduct(Eigen::Index row, Eigen::Index column, double s
     const Small3 left = sign * transposeTimes(h, smallFrom<3>(&a(0, i)));
     for (Eigen::Index j = 0; j < b.cols(); ++j) {
       const double terms[3] = {left[0] * b(0, j), left[1] * b(1, j), left[2] * b(2, j)};
-      to(i, j) += halved ? halvedSum<3>(terms) : (terms[0] + terms[1]) + terms[2];
+      to(i, j) += halved ? terms[0] + (terms[1] + terms[2]) : (terms[0] + terms[1]) + terms[2];
     }
   }
 }

@@ -9,17 +9,18 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace tetskin {
 
-/// The sum of N numbers, as that of the sums of both halves.
-template <int N>
-double halvedSum(const double* values) {
+/// The sum of value(k) for N numbers k from `first` on, as that of the sums of both halves.
+template <int N, class Value>
+double halvedSum(const Value& value, int first = 0) {
   if constexpr (N == 1) {
-    return values[0];
+    return value(first);
   } else {
-    return halvedSum<N / 2>(values) + halvedSum<N - N / 2>(values + N / 2);
+    return halvedSum<N / 2>(value, first) + halvedSum<N - N / 2>(value, first + N / 2);
   }
 }
 
@@ -104,9 +105,7 @@ SmallMatrix<Rows, Columns> operator*(const SmallMatrix<Rows, Inner>& a, const Sm
   SmallMatrix<Rows, Columns> product;
   for (int j = 0; j < Columns; ++j) {
     for (int i = 0; i < Rows; ++i) {
-      double terms[Inner];
-      for (int k = 0; k < Inner; ++k) terms[k] = a(i, k) * b(k, j);
-      product(i, j) = halvedSum<Inner>(terms);
+      product(i, j) = halvedSum<Inner>([&](int k) { return a(i, k) * b(k, j); });
     }
   }
   return product;
@@ -120,9 +119,7 @@ SmallMatrix<Rows, Columns> transposeTimes(const SmallMatrix<Inner, Rows>& a, con
 
 template <int Size>
 double dot(const SmallMatrix<Size>& a, const SmallMatrix<Size>& b) {
-  double terms[Size];
-  for (int k = 0; k < Size; ++k) terms[k] = a[k] * b[k];
-  return halvedSum<Size>(terms);
+  return halvedSum<Size>([&](int k) { return a[k] * b[k]; });
 }
 template <int Size>
 double squaredNorm(const SmallMatrix<Size>& a) {
@@ -151,6 +148,41 @@ bool isZero(const SmallMatrix<Rows, Columns>& a) {
   return true;
 }
 
+/// Calls visit(k) for k = 1, ..., Last - 1, each a constant.
+template <int Last, int K = 1, class Visit>
+void forConstants(const Visit& visit) {
+  if constexpr (K < Last) {
+    visit(std::integral_constant<int, K>());
+    forConstants<Last, K + 1>(visit);
+  }
+}
+
+/// x with A x = b, by factors L U with the largest pivot in each step. If A is singular, x is not finite. Bits are
+/// those of Eigen's PartialPivLU of this size.
+template <int Size>
+SmallMatrix<Size> solved(SmallMatrix<Size, Size> a, SmallMatrix<Size> b) {
+  for (int k = 0; k < Size; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < Size; ++i) {
+      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
+    }
+    for (int j = 0; j < Size; ++j) std::swap(a(k, j), a(pivot, j));
+    std::swap(b[k], b[pivot]);
+    for (int i = k + 1; i < Size; ++i) {
+      if (a(k, k) != 0.0) a(i, k) /= a(k, k);
+      for (int j = k + 1; j < Size; ++j) a(i, j) -= a(i, k) * a(k, j);
+    }
+  }
+  forConstants<Size>([&](auto k) { b[k] -= halvedSum<k>([&](int j) { return a(k, j) * b[j]; }); });
+  b[Size - 1] /= a(Size - 1, Size - 1);
+  forConstants<Size>([&](auto k) {
+    const int row = Size - 1 - k;
+    b[row] -= halvedSum<k>([&](int j) { return a(row, j) * b[j]; }, row + 1);
+    b[row] /= a(row, row);
+  });
+  return b;
+}
+
 /// The factors P^T L D L^T P of a symmetric matrix, with the larger diagonals first. It may be singular. The lower
 /// triangle is read. Bits are those of Eigen's LDLT of this size.
 template <int Size>
@@ -163,12 +195,15 @@ class SmallLdlt {
   /// Where a diagonal is 0, so is the solution.
   SmallMatrix<Size> solve(SmallMatrix<Size> right) const {
     for (int k = 0; k < Size; ++k) std::swap(right[k], right[swapped_[k]]);
-    substituteForward<1>(right);
+    forConstants<Size>([&](auto k) { right[k] -= halvedSum<k>([&](int j) { return factors_(k, j) * right[j]; }); });
     for (int k = 0; k < Size; ++k) {
       const double diagonal = factors_(k, k);
       right[k] = std::abs(diagonal) > kSmallest ? right[k] / diagonal : 0.0;
     }
-    substituteBack<1>(right);
+    forConstants<Size>([&](auto k) {
+      const int row = Size - 1 - k;
+      right[row] -= halvedSum<k>([&](int j) { return factors_(j, row) * right[j]; }, row + 1);
+    });
     for (int k = Size - 1; k >= 0; --k) std::swap(right[k], right[swapped_[k]]);
     return right;
   }
@@ -204,28 +239,6 @@ class SmallLdlt {
     if (k > 0) factors_(k, k) -= pivot_;
     if (!(std::abs(factors_(k, k)) > 0.0)) return;
     for (int i = k + 1; i < Size; ++i) factors_(i, k) /= factors_(k, k);
-  }
-
-  /// Solves with L from row K on; the rows above it are solved.
-  template <int K>
-  void substituteForward(SmallMatrix<Size>& right) const {
-    if constexpr (K < Size) {
-      double terms[K];
-      for (int j = 0; j < K; ++j) terms[j] = factors_(K, j) * right[j];
-      right[K] -= halvedSum<K>(terms);
-      substituteForward<K + 1>(right);
-    }
-  }
-  /// Solves with L^T where the last K rows are solved.
-  template <int K>
-  void substituteBack(SmallMatrix<Size>& right) const {
-    if constexpr (K < Size) {
-      constexpr int kRow = Size - K - 1;
-      double terms[K];
-      for (int j = 0; j < K; ++j) terms[j] = factors_(kRow + 1 + j, kRow) * right[kRow + 1 + j];
-      right[kRow] -= halvedSum<K>(terms);
-      substituteBack<K + 1>(right);
-    }
   }
 
   SmallMatrix<Size, Size> factors_;  ///< D on the diagonal, L below it

@@ -197,10 +197,7 @@ struct CageLocator::Impl {
   }
 };
 
-CageLocator::CageLocator(const Cage& cage) : impl_(std::make_unique<const Impl>(cage)) {}
-CageLocator::~CageLocator() = default;
-CageLocator::CageLocator(CageLocator&&) noexcept = default;
-CageLocator& CageLocator::operator=(CageLocator&&) noexcept = default;
+CageLocator::CageLocator(const Cage& cage) : impl_(std::make_shared<const Impl>(cage)) {}
 
 int CageLocator::locate(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
   if (!impl_) return -1;

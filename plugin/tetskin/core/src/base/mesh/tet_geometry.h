@@ -29,6 +29,10 @@ inline TetCorners cornersOf(const TetMesh& mesh, const Tet& tet) {
   return {mesh.nodes[tet[0]], mesh.nodes[tet[1]], mesh.nodes[tet[2]], mesh.nodes[tet[3]]};
 }
 
+inline bool shareNode(const Tet& a, const Tet& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
 /// Signed volume; positive for a positively oriented tet.
 inline double signedVolume(const TetCorners& p) {
   return (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) / 6.0;

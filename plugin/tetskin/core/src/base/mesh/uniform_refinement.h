@@ -48,11 +48,11 @@ inline constexpr OctahedronDiagonal kOctahedronDiagonals[3] = {
 /// length  squared, between two midpoints
 template <class Node, class Length>
 std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
-                                             const std::array<std::array<Node, 4>, 4>& centroid, Length&& length) {
-  const auto at = [&](const int(&ends)[2]) { return centroid[ends[0]][ends[1]]; };
+                                             const std::array<std::array<Node, 4>, 4>& midpoint, Length&& length) {
+  const auto at = [&](const int(&ends)[2]) { return midpoint[ends[0]][ends[1]]; };
   std::array<std::array<Node, 4>, 8> eight;
   for (int k = 0; k < 4; ++k) {
-    for (int j = 0; j < 4; ++j) eight[k][j] = j == k ? tet[k] : centroid[k][j];
+    for (int j = 0; j < 4; ++j) eight[k][j] = j == k ? tet[k] : midpoint[k][j];
   }
   const auto lengthOf = [&](const OctahedronDiagonal& d) { return length(at(d.ends[0]), at(d.ends[1])); };
   const OctahedronDiagonal& shortest =
@@ -69,20 +69,20 @@ std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
 /// nodes      positions, by which the shortest diagonal is chosen
 inline std::array<Tet, 8> refinedTet(const Tet& corners, const std::array<int, 6>& midpoints,
                                      const std::vector<Eigen::Vector3d>& nodes) {
-  std::array<std::array<int, 4>, 4> centroid{};
+  std::array<std::array<int, 4>, 4> midpoint{};
   std::size_t next = 0;
   for (int a = 0; a < 4; ++a) {
-    for (int b = a + 1; b < 4; ++b) centroid[a][b] = centroid[b][a] = midpoints[next++];
+    for (int b = a + 1; b < 4; ++b) midpoint[a][b] = midpoint[b][a] = midpoints[next++];
   }
-  return eightTets(corners, centroid, [&](int a, int b) { return (nodes[a] - nodes[b]).squaredNorm(); });
+  return eightTets(corners, midpoint, [&](int a, int b) { return (nodes[a] - nodes[b]).squaredNorm(); });
 }
 /// Overload for a tet without a mesh. Not compiled into the library, as Eigen has another namespace in some of them.
 inline std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
-  std::array<std::array<Eigen::Vector3d, 4>, 4> centroid;
+  std::array<std::array<Eigen::Vector3d, 4>, 4> midpoint;
   for (int a = 0; a < 4; ++a) {
-    for (int b = a + 1; b < 4; ++b) centroid[a][b] = centroid[b][a] = 0.5 * (p[a] + p[b]);
+    for (int b = a + 1; b < 4; ++b) midpoint[a][b] = midpoint[b][a] = 0.5 * (p[a] + p[b]);
   }
-  return eightTets(p, centroid,
+  return eightTets(p, midpoint,
                    [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).squaredNorm(); });
 }
 
