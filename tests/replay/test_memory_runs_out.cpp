@@ -11,6 +11,7 @@
 #include "solver/deformable_test.h"
 #include "solver/rigid_scene.h"
 #include "support/allocation_count.h"
+#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {
@@ -41,7 +42,7 @@ class SmallWorld {
 TEST(MemoryRunsOut, WhileABodyIsAddedAndTheWorldIsAsItWas) {
   SmallWorld scene;
   scene.step(3);
-  const Snapshot before = saved(scene.world);
+  const Bytes before = saved(scene.world);
   const auto& forces = *scene.world.deformableSolver().getLagrangianForceArray();
   const int forceCount = forces.size();
   const TetMesh cage = smallCageAbove(2);
@@ -60,9 +61,9 @@ TEST(MemoryRunsOut, WhileABodyIsAddedAndTheWorldIsAsItWas) {
 TEST(MemoryRunsOut, WithinAStepAndTheWorldIsRestored) {
   SmallWorld scene;
   scene.step(30);
-  const Snapshot before = saved(scene.world);
+  const Bytes before = saved(scene.world);
   scene.step(3);
-  const Snapshot expected = saved(scene.world);
+  const Bytes expected = saved(scene.world);
   const auto restore = [&] {
     const Status status = restoreSnapshot(scene.world, before.data(), before.size());
     ASSERT_TRUE(status.ok()) << status.message;
@@ -82,9 +83,9 @@ TEST(MemoryRunsOut, WithinAStepAndTheWorldIsRestored) {
 TEST(ExceptionsWithinSteps, LeaveAWorldThatCanBeRestoredOrStepsOn) {
   SmallWorld scene;
   scene.step(30);
-  const Snapshot before = saved(scene.world);
+  const Bytes before = saved(scene.world);
   scene.step(3);
-  const Snapshot expected = saved(scene.world);
+  const Bytes expected = saved(scene.world);
   static int calls;
   const auto failing = [] {
     if (++calls == 2) throw std::runtime_error("from a callback");

@@ -7,9 +7,9 @@
 #include <functional>
 #include <new>
 
-#include "saved.h"
 #include "solver/deformable_test.h"
 #include "solver/rigid_scene.h"
+#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "rigid_scene.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 btScalar largestDifference(const btMatrix3x3& a, const btMatrix3x3& b) {
@@ -100,7 +100,7 @@ TEST(RigidTurns, LeaveWhatSleepsAndWhatIsFixedAsItIs) {
 
 /// Rigid bodies of all kinds, joints and an arm, with what Bullet has done to them after some steps.
 std::vector<btScalar> motionOf(bool deterministic, bool turns, int frames) {
-  test::RigidScene scene;
+  RigidScene scene;
   scene.world.deformableSolver().setDeterministic(deterministic);
   scene.addFloor();
   scene.addStack(6);
@@ -116,7 +116,7 @@ std::vector<btScalar> motionOf(bool deterministic, bool turns, int frames) {
     if (number % 11 == 0) body->setLinearVelocity(btVector3(0, -30, 0));
   }
   scene.step(frames);
-  return scene.motion();
+  return seen(scene.world);
 }
 
 /// A deterministic world has steps of Bullet's in its own functions: what other versions of Bullet do in theirs would
@@ -131,4 +131,4 @@ TEST(RigidTurns, OfADeterministicWorldLeaveAllElseAsInBullets) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

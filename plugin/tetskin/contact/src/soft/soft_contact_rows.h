@@ -68,7 +68,7 @@ class SoftContactRows : public RowSource {
   void visitPair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
   void visitSleeping(WorldStream& stream);
   ContactBody* withId(int id) const;
-  bool mayBeFollowed(const ContactBody& body) const;
+  bool motionMatters(const ContactBody& body) const;
   void keepSleeping();
   BodyPairs overlappingPairs();
   void forgetAllBut(const BodyPairs& near);

@@ -80,16 +80,18 @@ void SoftContactRows::visitBodies(WorldStream& stream) {
                                     [&](const auto& body) { return body->body == named; });
     if (found == bodies_.end()) return stream.refuse(kOtherBodies);
     std::swap(bodies_[k], *found);
-    bodies_[k]->visitState(stream, stream.saving() && mayBeFollowed(*bodies_[k]));
+    bodies_[k]->visitState(stream, stream.saving() && motionMatters(*bodies_[k]));
   }
 }
 
-bool SoftContactRows::mayBeFollowed(const ContactBody& body) const {
+/// Also of pairs whose touches are not followed: the next step measures their motion all the same.
+bool SoftContactRows::motionMatters(const ContactBody& body) const {
   return std::any_of(pairStates_.begin(), pairStates_.end(), [&](const auto& entry) {
     const auto [a, b] = entry.first;
     if (a != body.id && b != body.id) return false;
     const ContactBody &first = *withId(a), &second = *withId(b);
-    return entry.second.memories[0].mayFollow(first, second) || entry.second.memories[1].mayFollow(second, first);
+    const PairMemory(&memories)[2] = entry.second.memories;
+    return memories[0].motion.goesOn(first, second) || memories[1].motion.goesOn(second, first);
   });
 }
 
