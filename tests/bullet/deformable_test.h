@@ -9,8 +9,10 @@
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/bullet/deformable_world.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 namespace tetskin::test {
 
@@ -20,6 +22,7 @@ class EmptyWorld : public DeformableWorldBase {
   explicit EmptyWorld(std::unique_ptr<btDeformableBodySolver> bodySolver = std::make_unique<btDeformableBodySolver>())
       : DeformableWorldBase(std::move(bodySolver)) {}
   btDeformableMultiBodyDynamicsWorld& deformable() { return *soft; }
+  operator btDeformableMultiBodyDynamicsWorld&() { return *soft; }
 };
 
 /// A deformable world without a body of its own, with the library's solver.
@@ -54,6 +57,29 @@ inline double rmsSpeed(const btSoftBody& body) {
   return std::sqrt(squared / body.m_nodes.size());
 }
 
+inline double fastestOf(const btSoftBody& body) {
+  btScalar squared = 0;
+  for (int n = 0; n < body.m_nodes.size(); ++n) squared = std::max(squared, body.m_nodes[n].m_v.length2());
+  return std::sqrt(static_cast<double>(squared));
+}
+inline std::vector<btVector3> nodesOf(const btSoftBody& body) {
+  std::vector<btVector3> nodes;
+  for (int n = 0; n < body.m_nodes.size(); ++n) nodes.push_back(body.m_nodes[n].m_x);
+  return nodes;
+}
+inline btVector3 momentumOf(const btSoftBody& body) {
+  btVector3 sum(0, 0, 0);
+  for (int n = 0; n < body.m_nodes.size(); ++n) {
+    if (body.m_nodes[n].m_im > 0) sum += body.m_nodes[n].m_v / body.m_nodes[n].m_im;
+  }
+  return sum;
+}
+
+inline btVector3 centreOf(const btSoftBody& body) {
+  btVector3 sum(0, 0, 0);
+  for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_x;
+  return sum / static_cast<btScalar>(body.m_nodes.size());
+}
 inline double kineticEnergyOf(const btSoftBody& body) {
   double energy = 0.0;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
@@ -76,16 +102,12 @@ inline void step(EmptyWorld& world, int frames) {
 }
 
 inline TetMesh cageAbove(double height) {
-  TetMesh cage = latticeCage(5, 4, 5, 0.2);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
-  return cage;
+  return lifted(latticeCage(5, 4, 5, 0.2), height);
 }
 
 /// A cage of a tenth as many tets, for tests that do not depend on their number.
 inline TetMesh smallCageAbove(double height) {
-  TetMesh cage = latticeCage(2, 2, 3, 0.3);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
-  return cage;
+  return lifted(latticeCage(2, 2, 3, 0.3), height);
 }
 
 /// The cage and a copy of it three units along x; the two share no node.

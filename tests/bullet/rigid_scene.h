@@ -11,65 +11,25 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/bullet/deformable_world.h>
 
-#include <cstring>
 #include <memory>
 #include <vector>
 
+#include "support/rigids.h"
+
 namespace tetskin::test {
 
-using Snapshot = std::vector<unsigned char>;
-
-inline Snapshot saved(const btDeformableMultiBodyDynamicsWorld& world) {
-  Snapshot snapshot(saveSnapshot(world, nullptr, 0).value());
-  (void)saveSnapshot(world, snapshot.data(), snapshot.size()).value();
-  return snapshot;
-}
+struct HasWorld {
+  tetskin::DeformableWorld world;
+};
 
 /// Owns what is in its world.
-class RigidScene {
+class RigidScene : public HasWorld, public Rigids {
  public:
-  RigidScene() = default;
+  RigidScene() : Rigids(world) {}
   ~RigidScene() {
     for (auto& joint : linkJoints_) world.removeMultiBodyConstraint(joint.get());
-    for (auto& joint : joints) world.removeConstraint(joint.get());
     for (auto& body : multibodies) world.removeMultiBody(body.get());
     for (auto& collider : colliders_) world.removeCollisionObject(collider.get());
-    for (auto& body : bodies) world.removeRigidBody(body.get());
-  }
-  RigidScene(const RigidScene&) = delete;
-  RigidScene& operator=(const RigidScene&) = delete;
-
-  template <class Shape, class... Arguments>
-  Shape& shape(Arguments&&... arguments) {
-    auto made = std::make_unique<Shape>(std::forward<Arguments>(arguments)...);
-    Shape& result = *made;
-    shapes_.push_back(std::move(made));
-    return result;
-  }
-  btRigidBody& add(btCollisionShape& shape, btScalar mass, const btVector3& at) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape.calculateLocalInertia(mass, inertia);
-    auto body = std::make_unique<btRigidBody>(mass, nullptr, &shape, inertia);
-    body->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
-    body->setInterpolationWorldTransform(body->getWorldTransform());
-    body->setUserIndex(static_cast<int>(bodies.size()));
-    world.addRigidBody(body.get());
-    bodies.push_back(std::move(body));
-    return *bodies.back();
-  }
-  void remove(btRigidBody& body) {
-    world.removeRigidBody(&body);
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      if (bodies[k].get() == &body) return void(bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(k)));
-    }
-  }
-  template <class Joint, class... Arguments>
-  Joint& join(Arguments&&... arguments) {
-    auto made = std::make_unique<Joint>(std::forward<Arguments>(arguments)...);
-    Joint& result = *made;
-    world.addConstraint(&result);
-    joints.push_back(std::move(made));
-    return result;
   }
 
   void addFloor() { add(shape<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0, btVector3(0, 0, 0)); }
@@ -88,29 +48,7 @@ class RigidScene {
   void step(int frames = 1) {
     for (int k = 0; k < frames; ++k) world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 120);
   }
-  /// All that can be seen to move, to the last bit.
-  std::vector<btScalar> motion() const {
-    std::vector<btScalar> all;
-    const auto& objects = world.getCollisionObjectArray();
-    for (int k = 0; k < objects.size(); ++k) {
-      const btTransform& at = objects[k]->getWorldTransform();
-      for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) all.push_back(at.getBasis()[row][column]);
-        all.push_back(at.getOrigin()[row]);
-      }
-      all.push_back(static_cast<btScalar>(objects[k]->getActivationState()));
-    }
-    for (const auto& body : bodies) {
-      for (int k = 0; k < 3; ++k) all.insert(all.end(), {body->getLinearVelocity()[k], body->getAngularVelocity()[k]});
-    }
-    return all;
-  }
-
-  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btTriangleMesh>> meshes_;
-  tetskin::DeformableWorld world;
-  std::vector<std::unique_ptr<btRigidBody>> bodies;
-  std::vector<std::unique_ptr<btTypedConstraint>> joints;
   std::vector<std::unique_ptr<btMultiBody>> multibodies;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> linkJoints_;

@@ -10,11 +10,8 @@
 
 #include <numeric>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::EmptyWorld;
-using test::TetskinWorld;
 
 constexpr double kDensity = 7.0;
 
@@ -70,9 +67,7 @@ std::vector<btVector3> fallen(const Cage& cage, const SoftBodyOptions& options) 
     body->body().m_nodes[n].m_v += btVector3(btScalar(n % 3), btScalar(n % 5), 0);
   }
   test::step(world, 10);
-  std::vector<btVector3> positions;
-  for (int n = 0; n < body->body().m_nodes.size(); ++n) positions.push_back(body->body().m_nodes[n].m_x);
-  return positions;
+  return nodesOf(body->body());
 }
 
 class ModelsOfCages : public testing::TestWithParam<ForceModel> {};
@@ -197,4 +192,4 @@ TEST(BodiesOfCages, OpenWhereTheirPartsArePulledApart) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

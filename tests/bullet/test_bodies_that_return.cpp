@@ -8,15 +8,10 @@
 #include <vector>
 
 #include "deformable_test.h"
+#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {
-
-std::vector<btVector3> nodesOf(const btSoftBody& body) {
-  std::vector<btVector3> nodes;
-  for (int n = 0; n < body.m_nodes.size(); ++n) nodes.push_back(body.m_nodes[n].m_x);
-  return nodes;
-}
 
 int forcesIn(EmptyWorld& world) {
   return static_cast<btDeformableBodySolver*>(world.softSolver.get())->getLagrangianForceArray()->size();
@@ -179,13 +174,12 @@ TEST(BodiesThatReturn, AreKnownToSnapshots) {
   const auto stays = added(world, smallCageAbove(2));
   const auto body = added(world, smallCageAbove(0.05));
   step(world, 20);
-  std::vector<unsigned char> snapshot(saveSnapshot(world.deformable(), nullptr, 0).value());
-  ASSERT_TRUE(saveSnapshot(world.deformable(), snapshot.data(), snapshot.size()).ok());
+  const Bytes snapshot = saved(world.deformable());
   step(world, 20);
   const auto first = nodesOf(body->body()), second = nodesOf(stays->body());
   body->removeFromWorld();
   step(world, 5);
-  const auto restore = [&] { return restoreSnapshot(world.deformable(), snapshot.data(), snapshot.size()); };
+  const auto restore = [&] { return restored(world.deformable(), snapshot); };
   EXPECT_EQ(restore().code, StatusCode::SnapshotMismatch);
   ASSERT_TRUE(body->addToWorld(world.deformable()).ok());
   ASSERT_TRUE(restore().ok()) << restore().message;

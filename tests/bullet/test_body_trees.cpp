@@ -4,17 +4,11 @@
 
 #include <tetskin/bullet/src/base/body_trees.h>
 
-namespace tetskin {
+namespace tetskin::test {
 
 using namespace bullet_detail;
 
 namespace {
-
-using test::added;
-using test::smallCageAbove;
-using test::step;
-using test::TetskinWorld;
-using test::twoComponents;
 
 struct Ray {
   btVector3 from, to;
@@ -226,4 +220,4 @@ TEST(BodyTrees, OfAnExplodedBodyAreBuilt) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

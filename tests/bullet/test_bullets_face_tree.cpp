@@ -9,10 +9,8 @@
 #include <memory>
 #include <thread>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::twoComponents;
 
 TEST(BulletsFaceTreeDeathTest, NeverEndsForABodyOfTwoParts) {
   EXPECT_EXIT(
@@ -29,4 +27,4 @@ TEST(BulletsFaceTreeDeathTest, NeverEndsForABodyOfTwoParts) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

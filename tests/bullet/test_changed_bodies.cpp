@@ -152,8 +152,7 @@ TEST_F(ChangedBody, OneThatIsGoneIsNotReadByAnythingButUpdate) {
 }
 
 TEST(BodyTakenOutOfItsWorld, IsFollowedWhereverItIs) {
-  TetMesh cage = test::latticeCage(2, 2, 2, 0.5);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += 1.0;
+  TetMesh cage = test::lifted(test::latticeCage(2, 2, 2, 0.5), 1.0);
   test::DeformableWorld world(cage);
   SoftBodySkin skin;
   TriangleMesh mesh;

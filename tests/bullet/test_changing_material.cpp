@@ -4,21 +4,12 @@
 // A DeformableBody that is changed while it exists, and which settings of its world it changes.
 #include "deformable_test.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::added;
-using test::cageAbove;
-using test::EmptyWorld;
-using test::lowest;
-using test::rmsSpeed;
-using test::step;
-using test::TetskinWorld;
 
 /// A beam in the air, pinned at one end.
 std::unique_ptr<DeformableBody> pinnedBeam(EmptyWorld& world, ForceModel model, double youngsModulus) {
-  TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
-  for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
+  TetMesh beam = lifted(test::latticeCage(8, 2, 2, 0.25), 20);
   SoftBodyOptions options;
   options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
   options.forceModel = model;
@@ -254,4 +245,4 @@ TEST(DeformableBody, SetsNothingOfAWorldThatItMustNotConfigure) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -10,16 +10,8 @@
 #include <cmath>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::added;
-using test::cageAbove;
-using test::EmptyWorld;
-using test::lowest;
-using test::rmsSpeed;
-using test::step;
-using test::TetskinWorld;
 
 TEST(DeformableBody, EveryBodyKeepsItsOwnStiffness) {
   // Bullet's addForce would give the second body the stiffness of the first.
@@ -29,8 +21,7 @@ TEST(DeformableBody, EveryBodyKeepsItsOwnStiffness) {
   stiff.pinned = limp.pinned = pinnedIn(left);
   stiff.youngsModulus = 20000;
   limp.youngsModulus = 600;
-  TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
-  for (Eigen::Vector3d& p : beam.nodes) p.y() += 5.0;
+  TetMesh beam = lifted(test::latticeCage(8, 2, 2, 0.25), 5.0);
   TetMesh aside = beam;
   for (Eigen::Vector3d& p : aside.nodes) p.z() += 3.0;
   const auto stiffBody = added(world, beam, stiff);
@@ -170,21 +161,31 @@ TEST(DeformableBody, FineCageOfThinPartsBearsItsLanding) {
 
 TEST(DeformableBody, RefusesMassSpringAndBadOptions) {
   TetskinWorld world;
-  const auto refuse = [&](auto&& spoil) {
+  const TetMesh cage = smallCageAbove(1);
+  const auto refuse = [&](auto&& spoil, StatusCode code = StatusCode::InvalidOption) {
     SoftBodyOptions bad;
     spoil(bad);
-    EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1), bad).status().code, StatusCode::InvalidOption);
+    const Status status = DeformableBody::add(world.deformable(), cage, bad).status();
+    EXPECT_EQ(status.code, code) << status.message;
+    EXPECT_FALSE(status.message.empty());
   };
   refuse([](SoftBodyOptions& o) { o.forceModel = ForceModel::MassSpring; });
   refuse([](SoftBodyOptions& o) { o.poissonRatio = 0.5; });
   refuse([](SoftBodyOptions& o) { o.youngsModulus = 1e25; });
-  refuse([](SoftBodyOptions& o) { o.youngsModulus = HUGE_VAL; });
-  refuse([](SoftBodyOptions& o) { o.stiffnessDamping = HUGE_VAL; });
+  refuse([](SoftBodyOptions& o) { o.friction = 1.001; });
+  refuse([](SoftBodyOptions& o) { o.solverTolerance = 1.0; });
+  refuse([](SoftBodyOptions& o) { o.maxIterations = 0; });
+  refuse([](SoftBodyOptions& o) { o.stiffnessScale = {1.0}; }, StatusCode::SizeMismatch);
+  refuse([](SoftBodyOptions& o) { o.nodeMasses = {1.0}; }, StatusCode::SizeMismatch);
+  for (const double bad : {std::nan(""), 0.0, -1.0, HUGE_VAL}) {
+    refuse([&](SoftBodyOptions& o) { o.stiffnessScale.assign(cage.tetCount(), bad); });
+    refuse([&](SoftBodyOptions& o) { o.nodeMasses.assign(cage.nodeCount(), bad); });
+  }
   EXPECT_EQ(DeformableBody::add(world.deformable(), {}).status().code, StatusCode::Empty);
   world.deformable().setGravity(btVector3(0, std::numeric_limits<btScalar>::quiet_NaN(), 0));
-  EXPECT_EQ(DeformableBody::add(world.deformable(), cageAbove(1)).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(DeformableBody::add(world.deformable(), cage).status().code, StatusCode::InvalidOption);
   EXPECT_EQ(world.deformable().getSoftBodyArray().size(), 0);
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -9,18 +9,11 @@
 #include <chrono>
 #include <cmath>
 
-namespace tetskin {
+namespace tetskin::test {
 
 using namespace bullet_detail;
 
 namespace {
-
-using test::added;
-using test::cageAbove;
-using test::lowest;
-using test::rmsSpeed;
-using test::step;
-using test::TetskinWorld;
 
 using Vector = Eigen::Vector3d;
 
@@ -111,7 +104,7 @@ TEST(DeformableSolver, PassesOverContactsThatAreNotANumber) {
 }
 
 TEST(DeformableSolver, TellsHowLongTheStagesOfItsStepsTake) {
-  DeformableWorld world;
+  tetskin::DeformableWorld world;
   const DeformableSolver& solver = world.deformableSolver();
   EXPECT_EQ(solver.stepTimes().total(), 0.0);
   const auto body = DeformableBody::add(world, cageAbove(0.5)).value();
@@ -131,4 +124,4 @@ TEST(DeformableSolver, TellsHowLongTheStagesOfItsStepsTake) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

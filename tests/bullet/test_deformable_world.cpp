@@ -9,34 +9,30 @@
 #include <vector>
 
 #include "deformable_test.h"
+#include "support/rigids.h"
 
 namespace tetskin::test {
 namespace {
 
+void addPlane(Rigids& rigids) {
+  rigids.add(rigids.shape<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0, btVector3(0, 0, 0));
+}
+
 /// Where a cage's nodes are one second after it falls on a floor of the world and pushes a ball aside.
 std::vector<btVector3> landed(btDeformableMultiBodyDynamicsWorld& world) {
-  btStaticPlaneShape plane(btVector3(0, 1, 0), 0);
-  btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane));
-  btSphereShape sphere(btScalar(0.2));
-  btRigidBody ball(btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &sphere, btVector3(1, 1, 1)));
-  ball.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.3), btScalar(0.2), 0)));
-  world.addRigidBody(&floor);
-  world.addRigidBody(&ball);
+  Rigids rigids(world);
+  addPlane(rigids);
+  rigids.add(rigids.shape<btSphereShape>(btScalar(0.2)), 1, btVector3(btScalar(0.3), btScalar(0.2), 0));
   const auto body = DeformableBody::add(world, smallCageAbove(1)).value();
   for (int frame = 0; frame < 60; ++frame) world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
-  std::vector<btVector3> positions;
-  for (int n = 0; n < body->body().m_nodes.size(); ++n) positions.push_back(body->body().m_nodes[n].m_x);
-  world.removeRigidBody(&ball);
-  world.removeRigidBody(&floor);
-  return positions;
+  return nodesOf(body->body());
 }
 
 /// Bullet keeps the two triangles of a plane from where body and plane have met first.
 TEST(DeformableWorld, ABodySlidesAlongAPlaneAnyFar) {
   tetskin::DeformableWorld world;
-  btStaticPlaneShape plane(btVector3(0, 1, 0), 0);
-  btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane));
-  world.addRigidBody(&floor);
+  Rigids rigids(world);
+  addPlane(rigids);
   SoftBodyOptions options;
   options.friction = 0;
   const auto body = DeformableBody::add(world, smallCageAbove(btScalar(0.1)), options).value();
@@ -46,7 +42,6 @@ TEST(DeformableWorld, ABodySlidesAlongAPlaneAnyFar) {
   body->body().getAabb(low, high);
   EXPECT_GT(low.x(), 15);
   EXPECT_NEAR(low.y(), 0, 0.05);
-  world.removeRigidBody(&floor);
 }
 
 /// A cube of this size that lies on a floor, a plane through the origin if none is given.
@@ -56,8 +51,7 @@ class LyingCube {
       : floor_(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape ? shape : &plane_)) {
     floor_.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, static_cast<btScalar>(-top), 0)));
     world_.addRigidBody(&floor_);
-    TetMesh cage = latticeCage(2, 2, 2, size / 2);
-    for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.1 * size;
+    TetMesh cage = lifted(latticeCage(2, 2, 2, size / 2), 0.1 * size);
     body_ = DeformableBody::add(world_, cage).value();
   }
   ~LyingCube() { world_.removeRigidBody(&floor_); }

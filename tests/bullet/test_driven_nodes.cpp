@@ -14,9 +14,7 @@ namespace {
 constexpr btScalar kDrivenStep = btScalar(1) / 240;
 
 TetMesh bar(double height) {
-  TetMesh cage = latticeCage(10, 2, 2, 0.2);  // 2 long, along x
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
-  return cage;
+  return lifted(latticeCage(10, 2, 2, 0.2), height);  // 2 long, along x
 }
 
 /// A bar that is pinned at its first end, without gravity.
@@ -47,16 +45,8 @@ struct LedBar {
     }
     return maximum - minimum;
   }
-  double fastest() {
-    double maximum = 0;
-    for (int n = 0; n < soft().m_nodes.size(); ++n) maximum = std::max<double>(maximum, soft().m_nodes[n].m_v.length());
-    return maximum;
-  }
-  std::vector<btVector3> positions() {
-    std::vector<btVector3> all;
-    for (int n = 0; n < soft().m_nodes.size(); ++n) all.push_back(soft().m_nodes[n].m_x);
-    return all;
-  }
+  double fastest() { return fastestOf(soft()); }
+  std::vector<btVector3> positions() { return nodesOf(soft()); }
 
   TetskinWorld world;
   std::unique_ptr<DeformableBody> body;

@@ -7,13 +7,11 @@
 #include <gtest/gtest.h>
 #include <tetskin/bullet/src/base/exact_distance.h>
 
-namespace tetskin {
+namespace tetskin::test {
 
 using namespace bullet_detail;
 
 namespace {
-
-using test::pointsWithin;
 
 /// The distance is how far the point must be moved against the normal to lie on the surface.
 void expectSurfaceAtDistance(const btCollisionShape& shape) {
@@ -100,4 +98,4 @@ TEST(ExactDistance, IsKnownForShapesWithFormulas) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

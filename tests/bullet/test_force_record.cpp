@@ -54,8 +54,7 @@ TEST(ForceRecord, AtRestTheSumOfForcesIsTheWeight) {
 
 TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
   TetskinWorld world;
-  TetMesh cage = latticeCage(10, 2, 2, 0.1);
-  for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.5, 2.01, -0.1);
+  TetMesh cage = shifted(latticeCage(10, 2, 2, 0.1), Eigen::Vector3d(-0.5, 2.01, -0.1));
   SoftBodyOptions stiff;
   stiff.relativeStiffness = 1000;
   // The bar is heavier at one end.

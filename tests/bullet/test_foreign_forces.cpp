@@ -6,16 +6,11 @@
 
 #include <tetskin/bullet/src/base/body_forces.h>
 
-namespace tetskin {
+namespace tetskin::test {
 
 using namespace bullet_detail;
 
 namespace {
-
-using test::added;
-using test::EmptyWorld;
-using test::smallCageAbove;
-using test::step;
 
 /// What the application makes: a body with its own gravity and material, added through Bullet's interface.
 class OwnBody {
@@ -163,8 +158,7 @@ TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
   // A beam pinned at one end; the library's body beside it has a hundredth of its stiffness.
   const auto tip = [](bool besideOurs) {
     test::TetskinWorld world;
-    TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
-    for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
+    TetMesh beam = lifted(test::latticeCage(8, 2, 2, 0.25), 20);
     SoftBodyOptions options;
     options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
     options.youngsModulus = 60;
@@ -199,4 +193,4 @@ TEST(DeformableBody, MayOutliveItsWorld) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

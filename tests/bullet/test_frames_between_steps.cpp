@@ -7,12 +7,8 @@
 
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::kRounding;
-using test::Surface;
-using test::surfaceOf;
 
 /// Largest deviation of a surface from the one that is the fraction `alpha` of the way between two others.
 double distance(const Surface& surface, const Surface& before, const Surface& after, double alpha) {
@@ -289,4 +285,4 @@ TEST_F(FramesBetweenSteps, OfManySkinsAreThoseOfEach) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

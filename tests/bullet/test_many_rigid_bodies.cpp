@@ -21,8 +21,8 @@ constexpr double kTop = 1.2;  ///< height of the mats' upper side
 /// A mat of one layer of cubes around the y-axis; its lower side is pinned, above the floor.
 struct Mat {
   Mat(int nx, int nz, double edge, double modulus) {
-    TetMesh cage = latticeCage(nx, 1, nz, edge);
-    for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(-0.5 * nx * edge, kTop - edge, -0.5 * nz * edge);
+    TetMesh cage =
+        shifted(latticeCage(nx, 1, nz, edge), Eigen::Vector3d(-0.5 * nx * edge, kTop - edge, -0.5 * nz * edge));
     SoftBodyOptions options;
     options.youngsModulus = modulus;
     options.stiffnessDamping = 0.05;

@@ -9,6 +9,7 @@
 #include "deformable_test.h"
 #include "rigid_scene.h"
 #include "support/allocation_count.h"
+#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {
@@ -39,7 +40,7 @@ class SmallWorld {
 TEST(MemoryRunsOut, WhileABodyIsAddedAndTheWorldIsAsItWas) {
   SmallWorld scene;
   scene.step(3);
-  const Snapshot before = saved(scene.world);
+  const Bytes before = saved(scene.world);
   const auto& forces = *scene.world.deformableSolver().getLagrangianForceArray();
   const int forceCount = forces.size();
   const TetMesh cage = smallCageAbove(2);
@@ -58,9 +59,9 @@ TEST(MemoryRunsOut, WhileABodyIsAddedAndTheWorldIsAsItWas) {
 TEST(MemoryRunsOut, WithinAStepAndTheWorldIsRestored) {
   SmallWorld scene;
   scene.step(30);
-  const Snapshot before = saved(scene.world);
+  const Bytes before = saved(scene.world);
   scene.step(3);
-  const Snapshot expected = saved(scene.world);
+  const Bytes expected = saved(scene.world);
   const auto restore = [&] {
     const Status status = scene.world.restore(before.data(), before.size());
     ASSERT_TRUE(status.ok()) << status.message;
@@ -80,9 +81,9 @@ TEST(MemoryRunsOut, WithinAStepAndTheWorldIsRestored) {
 TEST(ExceptionsWithinSteps, LeaveAWorldThatCanBeRestoredOrStepsOn) {
   SmallWorld scene;
   scene.step(30);
-  const Snapshot before = saved(scene.world);
+  const Bytes before = saved(scene.world);
   scene.step(3);
-  const Snapshot expected = saved(scene.world);
+  const Bytes expected = saved(scene.world);
   static int calls;
   const auto failing = [] {
     if (++calls == 2) throw std::runtime_error("from a callback");

@@ -11,13 +11,11 @@
 #include <algorithm>
 #include <set>
 
-namespace tetskin {
+namespace tetskin::test {
 
 using namespace bullet_detail;
 
 namespace {
-
-using test::pointsWithin;
 
 constexpr btScalar kMargin = btScalar(0.05);
 constexpr int kNodes = 2000;
@@ -161,4 +159,4 @@ TEST_F(NodeContacts, FollowTheMarginThatTheApplicationSets) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

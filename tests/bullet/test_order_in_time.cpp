@@ -33,9 +33,7 @@ SoftBodyOptions beamOptions(double damping) {
 
 /// High above the floor.
 TetMesh beamCage() {
-  TetMesh cage = latticeCage(6, 1, 1, kLength / 6);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += kHeight;
-  return cage;
+  return lifted(latticeCage(6, 1, 1, kLength / 6), kHeight);
 }
 
 bool isAtTheWall(const TetMesh& cage, std::size_t node) {
@@ -112,15 +110,6 @@ Path swingAlone(const btSoftBody& body, double damping, int frames, int substeps
     path.emplace_back(tip[0], tip[1], tip[2]);
   }
   return path;
-}
-
-/// Also in its first step, which takes half of gravity's impulse.
-TEST(OrderInTimeOfAWorld, AHeldBodySwingsLikeAnElasticBody) {
-  for (const double damping : {0.0, 0.02}) {
-    HeldBeam beam(damping, Hold::Pins);
-    const Path alone = swingAlone(beam.beam->body(), damping, 60, 4), path = beam.swing(60, 4);
-    EXPECT_LT(difference(path, alone), 2e-3) << damping;
-  }
 }
 
 TEST(OrderInTimeOfAWorld, FourSubstepsAreEnoughHoweverABodyIsHeld) {
@@ -209,11 +198,11 @@ std::unique_ptr<DeformableBody> trembling(EmptyWorld& world, double damping) {
 }
 
 /// Compares two bodies in the same state, of which one has come there by moving.
-TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedOrStiffenedGoesOnAsOneThatHasNeverMoved) {
-  enum class Change { Stopped, Turned, Stiffened };
+TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedStiffenedOrPutToSleepGoesOnAsOneThatHasNeverMoved) {
+  enum class Change { Stopped, Turned, Stiffened, Asleep };
   const btTransform turn(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI), btVector3(3, 0, 0));
   for (const double damping : {0.0, 0.02}) {
-    for (const Change change : {Change::Stopped, Change::Turned, Change::Stiffened}) {
+    for (const Change change : {Change::Stopped, Change::Turned, Change::Stiffened, Change::Asleep}) {
       TetskinWorld world, other;
       const auto beam = trembling(world, damping);
       SoftBodyOptions options = beamOptions(damping);
@@ -222,6 +211,12 @@ TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedOrStiffenedGoesOnAsOneThatHasN
       if (change == Change::Stiffened) {
         options.youngsModulus = 20.0 * kModulus;
         ASSERT_TRUE(beam->setYoungsModulus(20.0 * kModulus).ok());
+      }
+      if (change == Change::Asleep) {
+        beam->body().forceActivationState(ISLAND_SLEEPING);
+        for (int k = 0; k < 3; ++k) world.deformable().stepSimulation(btScalar(1) / 240, 0);
+        beam->body().forceActivationState(ACTIVE_TAG);
+        for (int n = 0; n < beam->body().m_nodes.size(); ++n) beam->body().m_nodes[n].m_v.setZero();
       }
       const auto fresh = added(other, beamCage(), options);
       other.deformable().setGravity(btVector3(0, 0, 0));
@@ -236,25 +231,6 @@ TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedOrStiffenedGoesOnAsOneThatHasN
         EXPECT_LT(difference, 0.003) << damping << ' ' << static_cast<int>(change);
       }
     }
-  }
-}
-
-TEST(OrderInTimeOfAWorld, ABodyThatTheApplicationPutsToSleepWakesWithoutItsOldMotion) {
-  TetskinWorld world, other;
-  const auto beam = trembling(world, 0.02);
-  beam->body().forceActivationState(ISLAND_SLEEPING);
-  for (int k = 0; k < 3; ++k) world.deformable().stepSimulation(btScalar(1) / 240, 0);
-  const auto fresh = added(other, beamCage(), beamOptions(0.02));
-  other.deformable().setGravity(btVector3(0, 0, 0));
-  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
-    beam->body().m_nodes[n].m_v.setZero();
-    fresh->body().m_nodes[n].m_x = fresh->body().m_nodes[n].m_q = beam->body().m_nodes[n].m_x;
-  }
-  beam->body().forceActivationState(ACTIVE_TAG);
-  world.deformable().stepSimulation(btScalar(1) / 240, 0);
-  other.deformable().stepSimulation(btScalar(1) / 240, 0);
-  for (int n = 0; n < beam->body().m_nodes.size(); ++n) {
-    EXPECT_LT((beam->body().m_nodes[n].m_v - fresh->body().m_nodes[n].m_v).length(), 0.003);
   }
 }
 

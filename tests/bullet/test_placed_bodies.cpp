@@ -38,8 +38,7 @@ struct PlacedWorld : TetskinWorld {
 
 /// A bar that is thrown, spins, and swings.
 std::unique_ptr<DeformableBody> thrownBar(EmptyWorld& world, SoftBodyOptions options = {}) {
-  TetMesh bar = makeBox({6, 2, 2}, {1.2, 0.4, 0.4});
-  for (Eigen::Vector3d& p : bar.nodes) p.y() += kHigh;
+  TetMesh bar = lifted(makeBox({6, 2, 2}, {1.2, 0.4, 0.4}), kHigh);
   if (!options.youngsModulus) options.youngsModulus = 2e4;
   std::unique_ptr<DeformableBody> body = added(world, bar, options);
   btSoftBody& soft = body->body();
@@ -184,8 +183,7 @@ TEST(Resets, OfHeldBarsRepeatTheirSwing) {
   for (const double stiffness : {50.0, 3000.0}) {
     SoftBodyOptions options;
     options.relativeStiffness = stiffness;
-    TetMesh bar = makeBox({6, 2, 2}, {1.2, 0.4, 0.4});
-    for (Eigen::Vector3d& p : bar.nodes) p.y() += 5;
+    TetMesh bar = lifted(makeBox({6, 2, 2}, {1.2, 0.4, 0.4}), 5);
     expectRepeats([&](EmptyWorld& world, int k) {
       auto body = bodyAt(world, bar, k, options);
       for (int n = 0; n < body->body().m_nodes.size(); ++n) {

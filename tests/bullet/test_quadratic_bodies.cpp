@@ -23,8 +23,7 @@ constexpr double kHighUp = 50.0;
 
 /// A bar along x of quadratic tets, far above the ground.
 Cage bar() {
-  TetMesh mesh = latticeCage(6, 1, 1, 0.5);
-  for (Eigen::Vector3d& p : mesh.nodes) p.y() += kHighUp;
+  TetMesh mesh = lifted(latticeCage(6, 1, 1, 0.5), kHighUp);
   return refineQuadratic(mesh).value();
 }
 

@@ -13,14 +13,12 @@
 #include <limits>
 #include <memory>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 constexpr bool kDouble = sizeof(btScalar) == 8;
 /// Rounding of barycentric distances computed by Bullet.
 constexpr double kBulletsRounding = kDouble ? 1e-9 : 1e-5;
-
-using test::setRenderNodes;
 
 /// The four parents of one render node, as node indices.
 Tet parentsOf(const btSoftBody& body, int v) {
@@ -223,4 +221,4 @@ TEST_F(RenderNodes, TetsLeftDanglingAreRefused) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -82,55 +82,6 @@ TEST(ReportedScenes, AStripBetweenBoxesThatMoveApartPullsByItsStrain) {
   EXPECT_NEAR(on(left), 0, 0.05);
 }
 
-/// The tip of a clamped beam that swings under its weight, each 0.1 s, in steps that are switched each time.
-/// lengths  of the frames
-std::vector<double> swingIn(const std::vector<double>& lengths, std::vector<double>* energies) {
-  TetskinWorld world;
-  SoftBodyOptions options;
-  options.youngsModulus = 5e5;
-  options.density = 1000;
-  options.stiffnessDamping = 0;
-  options.pinned = [](const Vector3& rest) { return rest.x() < 1e-6; };
-  const TetMesh cage = raised(makeBox({6, 2, 2}, {4, 1, 1}), 30);
-  const auto beam = bodyIn(world, cage, options);
-  const btSoftBody& soft = beam->body();
-  std::vector<double> tips;
-  for (std::size_t k = 0; k < 12; ++k) {
-    const double seconds = lengths[k % lengths.size()];
-    const int frames = static_cast<int>(std::lround(0.1 / seconds));
-    const auto frame = static_cast<btScalar>(seconds);
-    for (int f = 0; f < frames; ++f) world.deformable().stepSimulation(frame, 4, frame / 4);
-    double tip = 0, count = 0, potential = 0;
-    for (int n = 0; n < soft.m_nodes.size(); ++n) {
-      const Vector3& rest = cage.nodes[static_cast<std::size_t>(n)];
-      const double lower = static_cast<double>(soft.m_nodes[n].m_x.y()) - rest.y();
-      if (rest.x() > 3.999) tip += lower, ++count;
-      if (soft.m_nodes[n].m_im > 0) potential += 10 * lower / static_cast<double>(soft.m_nodes[n].m_im);
-    }
-    tips.push_back(tip / count);
-    if (energies) energies->push_back(kineticEnergyOf(soft) + elasticEnergyIn(world) + potential);
-  }
-  return tips;
-}
-
-/// Of the swing of 4 m.
-TEST(ReportedScenes, ABeamSwingsTheSameWhileItsTimeStepIsSwitched) {
-  std::vector<double> energies;
-  const std::vector<double> fine = swingIn({1.0 / 600}, nullptr), coarse = swingIn({1.0 / 60}, nullptr),
-                            mixed = swingIn({1.0 / 60, 1.0 / 600}, &energies);
-  const double size = -*std::min_element(fine.begin(), fine.end());
-  ASSERT_GT(size, 1);
-  double ofCoarse = 0, ofMixed = 0;
-  for (std::size_t k = 0; k < fine.size(); ++k) {
-    ofCoarse = std::max(ofCoarse, std::abs(coarse[k] - fine[k]) / size);
-    ofMixed = std::max(ofMixed, std::abs(mixed[k] - fine[k]) / size);
-  }
-  EXPECT_LT(ofCoarse, 0.003);
-  EXPECT_LT(ofMixed, 0.003);
-  // It begins with none; its weight times the swing is 1.6e5.
-  for (const double energy : energies) EXPECT_LT(energy, 0.01 * 1.6e5);
-}
-
 /// A tyre of rubber around a hub, anchored all around.
 struct Wheel {
   static constexpr double kInner = 0.2, kOuter = 0.3;

@@ -4,12 +4,8 @@
 // What needs a DeformableSolver, and what a world without one is told.
 #include "deformable_test.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::EmptyWorld;
-using test::smallCageAbove;
-using test::TetskinWorld;
 
 Status statusOf(EmptyWorld& world, const SoftBodyOptions& options) {
   return DeformableBody::add(world.deformable(), smallCageAbove(5), options).status();
@@ -66,4 +62,4 @@ TEST(RequiredSolver, BulletsForcesNeedNone) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -9,6 +9,7 @@
 
 #include "deformable_test.h"
 #include "rigid_scene.h"
+#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {

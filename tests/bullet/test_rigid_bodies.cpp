@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "deformable_test.h"
+#include "support/rigids.h"
 
 namespace tetskin::test {
 namespace {
@@ -37,31 +38,15 @@ btVector3 cube(double half) {
 }
 
 /// Rigid bodies in a world, which are removed with it.
-class PlainScene {
+class PlainScene : public Rigids {
  public:
-  PlainScene(btMultiBodyDynamicsWorld& inWorld, int substepsPerFrame) : world(inWorld), substeps_(substepsPerFrame) {
+  PlainScene(btMultiBodyDynamicsWorld& inWorld, int substepsPerFrame)
+      : Rigids(inWorld), world(inWorld), substeps_(substepsPerFrame) {
     world.setGravity(along(1, -9.81));
   }
-  ~PlainScene() {
-    for (auto& joint : joints_) world.removeConstraint(joint.get());
-    for (auto& body : bodies_) world.removeRigidBody(body.get());
-  }
-  PlainScene(const PlainScene&) = delete;
-  PlainScene& operator=(const PlainScene&) = delete;
 
-  btRigidBody& add(std::unique_ptr<btCollisionShape> shape, double mass, const btVector3& at) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
-    const btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), nullptr, shape.get(), inertia);
-    bodies_.push_back(std::make_unique<btRigidBody>(info));
-    shapes_.push_back(std::move(shape));
-    btRigidBody& body = *bodies_.back();
-    body.setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
-    world.addRigidBody(&body);
-    return body;
-  }
   btRigidBody& box(double mass, const btVector3& at, const btVector3& half = cube(0.1)) {
-    return add(std::make_unique<btBoxShape>(half), mass, at);
+    return add(shape<btBoxShape>(half), mass, at);
   }
   /// It never falls asleep.
   btRigidBody& awake(double mass, const btVector3& at, const btVector3& half = cube(0.1)) {
@@ -75,19 +60,11 @@ class PlainScene {
     return awake(2, btVector3(0, 0, 0));
   }
   btRigidBody& ball(double mass, const btVector3& at) {
-    btRigidBody& body = add(std::make_unique<btSphereShape>(btScalar(0.1)), mass, at);
+    btRigidBody& body = add(shape<btSphereShape>(btScalar(0.1)), mass, at);
     body.setActivationState(DISABLE_DEACTIVATION);
     return body;
   }
-  btRigidBody& floor() { return add(std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), 0), 0, cube(0)); }
-  template <class Joint, class... Arguments>
-  Joint& join(Arguments&&... arguments) {
-    auto joint = std::make_unique<Joint>(std::forward<Arguments>(arguments)...);
-    Joint& made = *joint;
-    world.addConstraint(&made);
-    joints_.push_back(std::move(joint));
-    return made;
-  }
+  btRigidBody& floor() { return add(shape<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0, cube(0)); }
   void run(
       int frames, const std::function<void()>& before = [] {}) {
     for (int frame = 0; frame < frames; ++frame) {
@@ -101,9 +78,6 @@ class PlainScene {
 
  private:
   int substeps_;
-  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;
-  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
 };
 
 /// The base is fixed, or free; its link turns about z, half a metre beside it.

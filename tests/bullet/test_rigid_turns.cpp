@@ -12,7 +12,7 @@
 
 #include "rigid_scene.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 btScalar largestDifference(const btMatrix3x3& a, const btMatrix3x3& b) {
@@ -40,7 +40,7 @@ TEST(RigidTurns, AreBulletsButForLastDigits) {
 btTransform tumbled(bool deterministic, int steps) {
   DeformableWorldOptions options;
   options.deterministic = deterministic;
-  DeformableWorld world(options);
+  tetskin::DeformableWorld world(options);
   btBoxShape shape(btVector3(1, 2, 3));
   btRigidBody box(1, nullptr, &shape, btVector3(13, 10, 5) / 3);
   box.setAngularVelocity(btVector3(3, 1, -2));
@@ -62,7 +62,7 @@ TEST(RigidTurns, OfADeterministicWorldAreThoseOfAnyOther) {
 TEST(RigidTurns, OfADeterministicWorldAreMadeByItsOwnArithmetic) {
   DeformableWorldOptions options;
   options.deterministic = true;
-  DeformableWorld world(options);
+  tetskin::DeformableWorld world(options);
   btSphereShape shape(1);
   btRigidBody ball(1, nullptr, &shape, btVector3(1, 1, 1));
   ball.setAngularVelocity(btVector3(3, 1, -2));
@@ -80,7 +80,7 @@ TEST(RigidTurns, OfADeterministicWorldAreMadeByItsOwnArithmetic) {
 TEST(RigidTurns, LeaveWhatSleepsAndWhatIsFixedAsItIs) {
   DeformableWorldOptions options;
   options.deterministic = true;
-  DeformableWorld world(options);
+  tetskin::DeformableWorld world(options);
   btSphereShape shape(1);
   btRigidBody asleep(1, nullptr, &shape, btVector3(1, 1, 1)), fixed(0, nullptr, &shape);
   const btTransform there(btQuaternion(btScalar(0.1), btScalar(-0.7), btScalar(0.3), btScalar(0.6)).normalized(),
@@ -100,7 +100,7 @@ TEST(RigidTurns, LeaveWhatSleepsAndWhatIsFixedAsItIs) {
 
 /// Rigid bodies of all kinds, joints and an arm, with what Bullet has done to them after some steps.
 std::vector<btScalar> motionOf(bool deterministic, bool turns, int frames) {
-  test::RigidScene scene;
+  RigidScene scene;
   scene.world.deformableSolver().setDeterministic(deterministic);
   scene.addFloor();
   scene.addStack(6);
@@ -116,7 +116,7 @@ std::vector<btScalar> motionOf(bool deterministic, bool turns, int frames) {
     if (number % 11 == 0) body->setLinearVelocity(btVector3(0, -30, 0));
   }
   scene.step(frames);
-  return scene.motion();
+  return seen(scene.world);
 }
 
 /// A deterministic world has steps of Bullet's in its own functions: what other versions of Bullet do in theirs would
@@ -131,4 +131,4 @@ TEST(RigidTurns, OfADeterministicWorldLeaveAllElseAsInBullets) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

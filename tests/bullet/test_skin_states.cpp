@@ -5,10 +5,8 @@
 #include <cmath>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::kRounding;
 
 class SkinState : public test::SkinTest {};
 
@@ -157,4 +155,4 @@ TEST_F(SkinState, PreviousPositionsAreThoseOfTheUpdateBefore) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

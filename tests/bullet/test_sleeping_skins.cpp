@@ -18,9 +18,7 @@ namespace {
 
 /// A bar along z, held at its lower end. Each of the worlds tells in its own way, or not at all, when it moves nodes.
 TetMesh bar() {
-  TetMesh cage = latticeCage(2, 2, 6, 0.25);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += 5.0;
-  return cage;
+  return lifted(latticeCage(2, 2, 6, 0.25), 5.0);
 }
 /// The first nodes in memory are pinned: a look at a few nodes close together sees these alone.
 SoftBodyOptions held() {

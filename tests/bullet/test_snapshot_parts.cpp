@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "deformable_test.h"
+#include "support/replays.h"
 #include "support/snapshot_parts.h"
 
 namespace tetskin::test {
@@ -29,26 +30,20 @@ struct Everything : RigidScene {
     if (++frames % 5 == 0) static_cast<btHingeConstraint&>(*joints[2]).setMotorTargetVelocity(btScalar(frames % 7));
     step();
   }
-  std::vector<btScalar> seen() const {
-    std::vector<btScalar> all = motion();
-    for (int n = 0; n < soft->body().m_nodes.size(); ++n) {
-      for (int k = 0; k < 3; ++k) all.push_back(soft->body().m_nodes[n].m_x[k]);
-    }
-    return all;
-  }
+
   int frames = 0;
   std::unique_ptr<DeformableBody> soft;
 };
 
 /// The frames after a snapshot; none if it is refused.
-std::vector<std::vector<btScalar>> runFrom(const Snapshot& snapshot, int frame, Everything& scene) {
+std::vector<std::vector<btScalar>> runFrom(const Bytes& snapshot, int frame, Everything& scene) {
   constexpr int kAfter = 30;
   std::vector<std::vector<btScalar>> frames;
   if (!scene.world.restore(snapshot.data(), snapshot.size()).ok()) return frames;
   scene.frames = frame;
   for (int k = 0; k < kAfter; ++k) {
     scene.frame();
-    frames.push_back(scene.seen());
+    frames.push_back(seen(scene.world));
   }
   return frames;
 }
@@ -59,9 +54,9 @@ TEST(SnapshotParts, OfOtherMomentsChangeTheRun) {
   int needed[kParts] = {};
   for (const int frame : {24, 40}) {
     while (scene.frames < frame) scene.frame();
-    const Snapshot snapshot = saved(scene.world);
+    const Bytes snapshot = saved(scene.world);
     while (scene.frames < frame + kLater) scene.frame();
-    const Snapshot later = saved(scene.world);
+    const Bytes later = saved(scene.world);
     const auto expected = runFrom(snapshot, frame, scene);
     ASSERT_FALSE(expected.empty());
     for (std::size_t part = 0; part < kParts; ++part) {

@@ -10,6 +10,8 @@
 #include <functional>
 #include <string>
 
+#include "support/replays.h"
+
 namespace tetskin::test {
 namespace {
 
@@ -28,102 +30,61 @@ void buildAll(RigidScene& scene) {
   scene.addArm();
 }
 
-class SnapshotsOfRigidBodies : public testing::TestWithParam<Kind> {
- protected:
-  static void build(RigidScene& scene) {
+/// A plate is moved in each frame, where there is one.
+class RigidReplay : public ReplayedScene {
+ public:
+  explicit RigidReplay(const Kind& kind, const std::function<void(RigidScene&)>& before = {}) {
+    if (before) before(scene);
     scene.addFloor();
-    GetParam().build(scene);
+    kind.build(scene);
   }
-  /// The application moves its kinematic plates.
-  static void step(RigidScene& scene, int frame) {
+  btDeformableMultiBodyDynamicsWorld& world() override { return scene.world; }
+  void frame(int number) override {
     for (const auto& body : scene.bodies) {
       if (!body->isKinematicObject()) continue;
       btTransform at = body->getWorldTransform();
-      at.getOrigin().setX(-3 + btScalar(0.3) * btSin(btScalar(0.05) * btScalar(frame)));
+      at.getOrigin().setX(-3 + btScalar(0.3) * btSin(btScalar(0.05) * btScalar(number)));
       body->setWorldTransform(at);
     }
     scene.step();
   }
-
-  struct Run {
-    int start = 0;
-    Snapshot snapshot;
-    std::vector<std::vector<btScalar>> motion;  ///< of each frame after it
-    std::vector<Snapshot> snapshots;
-  };
-  static Run run(RigidScene& scene, int& frame, int frames) {
-    Run run;
-    run.start = frame;
-    run.snapshot = saved(scene.world);
-    EXPECT_EQ(saved(scene.world), run.snapshot) << "saving has changed the world";
-    for (int k = 0; k < frames; ++k) {
-      step(scene, frame++);
-      run.motion.push_back(scene.motion());
-      run.snapshots.push_back(saved(scene.world));
-    }
-    return run;
-  }
-  static void expectGoesOnAs(const Run& run, RigidScene& scene) {
-    const Status status = restoreSnapshot(scene.world, run.snapshot.data(), run.snapshot.size());
-    ASSERT_TRUE(status.ok()) << status.message;
-    ASSERT_EQ(saved(scene.world), run.snapshot);
-    for (std::size_t k = 0; k < run.motion.size(); ++k) {
-      step(scene, run.start + static_cast<int>(k));
-      ASSERT_EQ(scene.motion(), run.motion[k]) << "frame " << k << " after " << run.start;
-      ASSERT_EQ(saved(scene.world), run.snapshots[k]) << "frame " << k << " after " << run.start;
-    }
-  }
+  RigidScene scene;
 };
 
+class SnapshotsOfRigidBodies : public testing::TestWithParam<Kind> {};
+
 TEST_P(SnapshotsOfRigidBodies, GoOnAsBefore) {
-  RigidScene scene;
-  build(scene);
-  int frame = 0;
-  for (const int pause : {0, 1, 30, 150}) {
-    while (frame < pause) step(scene, frame++);
-    const Run before = run(scene, frame, 25);
-    expectGoesOnAs(before, scene);
-    for (int k = 0; k < 7; ++k) step(scene, frame + k);
-    expectGoesOnAs(before, scene);
-  }
+  expectReplays([] { return std::make_unique<RigidReplay>(GetParam()); }, 150, {0, 1, 30, 120}, 25);
 }
 
-TEST_P(SnapshotsOfRigidBodies, GoOnInAnotherWorldBuiltInTheSameOrder) {
-  RigidScene scene;
-  build(scene);
-  int frame = 0;
-  while (frame < 60) step(scene, frame++);
-  const Run before = run(scene, frame, 60);
-  RigidScene fresh;
-  build(fresh);
-  expectGoesOnAs(before, fresh);
-  RigidScene churned;
-  auto& ball = churned.shape<btSphereShape>(btScalar(1));
-  for (const int height : {0, 1, 3}) churned.add(ball, 1, btVector3(0, btScalar(height), 0));
-  churned.step(3);
-  while (!churned.bodies.empty()) churned.remove(*churned.bodies.front());
-  build(churned);
-  churned.step(2);
-  expectGoesOnAs(before, churned);
+TEST_P(SnapshotsOfRigidBodies, GoOnInAWorldInWhichOthersHaveBeenBefore) {
+  const auto churn = [](RigidScene& scene) {
+    auto& ball = scene.shape<btSphereShape>(btScalar(1));
+    for (const int height : {0, 1, 3}) scene.add(ball, 1, btVector3(0, btScalar(height), 0));
+    scene.step(3);
+    while (!scene.bodies.empty()) scene.remove(*scene.bodies.front());
+  };
+  expectReplays([] { return std::make_unique<RigidReplay>(GetParam()); },
+                [&] { return std::make_unique<RigidReplay>(GetParam(), churn); }, 90, {50}, 40);
 }
 
 TEST_P(SnapshotsOfRigidBodies, GoOnAfterOtherBodiesHaveComeAndGone) {
-  RigidScene scene;
-  auto& ball = scene.shape<btSphereShape>(btScalar(0.3));
-  scene.add(ball, 1, btVector3(0, 9, 0));
-  scene.add(ball, 1, btVector3(1, 9, 0));
-  build(scene);
+  btSphereShape ball(btScalar(0.3));
+  RigidReplay replay(GetParam(), [&](RigidScene& scene) {
+    scene.add(ball, 1, btVector3(0, 9, 0));
+    scene.add(ball, 1, btVector3(1, 9, 0));
+  });
+  RigidScene& scene = replay.scene;
   scene.remove(*scene.bodies.front());  // the last one takes its place in Bullet's lists
-  int frame = 0;
-  while (frame < 30) step(scene, frame++);
-  const Run before = run(scene, frame, 40);
+  std::vector<Frame> frames;
+  for (int f = 0; f < 70; ++f) frames.push_back(run(replay, f));
   btRigidBody& guest = scene.add(ball, 5, btVector3(btScalar(0.3), 2, 0));
   btRigidBody& second = scene.add(ball, 5, btVector3(4, 4, 0));
-  for (int k = 0; k < 20; ++k) step(scene, k);
+  for (int k = 0; k < 20; ++k) replay.frame(k);
   scene.remove(guest);
-  for (int k = 0; k < 5; ++k) step(scene, k);
+  for (int k = 0; k < 5; ++k) replay.frame(k);
   scene.remove(second);
-  expectGoesOnAs(before, scene);
+  expectFollows(replay, frames, 30);
 }
 
 INSTANTIATE_TEST_SUITE_P(, SnapshotsOfRigidBodies,
@@ -132,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(, SnapshotsOfRigidBodies,
 
 TEST(SnapshotsOfRigidWorlds, OfAnEmptyWorldChangeNothing) {
   tetskin::DeformableWorld world;
-  const Snapshot snapshot = saved(world);
+  const Bytes snapshot = saved(world);
   EXPECT_TRUE(world.restore(snapshot.data(), snapshot.size()).ok());
   EXPECT_EQ(saved(world), snapshot);
 }
@@ -144,9 +105,9 @@ TEST(SnapshotsOfRigidWorlds, PutBackWhatTheApplicationHasChanged) {
   scene.addJoints();
   scene.addArm();
   scene.step(20);
-  const Snapshot snapshot = saved(scene.world);
+  const Bytes snapshot = saved(scene.world);
   scene.step(40);
-  const std::vector<btScalar> later = scene.motion();
+  const std::vector<btScalar> later = seen(scene.world);
   ASSERT_TRUE(scene.world.restore(snapshot.data(), snapshot.size()).ok());
   btRigidBody& body = *scene.bodies[5];
   body.setMassProps(7, btVector3(1, 2, 3));
@@ -168,7 +129,7 @@ TEST(SnapshotsOfRigidWorlds, PutBackWhatTheApplicationHasChanged) {
   ASSERT_TRUE(scene.world.restore(snapshot.data(), snapshot.size()).ok());
   EXPECT_EQ(saved(scene.world), snapshot);
   scene.step(40);
-  EXPECT_EQ(scene.motion(), later);
+  EXPECT_EQ(seen(scene.world), later);
 }
 
 TEST(SnapshotsOfRigidWorlds, TellMotionStates) {
@@ -178,7 +139,7 @@ TEST(SnapshotsOfRigidWorlds, TellMotionStates) {
   btDefaultMotionState state;
   scene.bodies[1]->setMotionState(&state);
   scene.step(3);
-  const Snapshot snapshot = saved(scene.world);
+  const Bytes snapshot = saved(scene.world);
   const btVector3 before = state.m_graphicsWorldTrans.getOrigin();
   scene.step(30);
   ASSERT_NE(state.m_graphicsWorldTrans.getOrigin(), before);

@@ -9,6 +9,7 @@
 #include "deformable_test.h"
 #include "support/bars.h"
 #include "support/replays.h"
+#include "support/rigids.h"
 
 namespace tetskin::test {
 namespace {
@@ -34,8 +35,7 @@ constexpr double kFarUp = 50.0;
 /// pinned  at its lower end of x
 std::unique_ptr<Scene> withBar(double height, bool pinned, const SoftBodyOptions& options = {}) {
   auto scene = std::make_unique<Scene>();
-  TetMesh bar = makeBox({8, 2, 2}, {2.0, 0.5, 0.5});
-  for (Eigen::Vector3d& p : bar.nodes) p.y() += height;
+  TetMesh bar = lifted(makeBox({8, 2, 2}, {2.0, 0.5, 0.5}), height);
   scene->bodies.push_back(added(scene->worldOf, bar, options));
   for (int n = 0; pinned && n < scene->soft().m_nodes.size(); ++n) {
     if (scene->soft().m_nodes[n].m_x.x() > 0) continue;
@@ -106,8 +106,7 @@ TEST(SnapshotsOfSoftBodies, OfABodyThatIsWoken) {
 TEST(SnapshotsOfSoftBodies, OfQuadraticTets) {
   const auto make = [] {
     auto scene = std::make_unique<Scene>();
-    TetMesh mesh = latticeCage(6, 1, 1, 0.5);
-    for (Eigen::Vector3d& p : mesh.nodes) p.y() += 0.5;
+    TetMesh mesh = lifted(latticeCage(6, 1, 1, 0.5), 0.5);
     scene->bodies.push_back(
         DeformableBody::add(scene->world(), refineQuadratic(mesh).value(), oneKilogram(SoftBodyOptions())).value());
     return scene;
@@ -137,14 +136,6 @@ TEST(SnapshotsOfSoftBodies, OfBulletsOwnForcesOnAFloor) {
   expectReplays(make, 90, {0, 9, 20, 60});
 }
 
-void expectMismatch(Scene& scene, const Bytes& snapshot, const std::string& named) {
-  const Bytes before = saved(scene);
-  const Status status = restoreSnapshot(scene.world(), snapshot.data(), snapshot.size());
-  EXPECT_EQ(status.code, StatusCode::SnapshotMismatch) << status.message;
-  EXPECT_NE(status.message.find(named), std::string::npos) << status.message;
-  EXPECT_EQ(saved(scene), before);
-}
-
 /// Moving a body by hand turns the tree of its nodes, by which Bullet searches.
 TEST(SnapshotsOfSoftBodies, WhoseTreesHaveChangedAreRefusedWhereBulletSearches) {
   SoftBodyOptions options;
@@ -155,7 +146,7 @@ TEST(SnapshotsOfSoftBodies, WhoseTreesHaveChangedAreRefusedWhereBulletSearches) 
     const Bytes snapshot = saved(*scene);
     scene->soft().rotate(btQuaternion(btVector3(0, 0, 1), 1));
     if (scene == bullets.get()) {
-      expectMismatch(*scene, snapshot, "other trees");
+      expectRefused(scene->world(), snapshot, StatusCode::SnapshotMismatch, "other trees");
     } else {
       restore(*scene, snapshot);
     }
@@ -166,18 +157,14 @@ TEST(SnapshotsOfSoftBodies, WithOtherAnchorsAreRefused) {
   struct Anchored : Scene {
     explicit Anchored(int node) {
       bodies.push_back(added(worldOf, makeBox({8, 2, 2}, {2.0, 0.5, 0.5})));
-      world().addRigidBody(&box);
-      soft().appendDeformableAnchor(node, &box);
+      soft().appendDeformableAnchor(node,
+                                    &rigids.add(rigids.shape<btBoxShape>(btVector3(1, 1, 1)), 1, btVector3(0, 0, 0)));
     }
-    ~Anchored() override {
-      bodies.clear();
-      world().removeRigidBody(&box);
-    }
-    btBoxShape shape{btVector3(1, 1, 1)};
-    btRigidBody box{1, nullptr, &shape, btVector3(1, 1, 1)};
+    ~Anchored() override { bodies.clear(); }
+    Rigids rigids{worldOf};
   };
   Anchored first(0), same(0), other(1);
-  expectMismatch(other, saved(first), "other anchors");
+  expectRefused(other.world(), saved(first), StatusCode::SnapshotMismatch, "other anchors");
   restore(same, saved(first));
 }
 
@@ -211,24 +198,21 @@ TEST(SnapshotsOfSoftBodies, OfSettingsThatTheApplicationChanges) {
 TEST(SnapshotsOfSoftBodies, OfAKinematicBoxThatIsMovedOncePerFrame) {
   struct Moved : Scene {
     Moved() {
+      btRigidBody& box =
+          rigids.add(rigids.shape<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.5), 1)), 0, btVector3(0, 0, 0));
       box.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
       box.setActivationState(DISABLE_DEACTIVATION);
-      place(0);
-      world().addRigidBody(&box);
-      before = [this](int frame) { place(frame); };
+      before = [&box](int frame) {
+        const auto x = btScalar(0.01) * static_cast<btScalar>(frame);
+        box.setWorldTransform(placeAt(btVector3(btScalar(-0.55) + x, btScalar(0.5), 0)));
+      };
+      before(0);
     }
-    ~Moved() override { world().removeRigidBody(&box); }
-    void place(int frame) {
-      const auto x = btScalar(0.01) * static_cast<btScalar>(frame);
-      box.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(-0.55) + x, btScalar(0.5), 0)));
-    }
-    btBoxShape shape{btVector3(btScalar(0.5), btScalar(0.5), 1)};
-    btRigidBody box{0, nullptr, &shape};
+    Rigids rigids{worldOf};
   };
   const auto make = [] {
     auto scene = std::make_unique<Moved>();
-    TetMesh bar = makeBox({8, 2, 2}, {2.0, 0.5, 0.5});
-    for (Eigen::Vector3d& p : bar.nodes) p.y() += 0.05;
+    TetMesh bar = lifted(makeBox({8, 2, 2}, {2.0, 0.5, 0.5}), 0.05);
     scene->bodies.push_back(added(scene->worldOf, bar));
     return scene;
   };

@@ -9,10 +9,8 @@
 #include <array>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::kRounding;
 
 class Skin : public test::SkinTest {};
 
@@ -136,22 +134,6 @@ TEST_F(Skin, WritesIntoTheCallersInterleavedBuffer) {
   }
 }
 
-TEST_F(Skin, OriginIsSubtracted) {
-  std::vector<Eigen::Vector3d> points(mesh.vertexCount());
-  SkinOptions options;
-  options.target = viewOf(points);
-  options.origin = Eigen::Vector3d(10, 20, 30);
-  body->translate(btVector3(10, 20, 30));
-  ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
-  EXPECT_LT((points[3] - mesh.positions[3]).norm(), 16 * kRounding);
-  ASSERT_TRUE(skin.setOrigin(btVector3(9, 20, 30)).ok());
-  ASSERT_EQ(skin.update(), StatusCode::Ok);
-  EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
-  EXPECT_FALSE(skin.setOrigin(btVector3(9, std::numeric_limits<btScalar>::quiet_NaN(), 30)).ok());
-  ASSERT_EQ(skin.update(), StatusCode::Ok);
-  EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
-}
-
 TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
   ASSERT_TRUE(skin.bind(*body, cage, mesh).ok());
   const auto binding = skin.binding();
@@ -174,4 +156,4 @@ TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -8,16 +8,8 @@
 
 #include <cmath>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::added;
-using test::cageAbove;
-using test::lowest;
-using test::rmsSpeed;
-using test::smallCageAbove;
-using test::step;
-using test::TetskinWorld;
 
 TEST(SolverWithOthers, MousePicksBodies) {
   TetskinWorld world;
@@ -111,8 +103,7 @@ TEST(SolverWithOthers, BulletsForcesGainNoEnergyOnElasticBodies) {
     world.deformable().setGravity(btVector3(0, 0, 0));
     SoftBodyOptions options;
     options.youngsModulus = youngsModulus;
-    TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
-    for (Eigen::Vector3d& p : cage.nodes) p.y() += 2;
+    TetMesh cage = lifted(test::latticeCage(4, 4, 4, 0.25), 2);
     const auto body = added(world, cage, options);
     btSoftBody& soft = body->body();
     soft.setActivationState(DISABLE_DEACTIVATION);
@@ -132,4 +123,4 @@ TEST(SolverWithOthers, BulletsForcesGainNoEnergyOnElasticBodies) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -8,24 +8,8 @@
 
 #include <cmath>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::added;
-using test::cageAbove;
-using test::Cloth;
-using test::EmptyWorld;
-using test::lowest;
-using test::rmsSpeed;
-using test::smallCageAbove;
-using test::step;
-using test::TetskinWorld;
-
-btVector3 centreOf(const btSoftBody& body) {
-  btVector3 sum(0, 0, 0);
-  for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_x;
-  return sum / btScalar(body.m_nodes.size());
-}
 
 double largestDifference(const btSoftBody& a, const btSoftBody& b) {
   btScalar maximum = 0;
@@ -111,4 +95,4 @@ TEST(SolverWithOthers, WorldsWithoutProjectionKeepTheirRigidBodies) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -4,36 +4,8 @@
 // Soft bodies and dynamic rigid bodies that push each other, in the library's solver.
 #include "rigid_bodies.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::added;
-using test::ball;
-using test::FlyingBlock;
-using test::forEachSubstep;
-using test::latticeCage;
-using test::momentumOf;
-using test::Rigid;
-using test::step;
-
-TEST(SolverWithRigidBodies, TheyTakeTheMomentumThatTheBodyLoses) {
-  for (const double mass : {0.01, 0.1, 1.0, 10.0, 100.0}) {
-    for (const double aside : {0.0, 0.2}) {
-      FlyingBlock item;
-      Rigid rigid(item.world, ball(), static_cast<btScalar>(mass), btVector3(static_cast<btScalar>(aside), 4, 0));
-      item.body().setVelocity(btVector3(0, -2, 0));
-      const btVector3 before = momentumOf(item.body());
-      double given = 0.0, maximum = 0.0;
-      forEachSubstep(item.world, 240, [&] {
-        given = std::max(given, static_cast<double>(rigid.momentum().length()));
-        maximum =
-            std::max(maximum, static_cast<double>((momentumOf(item.body()) + rigid.momentum() - before).length()));
-      });
-      EXPECT_GT(given, 0.9 * std::min(1.0, mass)) << mass;
-      EXPECT_LT(maximum, 0.01 * 2.0) << mass << " " << aside;
-    }
-  }
-}
 
 TEST(SolverWithRigidBodies, NothingGainsEnergyByAnImpact) {
   for (const double mass : {0.01, 0.1, 1.0, 10.0, 100.0}) {
@@ -55,8 +27,7 @@ TEST(SolverWithRigidBodies, NothingGainsEnergyByAnImpact) {
 
 TEST(SolverWithRigidBodies, TwoBodiesPushOneFromBothSides) {
   FlyingBlock item;
-  TetMesh above = latticeCage(3, 3, 3, 0.3);
-  for (Eigen::Vector3d& p : above.nodes) p += Eigen::Vector3d(-0.45, 2.1, -0.45);
+  TetMesh above = shifted(latticeCage(3, 3, 3, 0.3), Eigen::Vector3d(-0.45, 2.1, -0.45));
   const auto other = added(item.world, above);
   Rigid rigid(item.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
   item.body().setVelocity(btVector3(0, -2, 0));
@@ -88,24 +59,7 @@ TEST(SolverWithRigidBodies, LockedFactorsStayLocked) {
   EXPECT_GT(momentumOf(item.body()).y(), 0);  // the body bounces as if off a wall
 }
 
-/// A solve that knew nothing of the joint would lose the joint's reaction.
-TEST(SolverWithRigidBodies, HangOnTheirJoints) {
-  FlyingBlock item;
-  Rigid rigid(item.world, ball(), btScalar(0.1), btVector3(0, 4, 0));
-  btPoint2PointConstraint joint(*rigid.body, btVector3(0, 0, 0));
-  item.world.deformable().addConstraint(&joint);
-  item.body().setVelocity(btVector3(0, -2, 0));
-  double farthest = 0.0;
-  forEachSubstep(item.world, 120, [&] {
-    const btVector3 away = rigid.body->getWorldTransform().getOrigin() - btVector3(0, 4, 0);
-    farthest = std::max(farthest, static_cast<double>(away.length()));
-  });
-  EXPECT_GT(momentumOf(item.body()).y(), -1.8);  // the two have met
-  EXPECT_LT(farthest, 0.02);
-  item.world.deformable().removeConstraint(&joint);
-}
-
-TEST(SolverWithRigidBodies, LieOnBodiesAndBodiesOnThem) {
+TEST(SolverWithRigidBodies, LieOnBodies) {
   for (const double mass : {0.1, 1.0, 3.0}) {
     FlyingBlock item(0.05);
     item.world.deformable().setGravity(btVector3(0, -10, 0));
@@ -118,17 +72,6 @@ TEST(SolverWithRigidBodies, LieOnBodiesAndBodiesOnThem) {
     EXPECT_GT(height, 0.7) << mass;
     EXPECT_LT(height, 1.1) << mass;
     EXPECT_LT(maximum, 0.002) << mass;
-  }
-  for (const double mass : {1.0, 3.0}) {
-    // The box lies between the body and the floor, which affects where the box moves.
-    FlyingBlock item(0.35);
-    item.world.deformable().setGravity(btVector3(0, -10, 0));
-    Rigid under(item.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.6), btScalar(0.15), btScalar(0.6))),
-                static_cast<btScalar>(mass), btVector3(0, btScalar(0.15), 0));
-    step(item.world, 180);
-    EXPECT_NEAR(under.height(), 0.15, 0.01) << mass;
-    EXPECT_GT(test::lowest(item.body()), 0.28) << mass;
-    EXPECT_LT(test::rmsSpeed(item.body()), 0.02) << mass;
   }
 }
 
@@ -150,4 +93,4 @@ TEST(SolverWithRigidBodies, AHeavyBoxOnAStiffCubeComesToRest) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -6,6 +6,7 @@
 
 #include "bullet/deformable_test.h"
 #include "support/points_within.h"
+#include "support/rigids.h"
 
 #include <tetskin/contact/surface_contact.h>
 
@@ -87,34 +88,18 @@ struct TouchingBody {
   SoftBodySkin skin;
 };
 
-/// A rigid body, which is in a world as long as this object lives.
+/// A rigid body of full friction in a world as long as this object lives.
 class Obstacle {
  public:
   Obstacle(EmptyWorld& world, std::unique_ptr<btCollisionShape> shape, const btTransform& at, btScalar mass = 0)
-      : world_(world), shape_(std::move(shape)) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape_->calculateLocalInertia(mass, inertia);
-    body_ = std::make_unique<btRigidBody>(mass, nullptr, shape_.get(), inertia);
-    body_->setWorldTransform(at);
-    body_->setInterpolationWorldTransform(at);
-    body_->setFriction(1);
-    world.deformable().addRigidBody(body_.get());
+      : rigid_(world, std::move(shape), mass, at) {
+    rigid_->setFriction(1);
   }
-  ~Obstacle() { world_.deformable().removeRigidBody(body_.get()); }
-  Obstacle(const Obstacle&) = delete;
-  Obstacle& operator=(const Obstacle&) = delete;
-
-  btRigidBody& body() { return *body_; }
-  const btCollisionShape& shape() const { return *shape_; }
+  btRigidBody& body() { return *rigid_; }
+  const btCollisionShape& shape() const { return *rigid_.shape; }
 
  private:
-  EmptyWorld& world_;
-  std::unique_ptr<btCollisionShape> shape_;
-  std::unique_ptr<btRigidBody> body_;
+  Rigid rigid_;
 };
-
-inline btTransform placeAt(const btVector3& at, const btQuaternion& turned = btQuaternion::getIdentity()) {
-  return btTransform(turned, at);
-}
 
 }  // namespace tetskin::test

@@ -33,11 +33,7 @@ struct Ball {
     EXPECT_TRUE(made.ok()) << made.status().message;
     return made.value();
   }
-  TetMesh at(const Eigen::Vector3d& offset) const {
-    TetMesh moved = cage;
-    for (Eigen::Vector3d& p : moved.nodes) p += offset;
-    return moved;
-  }
+  TetMesh at(const Eigen::Vector3d& offset) const { return shifted(cage, offset); }
 };
 
 /// Shared, because it takes a while to create.
@@ -102,20 +98,6 @@ inline std::unique_ptr<SoftContacts> contactsIn(EmptyWorld& world, const SoftCon
   return std::move(made).value();
 }
 
-inline btVector3 momentumOf(const btSoftBody& body) {
-  btVector3 sum(0, 0, 0);
-  for (int n = 0; n < body.m_nodes.size(); ++n) {
-    if (body.m_nodes[n].m_im > 0) sum += body.m_nodes[n].m_v / body.m_nodes[n].m_im;
-  }
-  return sum;
-}
-
-inline btVector3 centreOf(const btSoftBody& body) {
-  btVector3 sum(0, 0, 0);
-  for (int n = 0; n < body.m_nodes.size(); ++n) sum += body.m_nodes[n].m_x;
-  return sum / static_cast<btScalar>(body.m_nodes.size());
-}
-
 inline std::unique_ptr<DeformableBody> addBall(EmptyWorld& world, const Eigen::Vector3d& at, double mass = 1.0) {
   SoftBodyOptions options;
   options.mass = mass;
@@ -138,13 +120,9 @@ inline std::vector<btScalar> motionOf(const std::vector<std::unique_ptr<Deformab
 
 /// The largest speed of any node of these bodies, in units per second.
 inline double fastestNode(const std::vector<std::unique_ptr<DeformableBody>>& bodies) {
-  btScalar fastest = 0;
-  for (const auto& body : bodies) {
-    for (int n = 0; n < body->body().m_nodes.size(); ++n) {
-      fastest = std::max(fastest, body->body().m_nodes[n].m_v.length());
-    }
-  }
-  return static_cast<double>(fastest);
+  double fastest = 0;
+  for (const auto& body : bodies) fastest = std::max(fastest, fastestOf(body->body()));
+  return fastest;
 }
 
 /// How deep the deepest vertex of one body lies inside another, found by testing all vertices, all tets and all

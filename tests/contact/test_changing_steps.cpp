@@ -41,14 +41,6 @@ void simulate(EmptyWorld& world, const Steps& steps, double seconds, const std::
   }
 }
 
-double fastestOf(const btSoftBody& body) {
-  double fastest = 0.0;
-  for (int n = 0; n < body.m_nodes.size(); ++n) {
-    fastest = std::max(fastest, static_cast<double>(body.m_nodes[n].m_v.length()));
-  }
-  return fastest;
-}
-
 TEST(ChangingSteps, LeaveABoxAtRestAndAsleep) {
   for (const Pattern& pattern : patterns()) {
     for (const bool bySurface : {true, false}) {

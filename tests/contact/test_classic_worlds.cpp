@@ -16,9 +16,7 @@ namespace {
 using Collisions = btSoftBody::fCollision;
 
 TetMesh cubeAbove(double height) {
-  TetMesh cage = latticeCage(3, 3, 3, 0.3);
-  for (Eigen::Vector3d& p : cage.nodes) p.y() += height;
-  return cage;
+  return lifted(latticeCage(3, 3, 3, 0.3), height);
 }
 
 btScalar lowestOf(const btSoftBody& body) {

@@ -44,8 +44,7 @@ TEST(ContactLifetimes, ABodyAtTheOldAddressIsAnother) {
     body->body.reset();
     // Without surface contact of its own, the new body rests on the floor by its cage, whatever remains of the other
     // body.
-    TetMesh cage = looseCage();
-    for (Eigen::Vector3d& p : cage.nodes) p.y() += 0.52;
+    TetMesh cage = lifted(looseCage(), 0.52);
     const auto plain = added(world, cage);
     step(world, 60);
     EXPECT_GT(lowest(plain->body()), 0.0);
@@ -115,8 +114,7 @@ TEST(ContactLifetimes, ABodyTakenToAnotherWorldIsMetByItsNodesThereAndByItsSurfa
   const auto body = lying(first);
   btSoftBody& soft = body->body->body();
   const TouchingBody other(second, ballMesh(12, 0.35), btVector3(3, btScalar(0.36), 0));
-  std::vector<btVector3> lyingNodes;
-  for (int n = 0; n < soft.m_nodes.size(); ++n) lyingNodes.push_back(soft.m_nodes[n].m_x);
+  const std::vector<btVector3> lyingNodes = nodesOf(soft);
   move(soft, first, second);
   step(second, 10);
   EXPECT_GT(soft.m_nodeRigidContacts.size(), 0);
@@ -215,8 +213,7 @@ TEST(ContactLifetimes, AlgorithmsOfTheApplicationServeBodiesWithoutSurfaceContac
   world.dispatcher.registerCollisionCreateFunc(box, soft, &second);
   const auto touching = lying(world), another = lying(world);
   EXPECT_EQ(first.count + second.count, 0);
-  TetMesh cage = looseCage();
-  for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(3, 0.53, 0);
+  TetMesh cage = shifted(looseCage(), Eigen::Vector3d(3, 0.53, 0));
   const auto plain = added(world, cage);
   step(world, 60);
   EXPECT_EQ(first.count + second.count, 1);

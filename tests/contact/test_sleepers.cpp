@@ -301,8 +301,7 @@ struct SoftPile {
     options.youngsModulus = 3000.0;
     options.margin = 0.002;
     for (int k = 0; k < 2; ++k) {
-      TetMesh cage = plate().cage;
-      for (Eigen::Vector3d& p : cage.nodes) p += at + Eigen::Vector3d(-0.5, 5.01 + 0.125 * k, -0.5);
+      TetMesh cage = shifted(plate().cage, at + Eigen::Vector3d(-0.5, 5.01 + 0.125 * k, -0.5));
       bodies.push_back(added(*world, cage, options));
       EXPECT_TRUE(contacts->add(bodies.back()->body(), plate().shape).ok());
     }

@@ -7,22 +7,20 @@
 #include <vector>
 
 #include "soft_fixtures.h"
+#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using Snapshot = std::vector<unsigned char>;
-
-constexpr int kFrames = 60;
 
 /// Balls and plates that fall into a heap.
-struct SavedHeap {
-  tetskin::DeformableWorld world;
-  std::unique_ptr<SoftContacts> contacts = SoftContacts::add(world).value();
+struct SavedHeap : ReplayedScene {
+  tetskin::DeformableWorld own;
+  std::unique_ptr<SoftContacts> contacts = SoftContacts::add(own).value();
   std::vector<std::unique_ptr<DeformableBody>> bodies;
 
-  explicit SavedHeap(ParallelFor* threads = nullptr) : world(DeformableWorldOptions{btVector3(0, -10, 0), threads}) {
+  explicit SavedHeap(ParallelFor* threads = nullptr) : own(DeformableWorldOptions{btVector3(0, -10, 0), threads}) {
     static const std::shared_ptr<const ContactShape> coarse = ball().makeShape({600, 24});
     add(plate().cage, Vector3d(0, -0.3, 0), 0.0, plate().shape, 1e4, true);
     for (int k = 0; k < 8; ++k) {
@@ -39,74 +37,26 @@ struct SavedHeap {
     options.youngsModulus = stiffness;
     options.margin = 0.002;
     if (held) options.pinned = pinnedIn(Box3(Vector3d::Constant(-9), Vector3d::Constant(9)));
-    bodies.push_back(DeformableBody::add(world, cage, oneKilogram(options)).value());
+    bodies.push_back(DeformableBody::add(own, cage, oneKilogram(options)).value());
     EXPECT_TRUE(contacts->add(bodies.back()->body(), shape).ok());
   }
-  void step() { world.stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240); }
-  Snapshot saved() const {
-    Snapshot bytes(world.save(nullptr, 0).value());
-    const Result<std::size_t> count = world.save(bytes.data(), bytes.size());
-    EXPECT_TRUE(count.ok()) << count.status().message;
-    return bytes;
-  }
-  void restore(const Snapshot& bytes) {
-    const Status status = world.restore(bytes.data(), bytes.size());
-    ASSERT_TRUE(status.ok()) << status.message;
-  }
-  std::vector<btScalar> motion() const { return motionOf(bodies); }
+  btDeformableMultiBodyDynamicsWorld& world() override { return own; }
+  void frame(int) override { own.stepSimulation(btScalar(1) / 240, 1, btScalar(1) / 240); }
 };
 
-/// A run, by frame.
-struct HeapRun {
-  std::vector<std::vector<btScalar>> motions;
-  std::vector<Snapshot> snapshots;
-
-  explicit HeapRun(SavedHeap& heap) {
-    for (int k = 0; k < kFrames; ++k) {
-      snapshots.push_back(heap.saved());
-      heap.step();
-      motions.push_back(heap.motion());
-    }
-  }
-};
-
-void expectToGoOn(SavedHeap& heap, const HeapRun& run, std::size_t from) {
-  heap.restore(run.snapshots[from]);
-  for (std::size_t k = from; k < run.motions.size(); ++k) {
-    const Snapshot saved = heap.saved();
-    ASSERT_TRUE(saved == run.snapshots[k]) << "saved at " << from << ", differs at " << k;
-    heap.step();
-    ASSERT_TRUE(heap.motion() == run.motions[k]) << "saved at " << from << ", differs after " << k;
-  }
-}
-
-TEST(SnapshotsOfSoftContact, GoOnInTheSameWorld) {
-  SavedHeap heap;
-  const HeapRun run(heap);
-  for (const std::size_t from : {0U, 17U, 40U, 55U}) expectToGoOn(heap, run, from);
+TEST(SnapshotsOfSoftContact, GoOnInTheSameWorldAndInANewOneOnOtherThreads) {
+  const auto alone = [] { return std::make_unique<SavedHeap>(); };
+  ThreadPool threads(2);
+  expectReplays(alone, alone, 60, {0, 17, 39, 55});
+  expectReplays(alone, [&] { return std::make_unique<SavedHeap>(&threads); }, 60, {25, 50});
 }
 
 TEST(SnapshotsOfSoftContact, AmongOtherBodiesAreRefusedAndChangeNothing) {
   SavedHeap heap;
-  const Snapshot all = heap.saved();
-  for (int k = 0; k < 5; ++k) heap.step();
+  const Bytes all = saved(heap);
+  for (int k = 0; k < 5; ++k) heap.frame(k);
   heap.contacts->remove(heap.bodies.back()->body());
-  const Snapshot before = heap.saved();
-  const Status refused = heap.world.restore(all.data(), all.size());
-  EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
-  EXPECT_NE(refused.message.find("contacts among other soft bodies were there"), std::string::npos) << refused.message;
-  EXPECT_TRUE(heap.saved() == before);
-}
-
-TEST(SnapshotsOfSoftContact, GoOnInANewWorldOnOtherThreads) {
-  SavedHeap heap;
-  const HeapRun run(heap);
-  ThreadPool threads(2);
-  for (const std::size_t from : {25U, 50U}) {
-    SavedHeap alone, parallel(&threads);
-    expectToGoOn(alone, run, from);
-    expectToGoOn(parallel, run, from);
-  }
+  expectRefused(heap.own, all, StatusCode::SnapshotMismatch, "contacts among other soft bodies were there");
 }
 
 }  // namespace

@@ -16,27 +16,16 @@ class OnBoxes : public ReplayedScene {
  public:
   explicit OnBoxes(ParallelFor* threads = nullptr) {
     world_.bodySolver().setThreads(threads);
-    const btVector3 places[2] = {btVector3(btScalar(-0.35), btScalar(0.21), 0),
-                                 btVector3(btScalar(0.35), btScalar(0.21), 0)};
-    for (int k = 0; k < 2; ++k) {
-      btVector3 inertia;
-      shape_.calculateLocalInertia(btScalar(0.3), inertia);
-      boxes_[k] = std::make_unique<btRigidBody>(btScalar(0.3), nullptr, &shape_, inertia);
-      boxes_[k]->setWorldTransform(btTransform(btMatrix3x3::getIdentity(), places[k]));
-      world().addRigidBody(boxes_[k].get());
-    }
+    auto& box = rigids_.shape<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2)));
+    for (const double x : {-0.35, 0.35}) rigids_.add(box, 0.3, btVector3(btScalar(x), btScalar(0.21), 0));
     ball_ = std::make_unique<TouchingBody>(world_, ballMesh(8, 0.3), btVector3(btScalar(0.05), btScalar(0.8), 0));
-  }
-  ~OnBoxes() override {
-    for (const auto& box : boxes_) world().removeRigidBody(box.get());
   }
   btDeformableMultiBodyDynamicsWorld& world() override { return world_.deformable(); }
   void frame(int) override { step(world_, 1); }
 
  private:
   TetskinWorld world_;
-  btBoxShape shape_{btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2))};
-  std::unique_ptr<btRigidBody> boxes_[2];
+  Rigids rigids_{world_.deformable()};
   std::unique_ptr<TouchingBody> ball_;
 };
 
@@ -60,40 +49,28 @@ class OnKinds : public ReplayedScene {
     for (const int x : {-1, 1}) {
       compound_.addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.1 * x), 0, 0)), &small_);
     }
-    add(*mesh_, 0, btVector3(0, 0, 0));
-    add(hull_, btScalar(0.3), btVector3(btScalar(-0.2), btScalar(0.4), btScalar(0.1)));
-    add(compound_, btScalar(0.3), btVector3(btScalar(0.3), btScalar(0.4), 0));
-    add(small_, 0, btVector3(1, 1, 0)).setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    rigids_.add(*mesh_, 0, btVector3(0, 0, 0));
+    rigids_.add(hull_, 0.3, btVector3(btScalar(-0.2), btScalar(0.4), btScalar(0.1)));
+    rigids_.add(compound_, 0.3, btVector3(btScalar(0.3), btScalar(0.4), 0));
+    rigids_.add(small_, 0, btVector3(1, 1, 0)).setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
     ball_ = std::make_unique<TouchingBody>(world_, ballMesh(8, 0.3), btVector3(btScalar(0.05), btScalar(0.9), 0));
     cage_ = added(world_, smallCageAbove(1.6));
-  }
-  ~OnKinds() override {
-    for (const auto& body : rigid_) world().removeRigidBody(body.get());
   }
   btDeformableMultiBodyDynamicsWorld& world() override { return world_.deformable(); }
   void frame(int number) override {
     const btVector3 at(btSin(btScalar(0.1) * btScalar(number)), btScalar(0.4), btScalar(0.2));
-    rigid_.back()->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+    rigids_.bodies.back()->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
     step(world_, 1);
   }
 
  private:
-  btRigidBody& add(btCollisionShape& shape, btScalar mass, const btVector3& at) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape.calculateLocalInertia(mass, inertia);
-    rigid_.push_back(std::make_unique<btRigidBody>(mass, nullptr, &shape, inertia));
-    rigid_.back()->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
-    world().addRigidBody(rigid_.back().get());
-    return *rigid_.back();
-  }
-
   TetskinWorld world_;
   btTriangleMesh triangles_;
   std::unique_ptr<btBvhTriangleMeshShape> mesh_;
   btConvexHullShape hull_;
   btCompoundShape compound_;
   btBoxShape small_{btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1))};
-  std::vector<std::unique_ptr<btRigidBody>> rigid_;
+  Rigids rigids_{world_.deformable()};
   std::unique_ptr<TouchingBody> ball_;
   std::unique_ptr<DeformableBody> cage_;
 };
@@ -146,14 +123,8 @@ TEST(SnapshotsWithContacts, ClearancesChangeNoBit) {
 
 TEST(SnapshotsWithContacts, OnAnotherNumberOfThreads) {
   ThreadPool threads(2);
-  OnBoxes first, second(&threads);
-  for (int f = 0; f < 30; ++f) first.frame(f);
-  restore(second, saved(first));
-  for (int f = 30; f < 60; ++f) {
-    first.frame(f);
-    second.frame(f);
-    ASSERT_TRUE(haveSameBits(seen(first), seen(second))) << f;
-  }
+  expectReplays([] { return std::make_unique<OnBoxes>(); }, [&] { return std::make_unique<OnBoxes>(&threads); }, 60,
+                {29});
 }
 
 }  // namespace

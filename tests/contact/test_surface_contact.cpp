@@ -112,8 +112,7 @@ TEST(SurfaceContact, FallsAsleepWhereItLies) {
   std::vector<btVector3> before;
   for (int f = 0; f < 400 && soft.isActive(); ++f) {
     if (f == 120) soft.m_sleepingThreshold = 1;  // so that the test need not wait for the last rocking motion to stop
-    before.clear();
-    for (int n = 0; n < soft.m_nodes.size(); ++n) before.push_back(soft.m_nodes[n].m_x);
+    before = nodesOf(soft);
     step(world, 1);
   }
   ASSERT_FALSE(soft.isActive());

@@ -10,9 +10,18 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tetskin::test {
+
+inline TetMesh shifted(TetMesh mesh, const Eigen::Vector3d& by) {
+  for (Eigen::Vector3d& p : mesh.nodes) p += by;
+  return mesh;
+}
+inline TetMesh lifted(TetMesh mesh, double height) {
+  return shifted(std::move(mesh), {0, height, 0});
+}
 
 /// The unit corner tet: nodes at the origin and the three unit points.
 TetMesh singleTet();

@@ -4,13 +4,11 @@
 #include "support/shuffled_threads.h"
 #include "support/smooth_maps.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <cstring>
-#include <memory>
 
 namespace tetskin {
 namespace {

@@ -3,14 +3,11 @@
 #include "support/allocation_count.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/threads/thread_pool.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <ctime>
 #include <set>

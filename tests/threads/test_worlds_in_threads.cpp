@@ -10,7 +10,6 @@
 #include <tetskin/touch/surface_point.h>
 
 #include <atomic>
-#include <functional>
 #include <thread>
 
 namespace tetskin::test {
@@ -47,8 +46,7 @@ class Pair {
   Pair() {
     contacts_ = SoftContacts::add(world.deformable()).value();
     for (int k = 0; k < 2; ++k) {
-      TetMesh cage = model().cage;
-      for (Eigen::Vector3d& p : cage.nodes) p += Eigen::Vector3d(0.1 * k, 0.37 + 0.72 * k, 0);
+      TetMesh cage = shifted(model().cage, Eigen::Vector3d(0.1 * k, 0.37 + 0.72 * k, 0));
       bodies.push_back(added(world, cage));
       touching_.push_back(
           SurfaceContact::add(world.deformable(), bodies[k]->body(), *model().binding, model().mesh).value());

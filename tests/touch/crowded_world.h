@@ -39,8 +39,7 @@ inline const ToyModel& toyModel() {
 /// A soft ball, with surface contact unless Bullet's own force acts on it.
 struct Toy {
   Toy(EmptyWorld& world, const btVector3& at, ForceModel model = ForceModel::Corotated) {
-    TetMesh cage = toyModel().cage;
-    for (Eigen::Vector3d& p : cage.nodes) p += toEigen(at);
+    TetMesh cage = shifted(toyModel().cage, toEigen(at));
     SoftBodyOptions options;
     options.forceModel = model;
     options.youngsModulus = 3000.0;

@@ -131,12 +131,7 @@ struct Crowd {
   /// The speed of the fastest node in the heap.
   double fastest() {
     double maximum = 0;
-    for (std::size_t k = 0; k < 5; ++k) {
-      const btSoftBody& body = bodies[k]->body();
-      for (int n = 0; n < body.m_nodes.size(); ++n) {
-        maximum = std::max(maximum, static_cast<double>(body.m_nodes[n].m_v.length()));
-      }
-    }
+    for (std::size_t k = 0; k < 5; ++k) maximum = std::max(maximum, fastestOf(bodies[k]->body()));
     return maximum;
   }
 };

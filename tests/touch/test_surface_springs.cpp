@@ -164,9 +164,7 @@ TEST(SurfaceSprings, WhoseTargetJumpsNeitherThrowNorTearTheBodyByDefault) {
   for (int s = 0; s < 480; ++s) {
     substep(*world);
     ASSERT_TRUE(isFinite(body.body()));
-    for (int n = 0; n < body.body().m_nodes.size(); ++n) {
-      fastest = std::max(fastest, static_cast<double>(body.body().m_nodes[n].m_v.length()));
-    }
+    fastest = std::max(fastest, fastestOf(body.body()));
     btVector3 low, high;
     body.body().updateBounds();
     body.body().getAabb(low, high);

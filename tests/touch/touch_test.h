@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../bullet/deformable_test.h"
+#include "support/rigids.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/touch/surface_joint.h>
@@ -103,29 +104,10 @@ inline void substep(EmptyWorld& world, double dt = 1.0 / 240) {
   world.deformable().stepSimulation(static_cast<btScalar>(dt), 1, static_cast<btScalar>(dt));
 }
 
-/// A rigid body that is in a world, and is removed from it at the end.
-class RigidBox {
- public:
-  RigidBox(EmptyWorld& world, double mass, const btVector3& at, const btVector3& half = btVector3(0.1, 0.1, 0.1))
-      : world_(world), shape_(half) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape_.calculateLocalInertia(static_cast<btScalar>(mass), inertia);
-    body_ = std::make_unique<btRigidBody>(static_cast<btScalar>(mass), nullptr, &shape_, inertia);
-    const btTransform where(btMatrix3x3::getIdentity(), at);
-    body_->setWorldTransform(where);
-    body_->setInterpolationWorldTransform(where);
-    world_.deformable().addRigidBody(body_.get());
-  }
-  ~RigidBox() { world_.deformable().removeRigidBody(body_.get()); }
-  RigidBox(const RigidBox&) = delete;
-  RigidBox& operator=(const RigidBox&) = delete;
-  btRigidBody& operator*() { return *body_; }
-  btRigidBody* operator->() { return body_.get(); }
-
- private:
-  EmptyWorld& world_;
-  btBoxShape shape_;
-  std::unique_ptr<btRigidBody> body_;
+/// A box in a world as long as this object lives.
+struct RigidBox : Rigid {
+  RigidBox(EmptyWorld& in, double mass, const btVector3& at, const btVector3& half = btVector3(0.1, 0.1, 0.1))
+      : Rigid(in, std::make_unique<btBoxShape>(half), static_cast<btScalar>(mass), at) {}
 };
 
 inline bool isFinite(const btSoftBody& body) {
