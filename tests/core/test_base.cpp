@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/base/median.h>
 
 #include <map>
-#include <random>
 #include <set>
 
 namespace tetskin {

@@ -8,25 +8,17 @@
 #include "support/smooth_maps.h"
 #include "support/two_plates.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/bone_palette.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 
-#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "carried_normals.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::blended;
-using test::Bone;
-using test::bonesFor;
-using test::distances;
-using test::drawnBy;
-using test::normalBy;
 using PointList = test::Points;
 
 /// Of positions in a cage of size 1 that is sent to four times that at most.
@@ -423,4 +415,4 @@ TEST_F(SkinnedMeshes, TakeNoMoreBonesThan16BitsNumber) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

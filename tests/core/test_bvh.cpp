@@ -4,14 +4,10 @@
 // The hierarchy finds what testing all items finds, and it is the same with every standard library.
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/bvh/bvh.h>
 #include <tetskin/core/src/base/mesh/triangle_bvh.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <random>
 #include <set>
 
 namespace tetskin::test {

@@ -3,20 +3,16 @@
 #include "support/odd_meshes.h"
 #include "support/two_plates.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
 #include <limits>
-#include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::platesOfCopies;
-using test::TwoPlates;
 
 void expectFault(const Cage& cage, StatusCode code, const std::string& words) {
   const Status status = validateAttributes(cage);
@@ -312,4 +308,4 @@ TEST(CageLocator, Moves) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -5,21 +5,15 @@
 #include "support/carried_points.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <cmath>
 #include <limits>
 #include <ostream>
-#include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CarriedPoints;
-using test::Points;
 
 struct Crumpling {
   const char* name;
@@ -211,4 +205,4 @@ TEST_P(Crumpled, NormalsStayUnitVectors) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

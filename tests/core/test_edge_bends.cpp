@@ -8,16 +8,13 @@
 
 #include "carried_normals.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/skinning/edge_bends.h>
 
-#include <cmath>
 #include <map>
 #include <numeric>
-#include <random>
 
 namespace tetskin::test {
 namespace {

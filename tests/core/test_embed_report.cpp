@@ -5,7 +5,6 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 
 #include <limits>

@@ -5,13 +5,9 @@
 #include "support/smooth_maps.h"
 #include "support/two_plates.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
-
-#include <cmath>
-#include <random>
 
 namespace tetskin::test {
 namespace {

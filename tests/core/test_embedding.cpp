@@ -3,20 +3,16 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <algorithm>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-
-using test::around;
 
 TEST(Embed, CoincidentVerticesGetIdenticalBitsAndAreEmbeddedOnce) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
@@ -111,4 +107,4 @@ TEST(Embedding, IsDeterministic) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -3,17 +3,12 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/embedding/embedding_data.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <random>
-#include <string>
 
 namespace tetskin {
 namespace {

@@ -4,10 +4,7 @@
 #include "support/smooth_maps.h"
 #include "support/two_plates.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/skinning/gradient_fit.h>
-
-#include <algorithm>
 
 namespace tetskin {
 namespace {

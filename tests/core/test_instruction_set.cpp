@@ -3,12 +3,8 @@
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace tetskin {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // One unit, two instruction sets: as a unity build may join them.
-#include <gtest/gtest.h>
 
 #define TETSKIN_KERNELS first_of_unit
 #include <tetskin/core/src/base/kernels/lanes.h>

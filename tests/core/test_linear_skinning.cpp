@@ -3,7 +3,6 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
 
 #include <limits>

@@ -5,18 +5,15 @@
 #include "support/odd_meshes.h"
 #include "support/two_plates.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/mesh_skin.h>
 
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::platesOfCopies;
-using test::TwoPlates;
 
 void expectRefused(const Cage& cage, const TriangleMesh& mesh, StatusCode code,
                    std::initializer_list<std::string> components) {
@@ -238,4 +235,4 @@ TEST(MappedEmbedding, IsSavedAndLoaded) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

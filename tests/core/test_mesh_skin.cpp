@@ -3,12 +3,10 @@
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <limits>
-#include <memory>
 
 namespace tetskin {
 namespace {

@@ -2,17 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "carried_normals.h"
 
-#include <algorithm>
-
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::angle;
-using test::authoredSphere;
-using test::box;
-using test::Carried;
-using test::cofactors;
-using test::kCentre;
 using Points = std::vector<Eigen::Vector3d>;
 
 class NormalsOnLattices : public testing::TestWithParam<test::LatticeKind> {};
@@ -234,4 +226,4 @@ TEST(RestNormals, AreSmoothAcrossSeams) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -4,11 +4,8 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/skinning/linear_skinning.h>
-
-#include <algorithm>
 
 namespace tetskin {
 namespace {

@@ -3,7 +3,6 @@
 #include "support/allocation_count.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 
 #include <limits>

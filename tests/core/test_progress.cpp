@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/progress.h>
 
-#include <algorithm>
 #include <chrono>
-#include <vector>
 
 namespace tetskin {
 namespace {

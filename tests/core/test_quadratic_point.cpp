@@ -4,10 +4,7 @@
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/exported/quadratic_point.h>
-
-#include <cmath>
 
 namespace tetskin::test {
 namespace {

@@ -4,20 +4,13 @@
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 
-#include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CarriedPoints;
-using test::distances;
-using test::Points;
 
 /// Points in and around the unit cube.
 Points pointsAround(std::size_t count, unsigned seed) {
@@ -390,4 +383,4 @@ TYPED_TEST(QuadraticOutput, IsTheSameInEveryOrderAndStride) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

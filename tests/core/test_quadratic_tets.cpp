@@ -2,18 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <set>
 
 namespace tetskin {

@@ -7,18 +7,10 @@
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <limits>
-#include <random>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::angle;
-using test::authoredSphere;
-using test::box;
-using test::Carried;
-using test::cofactors;
-using test::kCentre;
-using test::kDegrees;
 using Points = std::vector<Eigen::Vector3d>;
 
 TEST(RecomputedNormals, AreThoseOfTheDeformedTriangles) {
@@ -241,4 +233,4 @@ TEST(NormalTopology, EqualRestNormalsMakeNoEdgeWhateverTheAngle) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -7,7 +7,6 @@
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 
 #include <cstring>

@@ -8,19 +8,12 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/search/tolerances.h>
 
-#include <algorithm>
-#include <string>
-#include <vector>
-
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::Points;
 
 constexpr double kAspect = 1e4;
 
@@ -236,4 +229,4 @@ TEST(Slivers, AVertexStaysWithAnotherPartWhereItsOwnIsAllSlivers) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/arithmetic/small_matrix.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <cstring>
-#include <random>
 
 namespace tetskin {
 namespace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/state/state_stream.h>
-
-#include <array>
 
 #include "support/allocation_count.h"
 

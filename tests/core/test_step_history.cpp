@@ -3,11 +3,8 @@
 #include "support/allocation_count.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace tetskin {

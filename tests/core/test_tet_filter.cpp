@@ -2,11 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/core/src/search/tet_filter.h>
 
-#include <algorithm>
 #include <set>
 
 namespace tetskin {

@@ -2,12 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <algorithm>
 #include <limits>
 #include <map>
 #include <set>

@@ -4,23 +4,19 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/weld.h>
 #include <tetskin/core/src/search/tet_search.h>
 
-#include <algorithm>
 #include <limits>
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
 const Box3 kSearchedBox(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
-
-using test::around;
 
 /// Embeds under one rule and compares every vertex with brute force: the tet, the side, the weights and the extremes.
 EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, OutsideRule rule) {
@@ -320,4 +316,4 @@ TEST(Embed, OrientationOfTheTetsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

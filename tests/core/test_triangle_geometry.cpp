@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/triangle_samples.h>
-
-#include <cmath>
 
 namespace tetskin::test {
 namespace {

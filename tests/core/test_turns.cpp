@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/arithmetic/turns.h>
 
-#include <cmath>
 #include <limits>
-#include <random>
 
 namespace tetskin {
 namespace {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
 #include <tetskin/core/types.h>
 
 #include <limits>
-#include <memory>
 #include <set>
 #include <stdexcept>
 

@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "elastic_fixtures.h"
 
-#include <array>
-#include <cmath>
-
 #include "support/odd_meshes.h"
 
 namespace tetskin::test {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <support/bars.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/elastic/vibration_modes.h>
-
-#include <cmath>
 
 namespace tetskin::test {
 namespace {

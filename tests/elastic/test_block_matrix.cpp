@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The matrix of a body, in products with vectors and in sweeps, compared with the same matrix assembled densely.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
 #include "elastic_fixtures.h"

@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Where the blocks of a matrix lie, and from which corners of tets each is summed.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
-#include <vector>
 
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"

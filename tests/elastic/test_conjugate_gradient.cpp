@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The conjugate gradient method for one body that moves freely: what it finds, and when it stops.
-#include <gtest/gtest.h>
 
 #include <utility>
-#include <vector>
 
 #include "gradient_fixtures.h"
 #include "support/shuffled_threads.h"
@@ -83,25 +81,6 @@ TEST(ConjugateGradient, GoesOnWhereItStopped) {
   const VectorXd once = solved({9});
   EXPECT_EQ(solved({5, 4}), once);
   EXPECT_EQ(solved({1, 0, 1, 7}), once);
-}
-
-TEST(ConjugateGradient, HasTheSameBitsOnAnyThreads) {
-  AssembledBody<float> body(latticeCage(120, 7, 7));
-  const VectorXd b = Random(45).vector(3 * body.nodes.size());
-  const auto solved = [&](ParallelFor* threads) {
-    body.toWide(VectorXd::Zero(b.size()), body.matrix.solution());
-    body.toWide(b, body.matrix.residual());
-    ConjugateGradient<float> solver;
-    solver.start({&body.matrix}, SolveLimits(), {}, threads);
-    EXPECT_TRUE(solver.iterate(200, threads));
-    return solutionOf(body);
-  };
-  const VectorXd alone = solved(nullptr);
-  for (const int count : {1, 2}) {
-    ShuffledThreads threads(count);
-    EXPECT_EQ(solved(&threads), alone);
-    EXPECT_GT(threads.runs, 10);  // five per iteration
-  }
 }
 
 TEST(ConjugateGradient, StopsAtWhatIsEnough) {

@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The conjugate gradient method with nodes that are pinned, fixed or resisted.
-#include <gtest/gtest.h>
 
 #include <utility>
-#include <vector>
 
 #include "gradient_fixtures.h"
 

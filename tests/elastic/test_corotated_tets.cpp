@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
-#include <cmath>
 #include <set>
 
 #include "elastic_fixtures.h"
@@ -390,33 +388,6 @@ TYPED_TEST(CorotatedTetsOf, HaveTheForcesOfThePlainFormulas) {
     const Points expected = plainForces(cage, scale, nodes);
     EXPECT_LT(farthest(tets.forces(nodes), expected), 100.0 * this->kEpsilon * largest(expected));
   });
-}
-
-/// Cages with more tets than one thread takes at a time.
-std::vector<Cage> largeCages() {
-  std::vector<Cage> cages{jittered(latticeCage(10, 10, 10), 0.15, 10),
-                          refineQuadratic(jittered(latticeCage(5, 5, 5), 0.15, 10)).value()};
-  cages.push_back(cages[1]);
-  for (int& number : cages[2].quadraticTet) number = number < 500 ? number : -1;
-  return cages;
-}
-
-TYPED_TEST(CorotatedTetsOf, HaveTheSameBitsOnAnyThreads) {
-  for (const Cage& cage : largeCages()) {
-    const Points nodes = scattered(mapped(cage.mesh.nodes, turnBy(20.0, {1, 2, -1}), {1, 2, 3}), 0.1, 11);
-    Tets<TypeParam> alone(cage, variedScale(cage));
-    const Points forces = alone.forces(nodes);
-    const double energy = alone.energy(nodes), turn = alone.tets().meanTurn();
-    for (const int count : {1, 2, 3}) {
-      ShuffledThreads threads(count);
-      Tets<TypeParam> shared(cage, variedScale(cage));
-      EXPECT_EQ(shared.forces(nodes, &threads), forces);
-      EXPECT_EQ(shared.energy(nodes, &threads), energy);
-      EXPECT_EQ(shared.tets().meanTurn(), turn);
-      EXPECT_EQ(threads.runs, 3);  // corners, their sums, and corners again
-      EXPECT_GT(threads.maxTasks, 5u);
-    }
-  }
 }
 
 TYPED_TEST(CorotatedTetsOf, TellByHowMuchTheyHaveTurned) {

@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // A matrix to which blocks of two nodes are added, compared with the same matrix assembled densely.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
-#include <array>
 #include <set>
 #include <utility>
 

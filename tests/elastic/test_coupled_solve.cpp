@@ -2,11 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The conjugate gradient method with additional terms beside its matrices, and over several matrices.
-#include <gtest/gtest.h>
 
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "gradient_fixtures.h"
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <string>
 
 #include "elastic_motion.h"
 #include "support/odd_meshes.h"

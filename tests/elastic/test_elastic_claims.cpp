@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The claims about ElasticBody at their limits: stiff and light, spinning, turned at once, pinned and led.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
 #include <limits>

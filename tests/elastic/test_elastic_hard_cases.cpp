@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
-#include <algorithm>
-#include <functional>
 #include <limits>
 
 #include "elastic_motion.h"

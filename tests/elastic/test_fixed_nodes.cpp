@@ -2,11 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The diagonal blocks of a matrix, and nodes whose blocks are pinned, fixed or resisted.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 
 #include <Eigen/LU>
-#include <algorithm>
 
 #include "elastic_fixtures.h"
 #include "support/odd_meshes.h"

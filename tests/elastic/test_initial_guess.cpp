@@ -2,11 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Where a solve begins, according to the solves before.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/dynamics/initial_guess.h>
 
 #include <limits>
-#include <vector>
 
 #include "gradient_fixtures.h"
 

@@ -2,14 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How the motion of an ElasticBody depends on the length of its steps.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <complex>
-#include <functional>
 
 #include "dense_reference.h"
 #include "elastic_motion.h"

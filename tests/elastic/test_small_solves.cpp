@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/base/small_solves.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
 
 namespace tetskin::elastic_detail {
 namespace {

@@ -2,15 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Of one vibration, whose steps are exact functions of its frequency, of the damping and of the step.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/src/dynamics/time_scheme.h>
 
-#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
 #include <complex>
-#include <vector>
 
 namespace tetskin::test {
 namespace {
