@@ -6,7 +6,6 @@
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/mesh/used_vertices.h>
 
-#include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>

@@ -4,9 +4,6 @@
 
 #include "support/odd_meshes.h"
 
-#include <cmath>
-#include <random>
-
 namespace tetskin::test {
 namespace {
 

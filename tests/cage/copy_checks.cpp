@@ -7,8 +7,6 @@
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/used_vertices.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 

@@ -3,14 +3,11 @@
 #include "cage_checks.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/lattice/cage_joints.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <algorithm>
-#include <random>
 #include <set>
 
 namespace tetskin::test {

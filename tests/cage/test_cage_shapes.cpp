@@ -7,10 +7,6 @@
 #include "copy_checks.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
-
-#include <random>
-
 namespace tetskin::test {
 namespace {
 
@@ -60,93 +56,14 @@ void expectWholeCages(const TriangleMesh& mesh) {
 }
 
 TriangleMesh singleTriangle() {
-  TriangleMesh mesh;
-  mesh.positions = {{0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}, {0.3, 0.8, 0.4}};
-  mesh.triangles = {{0, 1, 2}};
-  return mesh;
+  return {{{0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}, {0.3, 0.8, 0.4}}, {{0, 1, 2}}, {}, {}, {}, {}};
 }
 
-TEST(CageShapes, Sphere) {
-  expectWholeCages(unitSphere(24));
+TriangleMesh line() {
+  return {{{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}}, {{0, 1, 2}, {0, 0, 2}}, {}, {}, {}, {}};
 }
 
-TEST(CageShapes, Torus) {
-  expectWholeCages(torusMesh(32));
-}
-
-TEST(CageShapes, BoxOfTwelveTriangles) {
-  expectWholeCages(boxMesh({1.0, 1.0, 1.0}));
-}
-
-TEST(CageShapes, FlatBox) {
-  expectWholeCages(boxMesh({1.0, 1.0, 0.01}));
-}
-
-TEST(CageShapes, ThinRod) {
-  expectWholeCages(boxMesh({100.0, 1.0, 1.0}));
-}
-
-TEST(CageShapes, FlatSheet) {
-  expectWholeCages(sheetMesh(20));
-}
-
-TEST(CageShapes, SheetOfTwoTriangles) {
-  expectWholeCages(sheetMesh(1));
-}
-
-TEST(CageShapes, SingleTriangle) {
-  expectWholeCages(singleTriangle());
-}
-
-TEST(CageShapes, Line) {
-  TriangleMesh mesh;
-  mesh.positions = {{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}};
-  mesh.triangles = {{0, 1, 2}, {0, 0, 2}};
-  expectCages(mesh);
-}
-
-TEST(CageShapes, OpenHemisphere) {
-  expectCages(openSphereMesh(16, kPi / 2.0));
-}
-
-TEST(CageShapes, TwoSpheresApart) {
-  expectCages(joined(unitSphere(16), sphere(16, 0.5, {3.0, 0.2, 0.1})));
-}
-
-TEST(CageShapes, TwoSpheresOverlapping) {
-  expectCages(joined(unitSphere(16), sphere(16, 0.8, {0.9, 0.1, 0.2})));
-}
-
-TEST(CageShapes, TwoSpheresTouchingInAPoint) {
-  expectCages(joined(unitSphere(16), sphere(16, 1.0, {2.0, 0.0, 0.0})));
-}
-
-TEST(CageShapes, InvertedSphere) {
-  expectCages(invertedMesh(unitSphere(16)));
-}
-
-TEST(CageShapes, DoubledFaces) {
-  expectWholeCages(joined(unitSphere(16), unitSphere(16)));
-  expectWholeCages(joined(unitSphere(16), invertedMesh(unitSphere(16))));
-}
-
-TEST(CageShapes, RandomOrientation) {
-  expectCages(shuffledOrientation(unitSphere(16)));
-}
-
-TEST(CageShapes, UnweldedSoupOfRandomOrientation) {
-  expectCages(shuffledOrientation(unwelded(figurineMesh(16))));
-}
-
-TEST(CageShapes, FinnedSphere) {
-  expectCages(finnedSphereMesh());
-}
-
-TEST(CageShapes, Figurine) {
-  expectCages(figurineMesh(40));
-}
-
-TEST(CageShapes, ScatteredTriangles) {
+TriangleMesh scatteredTriangles() {
   TriangleMesh mesh;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -157,10 +74,10 @@ TEST(CageShapes, ScatteredTriangles) {
     }
     mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
-  expectCages(mesh);
+  return mesh;
 }
 
-TEST(CageShapes, DegenerateTrianglesAmongGoodOnes) {
+TriangleMesh degenerateTrianglesAmongGoodOnes() {
   TriangleMesh mesh = unitSphere(16);
   for (int v = 2; v < 100; ++v) {
     mesh.triangles.push_back({v, v, v + 1});
@@ -168,19 +85,85 @@ TEST(CageShapes, DegenerateTrianglesAmongGoodOnes) {
   }
   mesh.positions.push_back(0.5 * (mesh.positions[0] + mesh.positions[1]));
   mesh.triangles.push_back({0, static_cast<int>(mesh.positions.size()) - 1, 1});
-  expectCages(mesh);
+  return mesh;
 }
 
-TEST(CageShapes, VerticesOnLatticeFriendlyCoordinates) {
+TriangleMesh verticesOnLatticeFriendlyCoordinates() {
   TriangleMesh mesh;
   for (int x = 0; x < 8; ++x) {
     for (int y = 0; y < 8; ++y)
       mesh = joined(mesh, transformed(boxMesh({1, 1, 1}), 1.0, Eigen::Vector3d(x, y, (x + y) % 3)));
   }
-  expectCages(mesh);
+  return mesh;
 }
 
-TEST(CageShapes, AnyUnitAndPlace) {
+enum class Cages { Whole, Any };
+struct ShapeCase {
+  const char* name;
+  Cages cages;
+  bool many;  ///< also with kMany tets
+  TriangleMesh (*mesh)();
+};
+const ShapeCase kShapes[] = {
+    {"Sphere", Cages::Whole, true, [] { return unitSphere(24); }},
+    {"Torus", Cages::Whole, false, [] { return torusMesh(32); }},
+    {"BoxOfTwelveTriangles", Cages::Whole, true,
+     [] {
+       return boxMesh({1.0, 1.0, 1.0});
+     }},
+    {"FlatBox", Cages::Whole, true,
+     [] {
+       return boxMesh({1.0, 1.0, 0.01});
+     }},
+    {"ThinRod", Cages::Whole, true,
+     [] {
+       return boxMesh({100.0, 1.0, 1.0});
+     }},
+    {"FlatSheet", Cages::Whole, true, [] { return sheetMesh(20); }},
+    {"SheetOfTwoTriangles", Cages::Whole, false, [] { return sheetMesh(1); }},
+    {"SingleTriangle", Cages::Whole, false, singleTriangle},
+    {"DoubledFaces", Cages::Whole, false, [] { return joined(unitSphere(16), unitSphere(16)); }},
+    {"DoubledInvertedFaces", Cages::Whole, false, [] { return joined(unitSphere(16), invertedMesh(unitSphere(16))); }},
+    {"Line", Cages::Any, false, line},
+    {"OpenHemisphere", Cages::Any, false, [] { return openSphereMesh(16, kPi / 2.0); }},
+    {"TwoSpheresApart", Cages::Any, false,
+     [] {
+       return joined(unitSphere(16), sphere(16, 0.5, {3.0, 0.2, 0.1}));
+     }},
+    {"SpheresOverlapping", Cages::Any, false,
+     [] {
+       return joined(unitSphere(16), sphere(16, 0.8, {0.9, 0.1, 0.2}));
+     }},
+    {"SpheresTouching", Cages::Any, false,
+     [] {
+       return joined(unitSphere(16), sphere(16, 1.0, {2.0, 0.0, 0.0}));
+     }},
+    {"InvertedSphere", Cages::Any, false, [] { return invertedMesh(unitSphere(16)); }},
+    {"RandomOrientation", Cages::Any, false, [] { return shuffledOrientation(unitSphere(16)); }},
+    {"UnweldedSoup", Cages::Any, false, [] { return shuffledOrientation(unwelded(figurineMesh(16))); }},
+    {"FinnedSphere", Cages::Any, true, finnedSphereMesh},
+    {"Figurine", Cages::Any, true, [] { return figurineMesh(40); }},
+    {"ScatteredTriangles", Cages::Any, false, scatteredTriangles},
+    {"DegenerateTriangles", Cages::Any, false, degenerateTrianglesAmongGoodOnes},
+    {"LatticeFriendlyCoordinates", Cages::Any, false, verticesOnLatticeFriendlyCoordinates},
+};
+void PrintTo(const ShapeCase& shape, std::ostream* out) {
+  *out << shape.name;
+}
+
+class CageShapes : public testing::TestWithParam<ShapeCase> {};
+
+TEST_P(CageShapes, HaveSoundCages) {
+  const TriangleMesh mesh = GetParam().mesh();
+  GetParam().cages == Cages::Whole ? expectWholeCages(mesh) : expectCages(mesh);
+  if (GetParam().many) {
+    EXPECT_EQ(buildFault(mesh, kMany), kNoFault);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, CageShapes, testing::ValuesIn(kShapes), [](const auto& one) { return one.param.name; });
+
+TEST(CageShapesOf, AnyUnitAndPlace) {
   const TriangleMesh mesh = figurineMesh(16);
   for (const double scale : {1e-3, 1.0, 1e3}) {
     EXPECT_EQ(buildFault(transformed(mesh, scale, Eigen::Vector3d::Zero()), 1000), kNoFault) << scale;
@@ -188,34 +171,6 @@ TEST(CageShapes, AnyUnitAndPlace) {
   }
   EXPECT_EQ(buildFault(transformed(mesh, 1e-20, Eigen::Vector3d::Zero()), 1000), kNoFault);
   EXPECT_EQ(buildFault(transformed(mesh, 1e17, Eigen::Vector3d::Zero()), 1000), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, Sphere) {
-  EXPECT_EQ(buildFault(unitSphere(24), kMany), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, BoxOfTwelveTriangles) {
-  EXPECT_EQ(buildFault(boxMesh({1.0, 1.0, 1.0}), kMany), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, FlatBox) {
-  EXPECT_EQ(buildFault(boxMesh({1.0, 1.0, 0.01}), kMany), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, ThinRod) {
-  EXPECT_EQ(buildFault(boxMesh({100.0, 1.0, 1.0}), kMany), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, FlatSheet) {
-  EXPECT_EQ(buildFault(sheetMesh(20), kMany), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, FinnedSphere) {
-  EXPECT_EQ(buildFault(finnedSphereMesh(), kMany), kNoFault);
-}
-
-TEST(CageShapesOfManyTets, Figurine) {
-  EXPECT_EQ(buildFault(figurineMesh(40), kMany), kNoFault);
 }
 
 }  // namespace

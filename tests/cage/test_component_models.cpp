@@ -4,9 +4,6 @@
 // Whether the models have the properties that the tests of cages assume.
 #include "support/component_models.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <limits>
 
 #include "cage_models.h"

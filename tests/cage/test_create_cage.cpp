@@ -9,14 +9,10 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/core/embedding.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <random>
 
 namespace tetskin::test {
 namespace {

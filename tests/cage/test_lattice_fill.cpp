@@ -5,14 +5,10 @@
 #include "cage_models.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
 #include <tetskin/cage/src/lattice/inside_fill.h>
 #include <tetskin/cage/src/lattice/surface_cover.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace tetskin::test {
 namespace {

@@ -5,11 +5,6 @@
 #include "cage_checks.h"
 #include "cage_models.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 namespace tetskin::test {
 namespace {
 

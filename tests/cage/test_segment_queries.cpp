@@ -5,11 +5,9 @@
 // test few.
 #include "cage_models.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/cage/src/split/segment_queries.h>
 
 #include <numeric>
-#include <random>
 
 namespace tetskin::test {
 namespace {

@@ -8,11 +8,7 @@
 #include "copy_checks.h"
 #include "support/component_models.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
-
-#include <cmath>
-#include <random>
 
 namespace tetskin::test {
 namespace {

@@ -8,10 +8,6 @@
 #include "support/component_models.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
-
-#include <random>
-
 namespace tetskin::test {
 namespace {
 

@@ -3,7 +3,6 @@
 #include "cage_models.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/cage/src/surface/surface.h>
 #include <tetskin/core/src/base/mesh/winding_tree.h>
 

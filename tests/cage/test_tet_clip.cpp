@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/cage/src/split/tet_clip.h>
-
-#include <algorithm>
-#include <random>
 
 namespace tetskin::test {
 namespace {

@@ -3,7 +3,6 @@
 #include "cage_models.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/cage/src/split/tet_clip.h>
 #include <tetskin/cage/src/split/tet_pieces.h>
 
