@@ -2,10 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "glb_model.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>

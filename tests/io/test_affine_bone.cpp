@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/io/src/animation/affine_bone.h>
-
-#include <random>
 
 namespace tetskin::io {
 namespace {

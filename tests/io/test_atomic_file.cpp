@@ -3,7 +3,6 @@
 #include "full_disk.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/src/text/atomic_file.h>
 
 #include <filesystem>

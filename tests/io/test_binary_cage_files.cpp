@@ -3,7 +3,6 @@
 #include "cage_texts.h"
 #include "raw_bytes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 #include <cstdint>

@@ -5,11 +5,9 @@
 
 #include "cage_texts.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/io/files.h>
 
-#include <functional>
 #include <limits>
 
 namespace tetskin::test {

@@ -5,10 +5,7 @@
 #include "temp_folder.h"
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
-
-#include <memory>
 
 namespace tetskin::test {
 namespace {

@@ -4,7 +4,6 @@
 #include "support/odd_meshes.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 namespace tetskin::test {

@@ -6,14 +6,11 @@
 #include "support/smooth_maps.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/io/animation.h>
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
-#include <random>
 
 namespace tetskin::test {
 namespace {

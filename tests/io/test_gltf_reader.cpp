@@ -4,11 +4,9 @@
 #include "raw_bytes.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 #include <filesystem>
-#include <random>
 
 namespace tetskin::test {
 namespace {

@@ -6,12 +6,9 @@
 
 #include "cage_texts.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/quadratic_assembly.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 
-#include <algorithm>
-#include <functional>
 #include <sstream>
 
 namespace tetskin::test {

@@ -3,7 +3,6 @@
 #include "loaded_texts.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 namespace tetskin::test {

@@ -2,11 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 
-#include <cmath>
 #include <filesystem>
 
 namespace tetskin::test {

@@ -3,7 +3,6 @@
 #include "full_disk.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/animation.h>
 
 #include <cstring>

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "loaded_texts.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/src/text/binary_numbers.h>
 

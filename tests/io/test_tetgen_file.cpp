@@ -3,10 +3,7 @@
 #include "loaded_texts.h"
 #include "temp_folder.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
-
-#include <algorithm>
 
 namespace tetskin::test {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/io/src/text/number_text.h>
 #include <tetskin/io/src/text/text_scanner.h>
 
-#include <cmath>
 #include <cstring>
-#include <random>
-#include <string>
 
 namespace tetskin::io {
 namespace {

@@ -3,10 +3,8 @@
 #include "loaded_texts.h"
 #include "raw_bytes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <numeric>
