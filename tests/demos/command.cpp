@@ -2,13 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "command.h"
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace tetskin::test {
@@ -77,6 +76,11 @@ std::vector<std::array<double, 3>> objPositions(const std::string& text) {
     numbers >> p[0] >> p[1] >> p[2];
   }
   return positions;
+}
+
+std::vector<std::string> words(const std::string& line) {
+  std::istringstream in(line);
+  return {std::istream_iterator<std::string>(in), {}};
 }
 
 void expectRefused(const CommandResult& result, const std::string& word) {

@@ -40,6 +40,9 @@ class CommandFolder {
   std::filesystem::path folder_;
 };
 
+/// The arguments of a command line.
+std::vector<std::string> words(const std::string& line);
+
 /// Expects exit status 2 and one line that names what is wrong.
 void expectRefused(const CommandResult& result, const std::string& word);
 

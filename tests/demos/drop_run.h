@@ -39,13 +39,6 @@ class DropRun : public testing::Test {
  protected:
   CommandResult drop(std::vector<std::string> arguments) const { return folder.run(TETSKIN_DROP, arguments); }
 
-  /// Expects exit status 2, one line on standard error that mentions the words, and no files written.
-  void expectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
-    const CommandResult result = drop(arguments);
-    for (const std::string& word : words) test::expectRefused(result, word);
-    EXPECT_FALSE(folder.exists("out"));
-  }
-
   CommandFolder folder;
 };
 

@@ -7,7 +7,6 @@
 #include <EGL/eglext.h>
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
@@ -15,11 +14,8 @@
 #include "moved_model.h"
 #include "recipes/bones_gl.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::BoneKind;
-using test::MovedModel;
 
 /// A kind of OpenGL.
 struct Api {
@@ -175,4 +171,4 @@ TEST(BonesInOpenGl, AreDrawnWhereTheSkinHasThem) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

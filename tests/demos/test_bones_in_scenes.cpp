@@ -7,9 +7,6 @@
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "scenes/player.h"
 #include "scenes/table.h"
 

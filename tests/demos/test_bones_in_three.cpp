@@ -2,17 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The recipe for three.js, run in a browser.
-#include <gtest/gtest.h>
 
 #include "browser.h"
 #include "moved_model.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::BoneKind;
-using test::CommandFolder;
-using test::MovedModel;
 
 template <class Values>
 nlohmann::json flat(const Values& values) {
@@ -76,4 +71,4 @@ TEST(BonesInThree, AreDrawnWhereTheSkinHasThem) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -2,11 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/deepest_vertex.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/triangle_geometry.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "scenes/bar.h"
 

@@ -1,28 +1,22 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/core/mesh_skin.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
 
-#include <cmath>
 #include <sstream>
 
 #include "deform_run.h"
 #include "support/odd_meshes.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::CommandFolder;
-using test::CommandResult;
-using test::Map;
-using test::still;
 
-class Deform : public test::DeformRun {};
+class Deform : public DeformRun {};
 
 /// Two tets on either side of a triangle, the second of them inside out, and a triangle that sticks out of the first
 /// tet.
@@ -78,16 +72,6 @@ TEST_F(Deform, TakesTetsOfSecondOrderAsTheyAreDeformed) {
   }
 }
 
-TEST_F(Deform, KeepsTheInputsFacesTextureCoordinatesAndGroups) {
-  writeTwoTets(folder);
-  const std::string text =
-      "# mine\nv 0.125 0.125 0.25\nv 0.25 0.125 0.25\nv 0.25 0.25 0.25\nv 0.125 0.25 0.25\nvt 0 0\nvt 1 1\n"
-      "g plate\nusemtl red\nf 1/1 2/2 3/1 4/2\ng half\nf 1/1 2/2 4/1\n";
-  folder.write("m.obj", text);
-  ASSERT_EQ(deform().status, 0);
-  EXPECT_EQ(folder.read("o.obj"), text);
-}
-
 TEST_F(Deform, WritesNormalsIfAskedFor) {
   writeTwoTets(folder);
   for (const char* normals : {"transformed", "recomputed"}) {
@@ -108,35 +92,5 @@ TEST_F(Deform, KeepsTheDigitsOfASurfaceFarOut) {
   EXPECT_NEAR(moved[2][0], 1e6 - 0.125, 1e-6);
 }
 
-TEST_F(Deform, RefusesBadInput) {
-  writeTwoTets(folder);
-  folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
-  folder.write("large.obj", "v 100 0 0\nv 300 0 0\nv 100 100 0\nf 1 2 3\n");
-  folder.write("cut.vtk", folder.read("rest.vtk").substr(0, 150));
-  expectRefused(with({"--mesh", "nowhere.obj"}), {"nowhere.obj"});
-  expectRefused(with({"--mesh", "nan.obj"}), {"nan.obj:2"});
-  expectRefused(with({"--mesh", "large.obj"}), {"large.obj", "rest.vtk", "units"});
-  expectRefused(with({"--cage", "nowhere.vtk"}), {"nowhere.vtk"});
-  expectRefused(with({"--cage", "cut.vtk"}), {"cut.vtk"});
-  expectRefused(with({"--deformed", "nowhere.vtk"}), {"nowhere.vtk"});
-  expectRefused(with({"--deformed", "cut.vtk"}), {"cut.vtk"});
-  expectRefused(with({"-o", "o.ply"}), {"o.ply", ".obj"});
-  expectRefused(with({"-o", "no/such/o.obj"}), {"no/such/o.obj"});
-  expectRefused(with({"--max-distance", "0.05"}), {"m.obj", "vertex 2"});
-  expectRefused({"--mesh", "m.obj", "--cage", "rest.vtk", "-o", "o.obj"}, {"--deformed"});
-}
-
-TEST_F(Deform, RefusesADeformedCageOfOtherCounts) {
-  writeTwoTets(folder);
-  TetMesh other = loadTetMesh(folder.path("rest.vtk")).value();
-  other.nodes.emplace_back(5, 5, 5);
-  ASSERT_TRUE(saveTetMesh(other, folder.path("more.vtk")).ok());
-  other.nodes.pop_back();
-  other.tets.pop_back();
-  ASSERT_TRUE(saveTetMesh(other, folder.path("fewer.vtk")).ok());
-  expectRefused(with({"--deformed", "more.vtk"}), {"more.vtk", "6 nodes", "rest.vtk has 5", "same order"});
-  expectRefused(with({"--deformed", "fewer.vtk"}), {"fewer.vtk", "1 tets", "has 2"});
-}
-
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

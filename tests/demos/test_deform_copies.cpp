@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/io/files.h>
 #include <tetskin/io/obj_sequence.h>
@@ -10,14 +9,12 @@
 #include "deform_run.h"
 #include "support/two_plates.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::CommandFolder;
-using test::CommandResult;
 
-class DeformCopies : public test::DeformRun {};
+class DeformCopies : public DeformRun {};
 
 /// Writes m.obj, two plates, and rest.vtk, their cage of duplicate elements.
 test::TwoPlates writePlates(const CommandFolder& folder) {
@@ -91,4 +88,4 @@ TEST_F(DeformCopies, RefusesTheCageOfAnotherMesh) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 #include "command.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
 
 TEST(Drag, TheSerpentIsPickedSwungHungAndPushed) {
   const CommandFolder folder;
@@ -48,4 +44,4 @@ TEST(Drag, TheSerpentIsPickedWhereAHornEndsInOneVertex) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -2,20 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The folder of frames: its contents, its size, and what is announced before it is written.
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
 
 #include <filesystem>
 
 #include "drop_run.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::boxObj;
-using test::CommandResult;
-
-class DropFrames : public test::DropRun {};
+class DropFrames : public DropRun {};
 
 TEST_F(DropFrames, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
   folder.write("box.obj", boxObj());
@@ -29,7 +25,7 @@ TEST_F(DropFrames, LeavesNoFrameOfALongerRunAndEveryFileThatIsNotItsOwn) {
   folder.write("kept.obj", "mine");
   folder.write("o/.tetskin_frames", folder.read("o/.tetskin_frames") + "../kept.obj\nnotes.txt\ncage_old.vtk\n\n.\n");
   folder.write("o/frame_0100.obj", "mine");
-  test::expectRefused(run({"5", "--every", "2"}), "frame_0100.obj");
+  expectRefused(run({"5", "--every", "2"}), "frame_0100.obj");
   EXPECT_EQ(folder.read("o/frame_0100.obj"), "mine");
   EXPECT_TRUE(folder.exists("o/frame_0007.obj")) << "what is refused replaces nothing";
   std::filesystem::remove(folder.path("o/frame_0100.obj"));
@@ -66,7 +62,7 @@ TEST_F(DropFrames, SaysHowMuchItWritesBeforeItDoes) {
 
 TEST_F(DropFrames, RefusesMoreThanTheDiskHasRoomFor) {
   const CommandResult result = drop({"--tets", "60", "--triangles", "300000", "--frames", "1000000", "--out", "o"});
-  test::expectRefused(result, "--every");
+  expectRefused(result, "--every");
   EXPECT_NE(result.err.find("o: 1000000 frames take about "), std::string::npos) << result.err;
   EXPECT_EQ(result.out, "") << "no cage is built for it";
   EXPECT_FALSE(folder.exists("o"));
@@ -91,4 +87,4 @@ TEST_F(DropFrames, ColoursItsOwnModelsAndLeavesOthersTheirMaterials) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

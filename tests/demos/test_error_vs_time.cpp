@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -10,18 +8,10 @@
 #include "report/cage_kind.h"
 #include "scenes/table.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::CommandResult;
-using test::expectRefused;
-using test::number;
-using test::overall;
-using test::rowsOf;
-using test::sceneOf;
-using test::usualRowsOf;
-
-class ErrorVsTime : public test::ErrorVsTimeRun {};
+class ErrorVsTime : public ErrorVsTimeRun {};
 
 /// The figures that the report promises, from one quick run of everything.
 TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
@@ -100,10 +90,11 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
 
 /// Options for cages of one size in some numbers of substeps, in a scene with contact.
 std::vector<std::string> inSubsteps(const std::string& substeps, const std::string& reference) {
-  std::vector<std::string> all = {"--quick", "--quiet", "--scenes", "drop", "--tets", "300", "--out", "out"};
-  all.insert(all.end(), {"--reference-tets", "1000", "--triangles", "2000", "--interpolation", "linear"});
-  all.insert(all.end(), {"--no-reduction", "--substeps", substeps, "--reference-substeps", reference});
-  return all;
+  return test::words(
+      "--quick --quiet --scenes drop --tets 300 --out out --reference-tets 1000 --triangles 2000 --interpolation "
+      "linear "
+      "--no-reduction --substeps " +
+      substeps + " --reference-substeps " + reference);
 }
 
 TEST_F(ErrorVsTime, ErrorsInTimeVanishAtTheReferencesSubsteps) {
@@ -177,17 +168,6 @@ TEST_F(ErrorVsTime, WritesTheSameRowsAsCsvJsonAndColouredMesh) {
   EXPECT_NE(ply.find("element vertex " + std::to_string(json.at("vertices").get<int>())), std::string::npos);
 }
 
-TEST_F(ErrorVsTime, ComparesWithReferencesOfBothForces) {
-  ASSERT_EQ(run(small("sag", {"--no-calibration", "--no-reduction"})).status, 0);
-  const auto scene = folder.json("out/error_vs_time.json").at("scenes").at(0);
-  EXPECT_EQ(scene.at("integrator"), "tetskin");
-  const auto references = rowsOf(scene, "reference");
-  ASSERT_EQ(references.size(), 3u);
-  EXPECT_EQ(scene.at("rows").at(0).at("integrator"), "tetskin");
-  EXPECT_EQ(scene.at("rows").at(1).at("integrator"), "tetskin");
-  EXPECT_EQ(scene.at("rows").at(2).at("integrator"), "explicit");
-}
-
 TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
   folder.write("box.obj",
                "v 0 0 0\nv 400 0 0\nv 400 900 0\nv 0 900 0\nv 0 0 300\nv 400 0 300\nv 400 900 300\nv 0 900 300\n"
@@ -201,22 +181,5 @@ TEST_F(ErrorVsTime, TakesAMeshOfTheUsersInItsOwnUnit) {
               std::sqrt(400.0 * 400 + 900 * 900 + 300 * 300), 1e-6);
 }
 
-TEST_F(ErrorVsTime, RefusesBadInput) {
-  expectRefused(run({"--mesh", "nowhere.obj"}), "nowhere.obj");
-  for (const scenes::SceneEntry& entry : scenes::sceneTable()) expectRefused(run({"--scenes", "fly"}), entry.name);
-  expectRefused(run({"--tets", "0"}), "--tets");
-  expectRefused(run({"--tets", "3000", "--reference-tets", "3000"}), "reference");
-  expectRefused(run({"--substeps", "0"}), "--substeps");
-  expectRefused(run({"--substeps", "4,128"}), "no more substeps than the reference, which has 64");
-  expectRefused(run({"--target-error", "-1"}), "--target-error");
-  expectRefused(run({"--full", "--quick"}), "--full");
-  for (const report::CageKind kind : report::kCageKinds) {
-    expectRefused(run({"--cages", "same,solid"}), nameOf(kind));
-  }
-  expectRefused(run({"--cages", "calibrated", "--no-calibration"}), "--no-calibration");
-  folder.write("file", "");
-  expectRefused(run({"--quick", "--out", "file"}), "file");
-}
-
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

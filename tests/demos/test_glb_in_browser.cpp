@@ -2,16 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The GLB of a run as three.js loads and plays it, against the OBJ frames.
-#include <gtest/gtest.h>
 
 #include "browser.h"
 #include "view/view_data.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
 
 std::string pageOf(const CommandFolder& folder, const std::string& glb) {
   std::string page = "<!DOCTYPE html><html><body>\n";
@@ -48,4 +44,4 @@ TEST(GlbInBrowser, PlaysWhatTheFramesHave) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

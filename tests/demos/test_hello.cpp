@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 
 #include "command.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
 
 TEST(Hello, RunsWithoutAnyFile) {
   const CommandFolder folder;
@@ -33,4 +29,4 @@ TEST(Hello, LinksOnlyWhatItUses) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 
 #include "command.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
-using test::expectRefused;
-using test::figuresOf;
 
 class Measure : public testing::Test {
  protected:
@@ -184,13 +177,5 @@ TEST_F(Measure, LongCasesComeToRest) {
   EXPECT_GT(valueOf(cases[0], "lowest"), -0.02);
 }
 
-TEST_F(Measure, RefusesWhatItDoesNotKnow) {
-  expectRefused(measure({"--only", "flying"}), "flying");
-  expectRefused(measure({"--group", "stress", "--elasticity", "tetskin", "--only", "mesh/"}), "mesh/");
-  expectRefused(measure({"--elasticity", "bullet", "--contact", "surface"}), "--contact surface");
-  folder.write("other.json", "{\"a\": 1}");
-  expectRefused(measure({"--before", "other.json", "--only", "thin"}), "other.json");
-}
-
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

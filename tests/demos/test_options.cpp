@@ -3,9 +3,7 @@
 //
 // What the programs' command lines have in common, tested for each program.
 #include <LinearMath/btScalar.h>
-#include <gtest/gtest.h>
 
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -14,12 +12,8 @@
 
 #include "command.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
-using test::expectRefused;
 
 using Arguments = std::vector<std::string>;
 
@@ -72,12 +66,6 @@ TEST_F(Options, ValuesThatMakeNoSenseAreRefused) {
   expectRefusal(kDrop, {"--model", "dragon"}, "--model");
   expectRefusal(kDrop, {"--interpolation", "cubic"}, "quadratic");
   expectRefusal(kDrop, {"--mehs", "x.obj"}, "--mehs");
-}
-
-TEST_F(Options, AFileAndWhatIsMadeWithoutItExcludeEachOther) {
-  expectRefusal(kDrop, {"--tets", "10", "--cage", "c.vtk"}, "excludes --");
-  expectRefusal(kDrop, {"--mesh", "m.obj", "--triangles", "3000"}, "excludes --");
-  expectRefusal(kDrop, {"--mesh", "m.obj", "--model", "hand"}, "excludes --");
 }
 
 TEST_F(Options, ASummaryThatCannotBeWrittenIsRefusedBeforeTheWork) {
@@ -191,7 +179,6 @@ TEST_F(Options, AnEarlierNameIsAnsweredByThePresentOne) {
                     std::string(before) + ": this option is now called " + now + "\n");
     }
   }
-  expectRefused(folder.run(TETSKIN_MEASURE, {"--frames", "3"}), "--frames");  // this program never had this option
 }
 
 // The tests of the pages run the examples themselves.
@@ -232,4 +219,4 @@ TEST_F(Options, OfAnOptionGivenTwiceTheLastCounts) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

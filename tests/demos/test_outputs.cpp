@@ -3,22 +3,16 @@
 //
 // The files that the programs write, and that they overwrite no other: files are identified by what they are, not by
 // their names.
-#include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "drop_run.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-using test::boxObj;
-using test::CommandFolder;
-using test::CommandResult;
-using test::cubeVtk;
-using test::expectRefused;
 using Arguments = std::vector<std::string>;
 
 class Outputs : public testing::Test {
@@ -148,4 +142,4 @@ TEST_F(Outputs, OnAFullDeviceAreAnError) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/io/files.h>
-
-#include <algorithm>
 
 #include "drop_run.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
 
 TEST(Pile, BodiesFallIntoTheBowlAndLieOnEachOther) {
   const CommandFolder folder;
@@ -137,24 +131,6 @@ TEST(Pile, CubesInABinTouchEachOtherAndStayInside) {
   EXPECT_LT(std::max(box.max().x(), box.max().z()), 1.26);
 }
 
-TEST(Pile, RefusesWhatASceneCannotHave) {
-  const CommandFolder folder;
-  folder.write("box.obj", test::boxObj());
-  const auto refuse = [&](std::vector<std::string> arguments, const char* word) {
-    test::expectRefused(folder.run(TETSKIN_PILE, arguments), word);
-    EXPECT_FALSE(folder.exists("out"));
-  };
-  refuse({"--scene", "pond"}, "--scene");
-  for (const std::string scene : {"pit", "bin"}) {
-    refuse({"--scene", scene, "--mesh", "box.obj"}, "takes no --mesh");
-    refuse({"--scene", scene, "--triangles", "3000"}, "takes no --triangles");
-    refuse({"--scene", scene, "--calibrate"}, "takes no --calibrate");
-  }
-  refuse({"--bodies", "101"}, "--scene column: --bodies 101 is more than 100");
-  refuse({"--scene", "heap", "--bodies", "101"}, "--scene heap: --bodies 101 is more than 100");
-  refuse({"--scene", "bin", "--bodies", "1001"}, "from 1 to 1000");
-}
-
 TEST(Pile, TakesAMeshOfTheUsers) {
   const CommandFolder folder;
   folder.write("box.obj", test::boxObj());
@@ -164,8 +140,8 @@ TEST(Pile, TakesAMeshOfTheUsers) {
   ASSERT_EQ(run("box.obj").status, 0);
   EXPECT_EQ(loadMesh(folder.path("out/pile/frame_0001.obj")).value().triangleCount(), 2u * 12u);
   folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 1 4 3\n");
-  test::expectRefused(run("sheet.obj"), "sheet.obj: ");
+  expectRefused(run("sheet.obj"), "sheet.obj: ");
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/printed_table.h"
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 namespace tetskin {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Fingers that a cage keeps apart come apart when they are pulled, about as far as those of the body itself.
-#include <gtest/gtest.h>
 
 #include <tetskin/bullet/deformable_body.h>
 #include <tetskin/cage/create_cage.h>
@@ -11,8 +10,6 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "report/advice.h"
 #include "report/coloured_mesh.h"

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "error_vs_time_run.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::CommandResult;
-
-class ReportPlots : public test::ErrorVsTimeRun {};
+class ReportPlots : public ErrorVsTimeRun {};
 
 TEST_F(ReportPlots, SaysWhatItNeedsForTablesAndPlots) {
   std::vector<std::string> arguments = small("exact", {"--target-error", "0.5"});
@@ -87,4 +84,4 @@ TEST_F(ReportPlots, OneTableAndOnePlotCompareTheSolvers) {
 #endif
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <set>
 
@@ -11,19 +9,14 @@
 #include "report/solver.h"
 #include "report/xpbd_fit.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
-using test::CommandResult;
-using test::expectRefused;
-using test::number;
-
-class ReportSolvers : public test::ErrorVsTimeRun {
+class ReportSolvers : public ErrorVsTimeRun {
  protected:
   static std::vector<std::string> solvers(const std::string& names, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> all = {
-        "--quick", "--quiet",     "--solvers", names,      "--tets", "600",   "--reference-tets",
-        "2700",    "--triangles", "2000",      "--frames", "12",     "--out", "out"};
+    std::vector<std::string> all = test::words(
+        "--quick --quiet --tets 600 --reference-tets 2700 --triangles 2000 --frames 12 --out out --solvers " + names);
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -89,16 +82,6 @@ TEST_F(ReportSolvers, ReferencesAreThoseThatTheSolversNeed) {
   EXPECT_GT(number(rowsOfSolver("bullet_linear")[0], "error_against_bullet_rms"), 0.0);
 }
 
-TEST_F(ReportSolvers, RefusesWhatCannotBeCompared) {
-  for (const report::Solver solver : report::kSolvers) expectRefused(run({"--solvers", "havok"}), nameOf(solver));
-  expectRefused(run({"--solvers", "xpbd", "--scenes", "drop"}), "no contact");
-  expectRefused(run({"--solvers", "xpbd", "--cages", "same"}), "--cages");
-  expectRefused(run({"--solvers", "xpbd", "--view", "v.html"}), "--view");
-  expectRefused(run({"--solvers", "xpbd", "--xpbd-substeps", "0"}), "--xpbd-substeps");
-  expectRefused(run({"--xpbd-substeps", "4"}), "--solvers");
-  expectRefused(run({"--repetitions", "4"}), "--solvers");
-}
-
 TEST(XpbdFit, FindsTheLeastErrorBetweenTheGridsPoints) {
   const auto found = report::bestConstants({0.01, 0.0}, [](const report::XpbdConstants& c) {
     if (c.stiffness > 100.0) return std::numeric_limits<double>::infinity();  // explodes
@@ -151,4 +134,4 @@ TEST(Xpbd, RigidVolumesKeepTheVolume) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

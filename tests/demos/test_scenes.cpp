@@ -3,9 +3,7 @@
 //
 // The table of scenes, and small helpers that the demos share.
 #include <btBulletDynamicsCommon.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <map>

@@ -2,22 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // --self-contact in the programs that drop, pile and drag bodies.
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/winding_tree.h>
 #include <tetskin/io/files.h>
 
-#include <algorithm>
-
 #include "drop_run.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::boxObj;
-using test::CommandResult;
 
-class SelfContact : public test::DropRun {
+class SelfContact : public DropRun {
  protected:
   /// Runs with the options that all runs here need. A sheet encloses nothing, so it has no inside.
   CommandResult dropSheet(std::vector<std::string> more) const {
@@ -90,12 +85,5 @@ TEST_F(SelfContact, IsDoneWithoutWhereTheMeshIsOpenAndThatIsSaid) {
   EXPECT_EQ(dropSheet({"--quiet"}).out, "");
 }
 
-TEST_F(SelfContact, IsRefusedWhereItIsAskedForAndCannotBe) {
-  test::expectRefused(dropSheet({"--self-contact", "on"}), "--self-contact on: sheet.obj: ");
-  test::expectRefused(drop({"--body", "reduced", "--self-contact", "on"}), "--self-contact on: a reduced body");
-  test::expectRefused(drop({"--self-contact", "perhaps"}), "--self-contact");
-  EXPECT_FALSE(folder.exists("o"));
-}
-
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

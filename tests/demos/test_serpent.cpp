@@ -2,13 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "scenes/serpent.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "scenes/serpent_shape.h"
 

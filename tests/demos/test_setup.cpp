@@ -3,17 +3,13 @@
 //
 // Runs demos/run as on a machine that has nothing installed yet. Stand-ins for apt and CMake only record how they are
 // called.
-#include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "command.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
 
 class DemosRun : public testing::Test {
  protected:
@@ -64,4 +60,4 @@ TEST_F(DemosRun, InstallsWhatAllDemosNeedForAll) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test

@@ -2,39 +2,29 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Contact between limbs that a cage keeps apart by duplicate elements: they lie in tets at the same position.
-#include <gtest/gtest.h>
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/core/embedding.h>
-#include <tetskin/core/src/base/mesh/tet_geometry.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "scenes/slotted_beam.h"
 #include "scenes/world.h"
 #include "support/component_models.h"
-#include "support/odd_meshes.h"
 
 namespace tetskin::scenes {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBall = 0.3;    ///< radius
-constexpr double kRoot = -0.4;   ///< end of the slot, along the beam
-constexpr double kPlace = 1.0;   ///< position of the ball
-constexpr double kOpened = 0.4;  ///< opening of each prong, in radians
+constexpr double kRoot = -0.4;  ///< end of the slot, along the beam
 
-/// The beam in a cage with duplicate elements, and a ball.
+/// The beam in a cage with duplicate elements.
 struct Models {
-  TriangleMesh mesh = makeSlottedBeam(6000), ballMesh = test::sphere(20, kBall, Vector3d::Zero());
+  TriangleMesh mesh = makeSlottedBeam(6000);
   Cage cage;
-  TetMesh ballCage = test::latticeCage(4, 4, 4, kBall / 1.8);
   std::vector<VertexBinding> bindings;
-  std::shared_ptr<const ContactShape> shape, ballShape;
+  std::shared_ptr<const ContactShape> shape;
   Vector3d along = slottedBeamPlane().normal(), across = Vector3d::UnitZ().cross(along);
 
   Models() {
@@ -44,9 +34,6 @@ struct Models {
     EXPECT_EQ(test::countComponentsBeyond(cage.mesh, test::Plane(along, 0.6 * along)), 2);
     bindings = embed(cage, mesh).value().bindings();
     shape = ContactShape::create(cage, mesh).value();
-    const Vector3d centre = boundingBox(ballCage.nodes).center();
-    for (Vector3d& p : ballCage.nodes) p -= centre;
-    ballShape = ContactShape::create(ballCage, ballMesh).value();
   }
 };
 
@@ -58,30 +45,11 @@ const Models& models() {
 class TouchingProngs : public testing::Test {
  protected:
   TouchingProngs() : world_(scenes::Force::Elastic, btVector3(0, 0, 0)) {
-    SoftBodyOptions options = material(2e3);
+    SoftBodyOptions options = scenes::oneKilogram();
+    options.youngsModulus = 2e3;
     options.pinned = [](const Vector3d& p) { return p.dot(models().along) < kRoot - 0.3; };
     beam_ = &world_.add(models().cage, options);
     contacts_ = SoftContacts::add(static_cast<btDeformableMultiBodyDynamicsWorld&>(world_.bullet())).value();
-  }
-  static SoftBodyOptions material(double youngsModulus) {
-    SoftBodyOptions options = scenes::oneKilogram();
-    options.youngsModulus = youngsModulus;
-    return options;
-  }
-  void addBall() {
-    TetMesh cage = models().ballCage;
-    for (Vector3d& p : cage.nodes) p += kPlace * models().along;
-    ball_ = &world_.add(cage, material(2e4));
-  }
-  /// Turns each prong outwards about the end of the slot.
-  void openProngs() {
-    const Vector3d root = kRoot * models().along;
-    for (std::size_t n = 0; n < sides().size(); ++n) {
-      if (sides()[n] == 0.0) continue;
-      const Eigen::AngleAxisd turn(sides()[n] > 0.0 ? kOpened : -kOpened, Vector3d::UnitZ());
-      btSoftBody::Node& node = beam_->m_nodes[static_cast<int>(n)];
-      node.m_x = node.m_q = toBullet(root + turn * (models().cage.mesh.nodes[n] - root));
-    }
   }
   void step(int frames) {
     for (int k = 0; k < 4 * frames; ++k) world_.step(1.0 / 240);
@@ -93,24 +61,6 @@ class TouchingProngs : public testing::Test {
       p += static_cast<double>(b.weights[k]) * toEigen(beam_->m_nodes[models().cage.mesh.tets[b.tet][k]].m_x);
     }
     return p;
-  }
-  /// How deep the deepest vertex of the beam is inside the deformed ball.
-  double depth() const {
-    double deepest = 0.0;
-    for (const Tet& tet : models().ballCage.tets) {
-      TetCorners corners;
-      for (int k = 0; k < 4; ++k) corners[k] = toEigen(ball_->m_nodes[tet[k]].m_x);
-      if (isFlat(corners)) continue;
-      const BarycentricMap map(corners);
-      for (std::size_t v = 0; v < models().mesh.vertexCount(); ++v) {
-        const Eigen::Vector4d w = map(surfacePoint(v));
-        if (w.minCoeff() < 0.0) continue;
-        Vector3d rest = Vector3d::Zero();
-        for (int k = 0; k < 4; ++k) rest += w[k] * models().ballCage.nodes[tet[k]];
-        deepest = std::max(deepest, kBall - rest.norm());
-      }
-    }
-    return deepest;
   }
 
   /// By node: on which side of the slot it lies, beyond the slot's end; 0 elsewhere.
@@ -158,36 +108,10 @@ class TouchingProngs : public testing::Test {
     return gap[1] / count[1] - gap[0] / count[0];
   }
 
-  /// The greatest depth after the prongs were opened and released.
-  double deepestWhileTheyClose() {
-    constexpr int kSpells = 5, kFrames = 5;
-    openProngs();
-    EXPECT_TRUE(contacts_->add(*beam_, models().shape).ok());
-    double deepest = 0.0;
-    for (int spell = 0; spell < kSpells; ++spell) {
-      step(kFrames);
-      deepest = std::max(deepest, depth());
-    }
-    return deepest;
-  }
-
   World world_;
   btSoftBody* beam_;
-  btSoftBody* ball_ = nullptr;
   std::unique_ptr<SoftContacts> contacts_;
 };
-
-TEST_F(TouchingProngs, CloseAboutABall) {
-  addBall();
-  ASSERT_TRUE(contacts_->add(*ball_, models().ballShape).ok());
-  EXPECT_LT(deepestWhileTheyClose(), 0.2 * kBall);
-  EXPECT_FALSE(contacts_->contacts().empty());
-}
-
-TEST_F(TouchingProngs, PassThroughABallThatWasNotIncluded) {
-  addBall();
-  EXPECT_GT(deepestWhileTheyClose(), 0.4 * kBall);
-}
 
 /// The prongs are 0.04 apart at rest.
 TEST_F(TouchingProngs, MeetEachOther) {

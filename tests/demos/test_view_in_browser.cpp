@@ -2,16 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Pages as a browser shows them: a probe is appended to a page, and writes its results into the page's document.
-#include <gtest/gtest.h>
 
 #include "browser.h"
 
-namespace tetskin {
+namespace tetskin::test {
 namespace {
-
-using test::CommandFolder;
-using test::CommandResult;
-using test::distance;
 
 std::string withProbe(const CommandFolder& folder, const std::string& page) {
   std::string text = folder.read(page);
@@ -113,4 +108,4 @@ TEST(ViewInBrowser, KeepsCreasesAndShowsASoftShadowOnAGrid) {
 }
 
 }  // namespace
-}  // namespace tetskin
+}  // namespace tetskin::test
