@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <tetskin/solver/deformable_world.h>
+#include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/solver/src/motion/divided_limits.h>
 #include <tetskin/solver/src/motion/rigid_forces.h>
 #include <tetskin/solver/src/motion/rigid_turns.h>

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/contact/src/soft/contact_body.h>
+#include <tetskin/solver/src/base/carried_point.h>
 
 #include <algorithm>
 #include <cassert>
