@@ -40,7 +40,7 @@ TEST(RigidTurns, AreBulletsButForLastDigits) {
 btTransform tumbled(bool deterministic, int steps) {
   DeformableWorldOptions options;
   options.deterministic = deterministic;
-  DeformableWorld world(options);
+  tetskin::DeformableWorld world(options);
   btBoxShape shape(btVector3(1, 2, 3));
   btRigidBody box(1, nullptr, &shape, btVector3(13, 10, 5) / 3);
   box.setAngularVelocity(btVector3(3, 1, -2));
@@ -62,7 +62,7 @@ TEST(RigidTurns, OfADeterministicWorldAreThoseOfAnyOther) {
 TEST(RigidTurns, OfADeterministicWorldAreMadeByItsOwnArithmetic) {
   DeformableWorldOptions options;
   options.deterministic = true;
-  DeformableWorld world(options);
+  tetskin::DeformableWorld world(options);
   btSphereShape shape(1);
   btRigidBody ball(1, nullptr, &shape, btVector3(1, 1, 1));
   ball.setAngularVelocity(btVector3(3, 1, -2));
@@ -80,7 +80,7 @@ TEST(RigidTurns, OfADeterministicWorldAreMadeByItsOwnArithmetic) {
 TEST(RigidTurns, LeaveWhatSleepsAndWhatIsFixedAsItIs) {
   DeformableWorldOptions options;
   options.deterministic = true;
-  DeformableWorld world(options);
+  tetskin::DeformableWorld world(options);
   btSphereShape shape(1);
   btRigidBody asleep(1, nullptr, &shape, btVector3(1, 1, 1)), fixed(0, nullptr, &shape);
   const btTransform there(btQuaternion(btScalar(0.1), btScalar(-0.7), btScalar(0.3), btScalar(0.6)).normalized(),

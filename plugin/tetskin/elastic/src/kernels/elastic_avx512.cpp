@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #define TETSKIN_KERNELS avx512
+#define TETSKIN_LANES 8
 #include <tetskin/elastic/src/kernels/elastic_loops.h>
-
-namespace tetskin::kernels::avx512 {
-
-const ElasticTable<float> elasticFloat = elasticTable<float, 8>();
-const ElasticTable<double> elasticDouble = elasticTable<double, 4>();
-
-}  // namespace tetskin::kernels::avx512

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal: all loops behind elastic_kernels.h, W tets or rows at a time. Included once for each instruction set.
+// Internal: all loops behind elastic_kernels.h, W tets or rows at a time. Included once for each instruction set, with
+// TETSKIN_KERNELS, its namespace, and TETSKIN_LANES, the number of floats at a time; of doubles, half of it.
 #pragma once
 
 #include <tetskin/elastic/src/kernels/quadratic_tet_loops.h>
@@ -25,5 +26,8 @@ constexpr ElasticTable<S> elasticTable() {
           difference<S, W>,
           inner<S, W>};
 }
+
+const ElasticTable<float> elasticFloat = elasticTable<float, TETSKIN_LANES>();
+const ElasticTable<double> elasticDouble = elasticTable<double, (TETSKIN_LANES + 1) / 2>();
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS
