@@ -104,6 +104,30 @@ TEST_F(WarmRows, OfASampleThatIsNewRecallWhatItsPointHasDone) {
   expectRecalled(1, btVector3(0, 0, 0), 0);
 }
 
+/// Bullet finds contacts where a kinematic body is at the end of the step: the gap at its beginning is larger by the
+/// way that the body comes nearer.
+TEST_F(WarmRows, OfBulletsContactsBeginAsFarAwayAsTheStepDoes) {
+  btBoxShape shape(btVector3(1, 1, 1));
+  btRigidBody lift(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape));
+  const btVector3 rate(0, btScalar(0.6), 0);
+  lift.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  lift.setActivationState(DISABLE_DEACTIVATION);
+  lift.setLinearVelocity(rate);
+  btSoftBody& body = upper_->body();
+  btSoftBody::DeformableNodeRigidContact found;
+  found.m_node = &body.m_nodes[0];
+  found.m_cti.m_colObj = &lift;
+  found.m_cti.m_normal = kUp;
+  found.m_cti.m_offset = btScalar(0.01);
+  found.m_c3 = 1;
+  body.m_nodeRigidContacts.push_back(found);
+  rows_.collect(bodies_, rigids_, kStepSeconds);
+  ASSERT_EQ(rows_.rows().size(), 1U);
+  EXPECT_NEAR(rows_.rows()[0].gapVelocity * kStepSeconds, 0.01 + 0.6 * kStepSeconds, 1e-5);
+  EXPECT_NEAR(rows_.rows()[0].relative.y(), -0.6, 1e-5);
+  body.m_nodeRigidContacts.clear();
+}
+
 /// A fold is pushed several ways.
 TEST_F(WarmRows, OfOneSampleInTwoDirectionsRecallThatOfTheirs) {
   const btVector3 aside(1, 0, 0), slipAside(0, btScalar(0.1), 0);

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Bodies that meet each other go on from a snapshot as they did when it was saved, to the bit.
+#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/contact/src/soft/pair_search.h>
 #include <tetskin/threads/thread_pool.h>
 
 #include <vector>
@@ -96,6 +98,25 @@ TEST(SnapshotsOfSoftContact, AmongOtherBodiesAreRefusedAndChangeNothing) {
   EXPECT_EQ(refused.code, StatusCode::SnapshotMismatch) << refused.message;
   EXPECT_NE(refused.message.find("contacts among other soft bodies were there"), std::string::npos) << refused.message;
   EXPECT_TRUE(heap.saved() == before);
+}
+
+TEST(SnapshotsOfSoftContact, HoldTheSamplesThatTouchedOrPierced) {
+  using namespace contact_detail;
+  tetskin::DeformableWorld world;
+  PairMemory saved, restored;
+  saved.touched = {{2, 0}, {5, 3}};
+  saved.pierced = {2, 7};
+  restored.pierced = {1};
+  std::vector<Touch> touches;
+  Snapshot bytes(1000);
+  bullet_detail::WorldStream out(world, bytes.data(), bytes.size()),
+      in(world, static_cast<const unsigned char*>(bytes.data()), bytes.size());
+  saved.visitState(out, touches, false);
+  restored.visitState(in, touches, false);
+  EXPECT_EQ(restored.pierced, saved.pierced);
+  ASSERT_EQ(restored.touched.size(), 2U);
+  EXPECT_EQ(restored.touched[1].sample, 5);
+  EXPECT_EQ(restored.touched[1].age, 3);
 }
 
 TEST(SnapshotsOfSoftContact, GoOnInANewWorldOnOtherThreads) {
