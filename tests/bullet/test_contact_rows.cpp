@@ -4,7 +4,9 @@
 // What the rows of contacts between soft bodies begin a step with, made by hand.
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/rows/contact_rows.h>
+#include <tetskin/bullet/src/rows/fixed_nodes.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <memory>
 
@@ -126,6 +128,30 @@ TEST_F(WarmRows, OfBulletsContactsBeginAsFarAwayAsTheStepDoes) {
   EXPECT_NEAR(rows_.rows()[0].gapVelocity * kStepSeconds, 0.01 + 0.6 * kStepSeconds, 1e-5);
   EXPECT_NEAR(rows_.rows()[0].relative.y(), -0.6, 1e-5);
   body.m_nodeRigidContacts.clear();
+}
+
+TEST_F(WarmRows, OfANodeBeginWithTheDirectionsInWhichBulletFixesIt) {
+  btAlignedObjectArray<btSoftBody*> all;
+  all.push_back(&upper_->body());
+  btDeformableContactProjection projection(all);
+  const SolvedBody& body = *bodies_.find(&upper_->body());
+  const btVector3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const auto fix = [&](int node, std::initializer_list<btVector3> directions) {
+    btAlignedObjectArray<btVector3> list;
+    for (const btVector3& direction : directions) list.push_back(direction);
+    projection.m_projectionsDict.insert(btHashInt(body.first + node), list);
+  };
+  fix(0, {x});
+  fix(1, {x, y});
+  fix(2, {x, x});
+  fix(3, {x, y, z});
+  listFixedNodes(projection, bodies_);
+  ASSERT_EQ(body.fixed.size(), 4U);
+  EXPECT_EQ(body.fixed[0].kind, FixedNode::AlongDirection);
+  EXPECT_EQ(body.fixed[1].kind, FixedNode::AllButDirection);
+  EXPECT_NEAR(std::abs(body.fixed[1].direction.z()), 1, 1e-6);
+  EXPECT_EQ(body.fixed[2].kind, FixedNode::AlongDirection);
+  EXPECT_EQ(body.fixed[3].kind, FixedNode::Fixed);
 }
 
 /// A fold is pushed several ways.

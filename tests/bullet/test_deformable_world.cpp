@@ -76,6 +76,29 @@ TEST(DeformableWorld, AFloorThatIsTurnedRubsAgainstTheWay) {
   }
 }
 
+btSoftBody::Node* nodeToMove = nullptr;
+
+TEST(DeformableWorld, ANodeThatTheApplicationMovesWithinAStepStaysThere) {
+  tetskin::DeformableWorld world(DeformableWorldOptions{btVector3(0, 0, 0), nullptr});
+  btStaticPlaneShape plane(btVector3(0, 1, 0), 0);
+  btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane));
+  world.addRigidBody(&floor);
+  const auto body = DeformableBody::add(world, smallCageAbove(1)).value();
+  static_cast<btCollisionDispatcher*>(world.getDispatcher())
+      ->setNearCallback([](btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+        if (nodeToMove) nodeToMove->m_x += btVector3(btScalar(0.01), 0, 0);
+        nodeToMove = nullptr;
+        btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+      });
+  world.stepSimulation(btScalar(1) / 240, 0);
+  nodeToMove = &body->body().m_nodes[0];
+  const btVector3 before = nodeToMove->m_x;
+  world.stepSimulation(btScalar(1) / 240, 0);
+  EXPECT_EQ(nodeToMove, nullptr);
+  EXPECT_LT((body->body().m_nodes[0].m_x - before - btVector3(btScalar(0.01), 0, 0)).length(), 1e-5);
+  world.removeRigidBody(&floor);
+}
+
 /// A cube of this size that lies on a floor, a plane through the origin if none is given.
 class LyingCube {
  public:
