@@ -72,12 +72,10 @@ TEST(SplitCages, KeepPartsApartAtManyTets) {
 
 TEST(SplitCages, TellPlatesApartThatAreAFifthOfATetApart) {
   const double spacing = checked(twoPlates(0.1).mesh, 3000).report.spacing;
-  for (const double apart : {0.2, 0.02}) {
-    const Built built = checked(twoPlates(apart * spacing).mesh, 3000);
-    EXPECT_NEAR(built.report.spacing, spacing, 0.1 * spacing);
-    EXPECT_EQ(built.report.components, 2u) << apart;
-    EXPECT_GT(built.report.duplicateTets, 100u);
-  }
+  const Built built = checked(twoPlates(0.2 * spacing).mesh, 3000);
+  EXPECT_NEAR(built.report.spacing, spacing, 0.1 * spacing);
+  EXPECT_EQ(built.report.components, 2u);
+  EXPECT_GT(built.report.duplicateTets, 100u);
   EXPECT_EQ(checked(twoPlates(0.2 * spacing).mesh, 3000, true, false).report.components, 1u);
 }
 
