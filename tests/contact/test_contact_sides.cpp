@@ -66,13 +66,14 @@ TEST(ContactSides, ASampleBeyondTheMiddleGoesBackAsItCame) {
   const btScalar top = btScalar(0.1 + Plate::kHalfThickness);
   ContactSides sides;
   for (btScalar depth = btScalar(-0.02); depth < btScalar(0.1); depth += btScalar(0.01)) {
-    const btVector3 rest(btScalar(0.5), top - depth, btScalar(0.5));
+    const btVector3 rest(btScalar(0.3) + 4 * depth, top - depth, btScalar(0.5));  // it slides meanwhile
     sides.beginStep();
     GridDistance nearest;
     ASSERT_TRUE(grid.at(rest, nearest));
     SideDistance found;
     ASSERT_TRUE(findSide(grid, rest, nearest, btVector3(0, 0, 0), sides.find(3, rest, 1), found)) << depth;
     EXPECT_NEAR(found.distance, -depth, 0.5 * grid.spacing()) << "the nearer side is below from 0.06 on";
+    EXPECT_NEAR(found.side.point.x(), rest.x(), 0.01) << "it follows";
     EXPECT_GT(found.side.normal.y(), 0.9);
     found.side.sample = 3;
     sides.keep(found.side);

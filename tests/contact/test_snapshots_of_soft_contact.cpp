@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Bodies that meet each other go on from a snapshot as they did when it was saved, to the bit.
+#include <tetskin/bullet/src/base/world_stream.h>
+#include <tetskin/contact/src/soft/pair_search.h>
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/threads/thread_pool.h>
 
@@ -58,6 +60,25 @@ TEST(SnapshotsOfSoftContact, AmongOtherBodiesAreRefusedAndChangeNothing) {
   for (int k = 0; k < 5; ++k) heap.frame(k);
   heap.contacts->remove(heap.bodies.back()->body());
   expectRefused(heap.own, all, StatusCode::SnapshotMismatch, "contacts among other soft bodies were there");
+}
+
+TEST(SnapshotsOfSoftContact, HoldTheSamplesThatTouchedOrPierced) {
+  using namespace contact_detail;
+  tetskin::DeformableWorld world;
+  PairMemory saved, restored;
+  saved.touched = {{2, 0}, {5, 3}};
+  saved.pierced = {2, 7};
+  restored.pierced = {1};
+  std::vector<Touch> touches;
+  Bytes bytes(1000);
+  bullet_detail::WorldStream out(world, bytes.data(), bytes.size()),
+      in(world, static_cast<const unsigned char*>(bytes.data()), bytes.size());
+  saved.visitState(out, touches, false);
+  restored.visitState(in, touches, false);
+  EXPECT_EQ(restored.pierced, saved.pierced);
+  ASSERT_EQ(restored.touched.size(), 2U);
+  EXPECT_EQ(restored.touched[1].sample, 5);
+  EXPECT_EQ(restored.touched[1].age, 3);
 }
 
 }  // namespace

@@ -103,6 +103,13 @@ TEST_F(SoftRows, ContactsBetweenSleepingBodiesAreKeptUntilOneWakes) {
     EXPECT_TRUE(contacts().empty());
     EXPECT_EQ(rows.sleepingContacts().size(), count);
   }
+  const PointContacts before = rows.sleepingContacts();
+  const btVector3 by(8, 0, -4);
+  rows.shift(by);
+  for (std::size_t k = 0; k < count; ++k) {
+    EXPECT_LT((rows.sleepingContacts()[k].position - before[k].position - by).length(), 1e-5);
+  }
+  rows.shift(-by);
   bodies[0]->activate(true);
   EXPECT_EQ(contacts().size(), count);
   EXPECT_TRUE(rows.sleepingContacts().empty());

@@ -249,6 +249,34 @@ TEST_F(SoftSearch, ANodeKeepsTheSampleItTouchedWithBesideADeeperOne) {
   EXPECT_EQ(pairsIn(fromNothing, {}), 0);
 }
 
+TEST_F(SoftSearch, ANodeTouchesByAnotherSampleOnlyWhereThatIsDeeperByATenthOfACube) {
+  auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.78, 0, 0));
+  PairSearch search;
+  const btVector3 none(0, 0, 0), way(0, btScalar(0.01), 0);
+  PairMemory memory;
+  std::vector<Touch> touches;
+  int kept = 0;
+  for (int step = 0; step < 20; ++step) {
+    std::vector<Touch> fromNothing;
+    PairMemory empty;
+    search.find(*first, *second, btScalar(0.004), none, 0, memory, touches);
+    search.find(*first, *second, btScalar(0.004), none, 0, empty, fromNothing);
+    const std::vector<int>& nodes = first->data().sampleNodes;
+    for (const Touch& deeper : fromNothing) {
+      const auto is = [&](const Touch& t) { return t.sample == deeper.sample; };
+      if (std::any_of(touches.begin(), touches.end(), is)) continue;
+      ++kept;
+      EXPECT_TRUE(std::any_of(touches.begin(), touches.end(), [&](const Touch& t) {
+        return nodes[t.sample] == nodes[deeper.sample] &&
+               t.distance - deeper.distance < btScalar(0.1) * second->data().grid.spacing();
+      }));
+    }
+    bodies_[1]->translate(way);
+    for (ContactBody* body : {first.get(), second.get()}) body->read();
+  }
+  EXPECT_GT(kept, 0);
+}
+
 TEST(BodyPairs, AreThoseThatTestingAllBoxesFinds) {
   std::mt19937 random(3);
   for (const btVector3& spread : {btVector3(9, 1, 1), btVector3(1, 1, 9), btVector3(3, 3, 3), btVector3(0, 0, 0)}) {

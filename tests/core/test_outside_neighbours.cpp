@@ -7,6 +7,9 @@
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/skinning/quadratic_skinning.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace tetskin {
 namespace {
 
@@ -101,6 +104,20 @@ TEST(OutsideNeighbours, OtherVerticesAreBoundAsIfAlone) {
   const auto brute = test::bruteForce(cage, mesh.positions, OutsideRule::Nearest);
   const auto bindings = embedding.bindings();
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_EQ(bindings[v].tet, brute[v].tet);
+}
+
+/// The last cubes of the left leg are a tenth of a cube thick: a vertex beyond them is five times as far away.
+TEST(OutsideNeighbours, AThinTetOfTheirOwnGivesWayToOneThatCarriesThemBetter) {
+  TetMesh cage = legs(false);
+  for (Eigen::Vector3d& p : cage.nodes) {
+    if (p.x() == 3.0 * kCube) p.x() = 0.98;
+  }
+  Embedding embedding;
+  EXPECT_GT(embedInto(cage, sheet({0.5, 0.7, 0.9, 1.11}), {}, embedding).reassignedByConnectivity, 0u);
+  EXPECT_EQ(inRightLeg(cage, embedding), 0u);
+  for (const VertexBinding& b : embedding.bindings()) {
+    for (const float weight : b.weights) EXPECT_LE(std::abs(weight), 4.0f);
+  }
 }
 
 TEST(OutsideNeighbours, ANearestTetThatIsMuchNearerThanTheirOwnIsTaken) {

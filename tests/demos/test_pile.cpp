@@ -81,6 +81,23 @@ TEST(Pile, HeapsBodiesAndTellsHowLongEachStageTakes) {
   }
 }
 
+TEST(Pile, BallsAndCubesStartApartWhereTheSeedPutsThem) {
+  const CommandFolder folder;
+  for (const std::string scene : {"pit", "bin"}) {
+    const auto start = [&](const std::string& seed) {
+      const CommandResult result =
+          folder.run(TETSKIN_PILE, {"--scene", scene, "--bodies", "20", "--tets", "60", "--seed", seed, "--frames", "1",
+                                    "--format", "obj", "--out", "o"});
+      EXPECT_EQ(result.status, 0) << result.err;
+      EXPECT_EQ(folder.json("o/summary.json")["vertices_inside_at_end"], 0) << scene << seed;
+      return folder.read("o/frame_0000.obj");
+    };
+    const std::string two = start("2");
+    EXPECT_NE(start("1"), two) << scene;
+    EXPECT_EQ(start("2"), two) << scene;
+  }
+}
+
 TEST(Pile, LetsBallsSinkIntoAMatAndTellsWhatEachCosts) {
   const CommandFolder folder;
   const CommandResult result = folder.run(TETSKIN_PILE, {"--scene", "pit", "--bodies", "6", "--tets", "300", "--frames",

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "elastic_fixtures.h"
+#include "gradient_fixtures.h"
 #include "support/odd_meshes.h"
 
 namespace tetskin::test {
@@ -321,6 +322,46 @@ TEST(BodyDynamics, AssemblesItsMatrixWhenSomethingHasChanged) {
   }));
   EXPECT_FALSE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 0.3); })) << "hardly";
   EXPECT_TRUE(changesTheMatrix([](Dynamics& d, const Body& body) { return turned(d, body, 3.0); }));
+}
+
+TEST(BodyDynamics, SolvesWithAMassThatChangesAsIfItHadAlwaysBeenSo) {
+  AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
+  const VectorXd impulses = Random(56).vector(3 * body.nodes.size());
+  const auto response = [&](BodyDynamics<double>& dynamics) {
+    AlignedVector<double> wide(dynamics.matrix().wideSize(), 0.0), velocities = wide;
+    dynamics.predict(kSeconds, nullptr);
+    body.toWide(impulses, wide.data());
+    dynamics.matrix().precondition(wide.data(), velocities.data(), nullptr);
+    return body.fromWide(velocities.data());
+  };
+  BodyDynamics<double> dynamics = dynamicsOf(body, still);
+  for (const double mass : {9.0, 0.0, 2.0}) {
+    EXPECT_GT(response(dynamics).norm(), 0.0);
+    dynamics.setMass(4, body.masses[4] = mass);
+    BodyDynamics<double> always = dynamicsOf(body, still);
+    EXPECT_LT(apart(response(dynamics), response(always)), 1e-9) << mass;
+    EXPECT_NEAR(dynamics.squaredImpulses(1.0), always.squaredImpulses(1.0), 1e-9) << mass;
+  }
+}
+
+/// By the damping that gives all tets of a body as large a factor of their stiffness.
+TEST(BodyDynamics, FlatTetsOfAPressedBodyAreDampedByTwoHundredSquaredSteps) {
+  AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  for (Vector3d& node : body.nodes) node.z() *= 0.01;
+  const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
+  const std::vector<double> x = body.toPoints(Random(54).vector(3 * body.nodes.size()));
+  const auto product = [&](bool pressed, double damping) {
+    BodyDynamics<double> dynamics = dynamicsOf(body, still);
+    dynamics.setPressed(pressed);
+    dynamics.setDamping(damping);
+    for (int k = 0; k < 3; ++k) dynamics.predict(kSeconds, nullptr);
+    std::vector<double> image(dynamics.matrix().wideSize());
+    dynamics.matrix().multiply(x.data(), image.data(), nullptr);
+    return body.fromWide(image.data());
+  };
+  EXPECT_LT(apart(product(true, kDamping), product(false, 200.0 * kSeconds)), 1e-9);
+  EXPECT_GT(apart(product(false, kDamping), product(false, 200.0 * kSeconds)), 0.1);
 }
 
 /// One tet that turns, besides a thousand that do not: the mean turn is small.

@@ -102,6 +102,11 @@ TEST(ComponentMotion, BeyondARightAngleInAStepLeavesTheRestToTheSolve) {
     const Vector3d wanted = part.spinOf(part.velocities, {0, 0, 0}), has = part.spinOf(part.ratesTo(to), {0, 0, 0});
     EXPECT_LT(has.norm(), wanted.norm());
     EXPECT_GT(has.norm(), 0.5 * std::min(wanted.norm(), 1.0 / kSeconds));
+    // By sums about the centre of mass, where the motion of that centre has no part.
+    const Vector3d centre = part.motion().about(), all = part.spinOf(part.velocities, centre);
+    const Vector3d share = rigidMass(part.nodes, part.masses, centre).bottomRightCorner<3, 3>().inverse() * all;
+    const Vector3d kept = all * (0.8 / (kSeconds * share.norm()));
+    EXPECT_LT((part.spinOf(part.ratesTo(to), centre) - kept).norm(), 1e-9 * kept.norm()) << "the sine is 0.8";
   }
 }
 

@@ -390,6 +390,32 @@ TYPED_TEST(CorotatedTetsOf, HaveTheForcesOfThePlainFormulas) {
   });
 }
 
+/// Else it could rest so, with no stress at any of its points.
+TEST(CorotatedTets, AQuadraticTetThatIsInsideOutAtAPointHasTheRotationOfItsMeanGradient) {
+  const Cage cage = refineQuadratic(singleTet()).value();
+  const std::vector<double> scale(cage.mesh.tetCount(), 1.0);
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const Points nodes = scattered(cage.mesh.nodes, 0.3, seed);
+    Matrix3d sum = Matrix3d::Zero();
+    double least = 1.0, expected = 0.0, trace = 0.0, volume = 0.0;
+    const std::vector<PlainPoint> points = plainPoints(cage, scale);
+    for (const PlainPoint& point : points) sum += point.gradientAt(nodes);
+    const Matrix3d turn = rotationOf(sum);
+    for (const PlainPoint& point : points) {
+      const Matrix3d f = point.gradientAt(nodes);
+      least = std::min(least, f.determinant());
+      trace += (turn.transpose() * f).trace() / static_cast<double>(points.size());
+      expected += point.volume * kLame.mu * (f - turn).squaredNorm();
+      volume += point.volume;
+    }
+    if (least > -0.01 || sum.determinant() < 0.1) continue;
+    expected += 0.5 * volume * kLame.lambda * (trace - 3.0) * (trace - 3.0);
+    Tets<double> tets(cage, scale);
+    tets.settle(nodes);
+    EXPECT_NEAR(tets.energy(nodes), expected, 1e-9 * expected) << seed;
+  }
+}
+
 TYPED_TEST(CorotatedTetsOf, TellByHowMuchTheyHaveTurned) {
   onEachCage([&](const Cage& cage, const std::vector<double>& scale) {
     Tets<TypeParam> tets(cage, scale);

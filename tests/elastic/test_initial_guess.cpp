@@ -181,6 +181,8 @@ TEST(InitialGuess, IsUsedWhereSolvesTakeManyIterationsAndItSavesSome) {
     guess.learn(1.0, 1.0, kManyIterations);
   }
   EXPECT_GT(solvesWithout, 50) << "it is tried again, but not at once";
+  for (int k = 0; k < 7; ++k) solves(0.9);
+  EXPECT_TRUE(guess.isUsed()) << "as often as before";
 }
 
 }  // namespace

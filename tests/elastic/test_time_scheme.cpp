@@ -53,6 +53,7 @@ TEST(TimeScheme, NoVibrationGrowsAtAnyFrequencyAndDamping) {
       for (const TimeScheme& scheme :
            {elastic_detail::secondOrder(1.0, damping), elastic_detail::backwardEuler(1.0, damping)}) {
         EXPECT_LE(std::abs(factorsOf(scheme, 1.0, frequency).front()), 1.0 + 1e-9) << damping << ' ' << frequency;
+        EXPECT_TRUE(scheme.filter >= 0.0 && scheme.filter <= 1.0) << damping << ": it weighs a mean";
       }
     }
   }

@@ -155,6 +155,11 @@ void expectSolved(const Cage& cage, double alpha, double error, int iterations) 
       solver.solve(one.body.matrix, one.source(), right.data(), one.bySlot(one.positions()), target, 500, nullptr);
   EXPECT_LT(used, iterations);
   EXPECT_LT(apart(solutionOf(one.body), solved(dense, load)), error);
+  const VectorXd left = one.body.fromWide(one.body.matrix.residual());
+  for (std::size_t i = 0; i < 3 * one.body.nodes.size(); ++i) {
+    if (one.body.masses[i / 3] > 0.0) continue;
+    EXPECT_EQ(left[static_cast<Eigen::Index>(i)], 0.0) << "it is held";
+  }
 }
 
 /// As stiff as a beam of steel that sags by a thousandth of its length: the conjugate gradient alone needs thousands of

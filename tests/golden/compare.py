@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """What a change does to the bits: runs the demos of two builds, and says which scenes end differently.
 
-    tests/golden/compare.py BEFORE AFTER [--quick] [--only TEXT]
+    tests/golden/compare.py BEFORE AFTER [--quick] [--only TEXT...]
 
 BEFORE and AFTER are build folders with demos, of two commits on one machine: processors with other vector instructions
 round differently, and so do compilers, which is why no hashes are kept here. One line per scene that differs, that only
@@ -112,14 +112,14 @@ def main():
     parser.add_argument("before")
     parser.add_argument("after")
     parser.add_argument("--quick", action="store_true", help="small models and short runs, in half a minute")
-    parser.add_argument("--only", default="", help="only what has this in its name")
+    parser.add_argument("--only", nargs="+", default=[""], help="only what has one of these in its name")
     options = parser.parse_args()
     for build in (options.before, options.after):
         if not (pathlib.Path(build) / "demos" / "tetskin_drop").exists():
             parser.error(f"{build}: has no demos/tetskin_drop; build the demos there")
-    chosen = [(name, task) for name, task in tasks(options.quick) if options.only in name]
+    chosen = [(name, task) for name, task in tasks(options.quick) if any(text in name for text in options.only)]
     if not chosen:
-        parser.error(f"--only {options.only}: no scene has that in its name")
+        parser.error(f"--only {' '.join(options.only)}: no scene has that in its name")
     compared = faults = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         pairs = [(name, [pool.submit(task, build) for build in (options.before, options.after)])

@@ -6,6 +6,7 @@
 #include <tetskin/core/embedding.h>
 #include <tetskin/reduced/src/modes/cage_modes.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace tetskin {
@@ -106,6 +107,30 @@ TEST(CageModes, HaveTheMassOfTheFineTets) {
   EXPECT_LT((centre / mass - coarse.centre).norm(), 1e-4);
   // A box with sides 2, 0.5 and 0.5; masses at nodes lie slightly farther out.
   EXPECT_NEAR(coarse.inertia(1, 1) / (0.5 * 4.25 / 12), 1.0, 0.02);
+}
+
+TEST(CageModes, PinTheNodesThatCarryMoreOfWhatIsPinnedThanOfWhatIsNot) {
+  const VibrationModes& bar = barModes(true);
+  const Cage cage = barCage();
+  std::vector<double> surplus(cage.mesh.nodeCount(), 0.0);  // of what is pinned
+  std::vector<char> any(cage.mesh.nodeCount(), 0);
+  const auto bindings = embed(cage.mesh, viewOf(bar.nodes)).value().bindings();
+  for (std::size_t v = 0; v < bindings.size(); ++v) {
+    const bool held = std::count(bar.pinned.begin(), bar.pinned.end(), static_cast<int>(v)) > 0;
+    for (int k = 0; k < 4; ++k) {
+      const auto node = static_cast<std::size_t>(cage.mesh.tets[static_cast<std::size_t>(bindings[v].tet)][k]);
+      const double mass = static_cast<double>(bindings[v].weights[k]) * bar.masses[v];
+      surplus[node] += held ? mass : -mass;
+      any[node] |= held && mass > 1e-6 * bar.masses[v];
+    }
+  }
+  const CageModes found = modes(bar, cage.mesh);
+  int shared = 0;
+  for (std::size_t n = 0; n < surplus.size(); ++n) {
+    EXPECT_EQ(found.pinned[n] != 0, surplus[n] > 0.0) << n;
+    shared += any[n] != 0 && surplus[n] < 0.0;
+  }
+  EXPECT_GT(shared, 0);
 }
 
 TEST(CageModes, AreCarriedByTheTetsThatAreNamed) {

@@ -4,9 +4,13 @@
 // What the rows of contacts between soft bodies begin a step with, made by hand.
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/contact_rows.h>
+#include <tetskin/solver/src/rows/fixed_nodes.h>
+#include <tetskin/solver/src/step/recorded_forces.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <memory>
+#include <utility>
 
 #include "deformable_test.h"
 
@@ -102,6 +106,69 @@ TEST_F(WarmRows, OfASampleThatIsNewRecallWhatItsPointHasDone) {
   begin({contact(7, 5), contact(9, 5)});
   expectRecalled(0, kOneSlip, 1);
   expectRecalled(1, btVector3(0, 0, 0), 0);
+}
+
+/// Bullet finds contacts where a kinematic body is at the end of the step: the gap at its beginning is larger by the
+/// way that the body comes nearer.
+TEST_F(WarmRows, OfBulletsContactsBeginAsFarAwayAsTheStepDoes) {
+  btBoxShape shape(btVector3(1, 1, 1));
+  btRigidBody lift(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape));
+  const btVector3 rate(0, btScalar(0.6), 0);
+  lift.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  lift.setActivationState(DISABLE_DEACTIVATION);
+  lift.setLinearVelocity(rate);
+  btSoftBody& body = upper_->body();
+  btSoftBody::DeformableNodeRigidContact found;
+  found.m_node = &body.m_nodes[0];
+  found.m_cti.m_colObj = &lift;
+  found.m_cti.m_normal = kUp;
+  found.m_cti.m_offset = btScalar(0.01);
+  found.m_c3 = 1;
+  body.m_nodeRigidContacts.push_back(found);
+  rows_.collect(bodies_, rigids_, kStepSeconds);
+  ASSERT_EQ(rows_.rows().size(), 1U);
+  EXPECT_NEAR(rows_.rows()[0].gapVelocity * kStepSeconds, 0.01 + 0.6 * kStepSeconds, 1e-5);
+  EXPECT_NEAR(rows_.rows()[0].relative.y(), -0.6, 1e-5);
+  body.m_nodeRigidContacts.clear();
+}
+
+TEST_F(WarmRows, OfANodeBeginWithTheDirectionsInWhichBulletFixesIt) {
+  btAlignedObjectArray<btSoftBody*> all;
+  all.push_back(&upper_->body());
+  btDeformableContactProjection projection(all);
+  const SolvedBody& body = *bodies_.find(&upper_->body());
+  const btVector3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const auto fix = [&](int node, std::initializer_list<btVector3> directions) {
+    btAlignedObjectArray<btVector3> list;
+    for (const btVector3& direction : directions) list.push_back(direction);
+    projection.m_projectionsDict.insert(btHashInt(body.first + node), list);
+  };
+  fix(0, {x});
+  fix(1, {x, y});
+  fix(2, {x, x});
+  fix(3, {x, y, z});
+  listFixedNodes(projection, bodies_);
+  ASSERT_EQ(body.fixed.size(), 4U);
+  EXPECT_EQ(body.fixed[0].kind, FixedNode::AlongDirection);
+  EXPECT_EQ(body.fixed[1].kind, FixedNode::AllButDirection);
+  EXPECT_NEAR(std::abs(body.fixed[1].direction.z()), 1, 1e-6);
+  EXPECT_EQ(body.fixed[2].kind, FixedNode::AlongDirection);
+  EXPECT_EQ(body.fixed[3].kind, FixedNode::Fixed);
+}
+
+/// Of a pair, whichever of the two it is whose point is in contact.
+TEST_F(WarmRows, AreRecordedForBothBodiesOfAPair) {
+  PointContact below = contact(8, 4, -kUp);
+  std::swap(below.at, below.onObject);
+  below.body = &lower_->body();
+  below.object = &upper_->body();
+  begin({contact(7, 3), below});
+  end({{btVector3(0, 0, 0), 1}, {btVector3(0, 0, 0), 2}});
+  RecordedForces recorded(world_.deformable());
+  recorded.record(bodies_, rows_, kStepSeconds);
+  const btVector3 up = recorded.on(upper_->body(), &lower_->body()).total().force;
+  EXPECT_GT(up.y(), 0) << "both push it up";
+  EXPECT_EQ(recorded.on(lower_->body(), &upper_->body()).total().force, -up);
 }
 
 /// A fold is pushed several ways.

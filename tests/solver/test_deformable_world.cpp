@@ -44,6 +44,56 @@ TEST(DeformableWorld, ABodySlidesAlongAPlaneAnyFar) {
   EXPECT_NEAR(low.y(), 0, 0.05);
 }
 
+TEST(DeformableWorld, AFloorThatIsTurnedRubsAgainstTheWay) {
+  for (const btScalar angle : {btScalar(0), btScalar(1), btScalar(2.5)}) {
+    tetskin::DeformableWorld world(DeformableWorldOptions{btVector3(0, -10, 0), nullptr});
+    btBoxShape box(btVector3(20, 1, 20));
+    btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &box));
+    floor.setWorldTransform(btTransform(btQuaternion(btVector3(0, 1, 0), angle), btVector3(0, -1, 0)));
+    floor.setFriction(1);
+    world.addRigidBody(&floor);
+    SoftBodyOptions options;
+    options.friction = 0.3;
+    const auto body = DeformableBody::add(world, smallCageAbove(btScalar(0.02)), options).value();
+    for (int step = 0; step < 60; ++step) world.stepSimulation(btScalar(1) / 240, 0);
+    const auto centre = [&] {
+      btVector3 low, high;
+      body->body().getAabb(low, high);
+      return (low + high) / 2;
+    };
+    const btVector3 from = centre();
+    body->body().addVelocity(btVector3(3, 0, 0));
+    for (int step = 0; step < 480; ++step) world.stepSimulation(btScalar(1) / 240, 0);
+    const btVector3 way = centre() - from;
+    EXPECT_NEAR(way.x(), 9 / (2 * 0.3 * 10), 0.1) << angle << ": v^2 / (2 mu g)";
+    EXPECT_NEAR(way.z(), 0, 0.02) << angle;
+    world.removeRigidBody(&floor);
+  }
+}
+
+btSoftBody::Node* nodeToMove = nullptr;
+
+TEST(DeformableWorld, ANodeThatTheApplicationMovesWithinAStepStaysThere) {
+  tetskin::DeformableWorld world(DeformableWorldOptions{btVector3(0, 0, 0), nullptr});
+  btStaticPlaneShape plane(btVector3(0, 1, 0), 0);
+  btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane));
+  world.addRigidBody(&floor);
+  const auto body = DeformableBody::add(world, smallCageAbove(1)).value();
+  static_cast<btCollisionDispatcher*>(world.getDispatcher())
+      ->setNearCallback([](btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+        if (nodeToMove) nodeToMove->m_x += btVector3(btScalar(0.01), 0, 0);
+        nodeToMove = nullptr;
+        btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+      });
+  world.stepSimulation(btScalar(1) / 240, 0);
+  nodeToMove = &body->body().m_nodes[0];
+  const btVector3 before = nodeToMove->m_x;
+  world.stepSimulation(btScalar(1) / 240, 0);
+  EXPECT_EQ(nodeToMove, nullptr);
+  EXPECT_LT((body->body().m_nodes[0].m_x - before - btVector3(btScalar(0.01), 0, 0)).length(), 1e-5);
+  world.removeRigidBody(&floor);
+}
+
 /// A cube of this size that lies on a floor, a plane through the origin if none is given.
 class LyingCube {
  public:

@@ -181,6 +181,28 @@ TEST(ForeignForces, HaveAMaterialOfTheirOwn) {
   EXPECT_NEAR(tip(true), tip(false), 0.005);  // one iterative solve serves all bodies of a world
 }
 
+/// An error in them would recur in each step.
+TEST(ForeignForces, OnABodyOfOursAreSolvedForCloselyWhateverItsTolerance) {
+  const auto moved = [](double tolerance) {
+    test::TetskinWorld world;
+    TetMesh beam = test::latticeCage(8, 2, 2, 0.25);
+    for (Eigen::Vector3d& p : beam.nodes) p.y() += 20;
+    SoftBodyOptions options;
+    options.pinned = [](const Eigen::Vector3d& p) { return p.x() < 0.1; };
+    options.youngsModulus = 600;
+    options.solverTolerance = tolerance;
+    const auto ours = added(world, beam, options);
+    btDeformableNeoHookeanForce more(400, 600, btScalar(0.05));
+    world.deformable().addForce(&ours->body(), &more);
+    step(world, 20);
+    world.deformable().removeForce(&ours->body(), &more);
+    return static_cast<double>(test::lowest(ours->body()));
+  };
+  const double closely = moved(1e-6);
+  EXPECT_LT(closely, 19.9);
+  EXPECT_NEAR(moved(1e-2), closely, 2e-5);
+}
+
 TEST(DeformableBody, MayOutliveItsWorld) {
   std::unique_ptr<DeformableBody> body;
   {

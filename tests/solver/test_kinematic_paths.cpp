@@ -74,9 +74,16 @@ TEST_F(KinematicPath, BeginsAtRestAndIsEvenThroughAllStepsOfLaterFrames) {
         expectAt(path.before, frames(step) * way, frames(step) * angle);
         expectAt(path.now(), frames(step + 1) * way, frames(step + 1) * angle);
       }
-      const auto& standing = paths.advance(body, kPathStep);
-      expectAt(standing.before, 3 * way, 3 * angle);
-      expectAt(standing.now(), 3 * way, 3 * angle);
+      for (int step = 0; step < 2 * steps; ++step) {
+        const auto& standing = paths.advance(body, kPathStep);
+        expectAt(standing.before, 3 * way, 3 * angle);
+        expectAt(standing.now(), 3 * way, 3 * angle);
+      }
+      move(way, angle, static_cast<btScalar>(steps));
+      for (int step = 1; step <= steps; ++step) {  // it begins at rest again
+        const btScalar made = 3 + firstWay(static_cast<btScalar>(step) / static_cast<btScalar>(steps));
+        expectAt(paths.advance(body, kPathStep).now(), made * way, made * angle);
+      }
     }
   }
 }

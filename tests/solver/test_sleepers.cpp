@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/solver/src/motion/sleepers.h>
+#include <tetskin/solver/src/motion/stillness.h>
+#include <tetskin/solver/src/rows/solver_bodies.h>
 
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include "deformable_test.h"
 
@@ -108,6 +113,55 @@ TEST_F(SleepingBody, IsWokenByWhatChangesBetweenFallingAsleepAndTheNextStep) {
     body->m_cfg.kDF /= 2;
     EXPECT_EQ(wakes(1), stored);
   }
+}
+
+/// A body for which Bullet has counted five seconds of stillness.
+class StillBody : public testing::Test {
+ protected:
+  void SetUp() override {
+    btAlignedObjectArray<btSoftBody*> listed, awake;
+    world.deformable().setGravity(btVector3(0, -10, 0));
+    listed.push_back(&made->body());
+    bodies.collect(listed, false, awake);
+    bodies.assign(*world.bodySolver().getLagrangianForceArray());
+  }
+  /// The time for which it has been still, as the next step takes it.
+  btScalar judged(Stillness& by) {
+    made->body().setDeactivationTime(5);
+    made->body().m_maxSpeedSquared = 0;
+    by.judge(bodies, rigids, btScalar(1) / 60);
+    return made->body().getDeactivationTime();
+  }
+
+  TetskinWorld world;
+  std::unique_ptr<DeformableBody> made = added(world, smallCageAbove(5));
+  SolverBodies bodies;
+  RigidUnknowns rigids;
+  Stillness stillness;
+};
+
+TEST_F(StillBody, WaitsAnewOnceItHasMovedByAboutAFortiethOfItsSizeTimesTheThreshold) {
+  const btScalar allowed = btScalar(0.025) * made->body().m_sleepingThreshold * sizeOf(made->body());
+  EXPECT_EQ(judged(stillness), 5);
+  const std::pair<double, btScalar> moves[] = {{0.3, 5}, {0.2, 5}, {0.6, 0}, {0.5, 5}, {0.6, 0}};
+  for (const auto& [way, time] : moves) {
+    made->body().translate(btVector3(0, static_cast<btScalar>(way) * allowed, 0));
+    EXPECT_EQ(judged(stillness), time) << way;
+  }
+}
+
+TEST_F(StillBody, OfASnapshotGoesOnWithTheMeanOfItsVelocity) {
+  made->body().setVelocity(btVector3(btScalar(0.005), 0, 0));
+  EXPECT_LT(judged(stillness), 5) << "it has just begun to move so";
+  for (int step = 0; step < 100; ++step) judged(stillness);
+  EXPECT_EQ(judged(stillness), 5);
+  unsigned char bytes[1000];
+  WorldStream out(world.deformable(), bytes, sizeof bytes);
+  stillness.visitState(out);
+  Stillness restored;
+  WorldStream in(world.deformable(), static_cast<const unsigned char*>(bytes), sizeof bytes);
+  restored.visitState(in);
+  EXPECT_EQ(judged(restored), 5);
 }
 
 }  // namespace
