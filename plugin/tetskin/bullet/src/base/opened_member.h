@@ -8,9 +8,19 @@
 
 namespace tetskin::bullet_detail {
 
-/// One member: after `struct Name { friend Type Object::*memberOf(Name); }`,
-///     template struct Opened<Name, &Object::m_hidden>;
-/// makes `object.*memberOf(Name())` that member.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wnon-template-friend"  // as meant: each of these templates has a function of its own
+#endif
+
+/// The only member of a type, of a class, that is opened: after
+///     using ThatMember = Hidden<Object, Type>;
+///     template struct Opened<ThatMember, &Object::m_hidden>;
+/// `object.*memberOf(ThatMember())` is that member.
+template <class Object, class Type>
+struct Hidden {
+  friend Type Object::*memberOf(Hidden);
+};
+
 template <class Name, auto member>
 struct Opened {
   friend decltype(member) memberOf(Name) { return member; }

@@ -17,9 +17,7 @@ namespace tetskin::bullet_detail {
 
 using World = btDeformableMultiBodyDynamicsWorld;
 
-struct ActionsMember {
-  friend btAlignedObjectArray<btActionInterface*> btDiscreteDynamicsWorld::*memberOf(ActionsMember);
-};
+using ActionsMember = Hidden<btDiscreteDynamicsWorld, btAlignedObjectArray<btActionInterface*>>;
 template struct Opened<ActionsMember, &btDiscreteDynamicsWorld::m_actions>;
 
 bool isWithinStep(const DeformableSolver& solver) {
