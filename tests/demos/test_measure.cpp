@@ -47,7 +47,7 @@ TEST_F(Measure, NothingIsLostInFreeFlight) {
 }
 
 TEST_F(Measure, SaysWhatIsPromisedAndWhetherItHolds) {
-  const CommandResult result = measure({"--only", "thin plate", "--json", "m.json", "--markdown", "m.md"});
+  const CommandResult result = measure({"--only", "thin plate", "--json", "m.json"});
   ASSERT_EQ(result.status, 0) << result.out << result.err;
   for (const auto& scene : folder.json("m.json")) {
     const auto gap = figuresOf(scene).at("least gap, S");
@@ -55,8 +55,6 @@ TEST_F(Measure, SaysWhatIsPromisedAndWhetherItHolds) {
     EXPECT_GE(gap["value"].get<double>(), gap["least"].get<double>()) << scene;
     EXPECT_EQ(gap.count("most"), 0u) << scene;
   }
-  EXPECT_NE(folder.read("m.md").find("| thin plate, k50, k500 | least gap, S | >= -0.009 |"), std::string::npos)
-      << folder.read("m.md");
   EXPECT_NE(result.out.find(" passed\n"), std::string::npos) << result.out;
 }
 
@@ -97,10 +95,6 @@ TEST_F(Measure, PromisesNothingOfBulletsSolver) {
   EXPECT_NE(result.out.find("FAILED"), std::string::npos) << result.out;
   const auto bullet = folder.json("b.json");
   EXPECT_FALSE(figuresOf(bullet[0]).at("linear momentum lost")["passed"].get<bool>()) << bullet;
-  ASSERT_EQ(measure({"--only", "free flight/k500", "--bullet", "b.json", "--markdown", "m.md", "--quiet"}).status, 0);
-  const std::string table = folder.read("m.md");
-  EXPECT_NE(table.find("| tetskin-surface | Bullet |"), std::string::npos) << table;
-  EXPECT_NE(table.find("| hit, k50, k500 | linear momentum lost | <= 0.001 |  | **"), std::string::npos) << table;
 }
 
 /// A shape of each kind: the distances that the program measures and the contacts are computed independently.
@@ -188,8 +182,6 @@ TEST_F(Measure, RefusesWhatItDoesNotKnow) {
   expectRefused(measure({"--only", "flying"}), "flying");
   expectRefused(measure({"--group", "stress", "--elasticity", "tetskin", "--only", "mesh/"}), "mesh/");
   expectRefused(measure({"--elasticity", "bullet", "--contact", "surface"}), "--contact surface");
-  folder.write("other.json", "{\"a\": 1}");
-  expectRefused(measure({"--before", "other.json", "--only", "thin"}), "other.json");
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <LinearMath/btScalar.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -176,22 +175,6 @@ TEST_F(Options, OneOfSeveralProgramsHasTheSameDescriptionAndPlaceInAll) {
                              "--elasticity", "--contact", "--self-contact", "--hash", "--view", "--quick"}) {
     EXPECT_GT(programs[shared], 1) << shared;
   }
-}
-
-TEST_F(Options, AnEarlierNameIsAnsweredByThePresentOne) {
-  const std::array<const char*, 3> renamed[] = {{TETSKIN_DROP, "--force", "--elasticity"},
-                                                {TETSKIN_MEASURE, "--force", "--elasticity"},
-                                                {TETSKIN_ERROR_VS_TIME, "--scene", "--scenes"},
-                                                {TETSKIN_DRAG, "--stiffness", "--spring-stiffness"},
-                                                {TETSKIN_DRAG, "--whole", "--no-duplicate-elements"},
-                                                {TETSKIN_CAGE, "--loose", "--no-fit"}};
-  for (const auto& [path, before, now] : renamed) {
-    for (const char* end : {"", "=3"}) {
-      expectRefused(folder.run(path, {std::string(before) + end}),
-                    std::string(before) + ": this option is now called " + now + "\n");
-    }
-  }
-  expectRefused(folder.run(TETSKIN_MEASURE, {"--frames", "3"}), "--frames");  // this program never had this option
 }
 
 // The tests of the pages run the examples themselves.
