@@ -247,8 +247,7 @@ void BodyWithTrees::returnToStart() {
 }
 
 void BodyWithTrees::visitState(WorldStream& stream) {
-  stream(reach_);
-  stream(shifted_);
+  stream(reach_, shifted_);
   if (!stream.restoring()) return;
   countMove();
   setSpeculation(0);

@@ -313,10 +313,7 @@ void BodyContacts::visitState(WorldStream& stream) {
 }
 
 void BodyContacts::visitShape(WorldStream& stream, KnownShape& shape) {
-  stream(shape.key.low);
-  stream(shape.key.high);
-  stream(shape.lastStep);
-  stream(shape.isRemembered);
+  stream(shape.key.low, shape.key.high, shape.lastStep, shape.isRemembered);
   stream.array(shape.memory.touched);
   if (!stream.restoring()) return;
   remembered_ += shape.isRemembered;
