@@ -12,16 +12,15 @@
 namespace tetskin::scenes {
 
 Formats formatsOf(const OutputOptions& options) {
-  if (options.formats.empty()) return {true, GlbWriter::whyNot().empty(), false};
+  if (options.formats.empty()) return {true, GlbWriter::whyNot().empty()};
   const auto has = [&](const char* name) {
     return std::count(options.formats.begin(), options.formats.end(), name) > 0;
   };
-  return {has("obj"), has("glb"), has("pc2")};
+  return {has("obj"), has("glb")};
 }
 
 std::string firstFileOf(const OutputOptions& options) {
-  const Formats formats = formatsOf(options);
-  return options.out + (formats.obj ? "/frame_0000.obj" : formats.glb ? "/animation.glb" : "/animation.pc2");
+  return options.out + (formatsOf(options).obj ? "/frame_0000.obj" : "/animation.glb");
 }
 
 void requireFormats(const OutputOptions& options) {
