@@ -8,7 +8,6 @@
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace tetskin {

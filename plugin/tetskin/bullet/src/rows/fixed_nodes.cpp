@@ -4,7 +4,6 @@
 #include <tetskin/bullet/src/forces/node_vectors.h>
 #include <tetskin/bullet/src/rows/fixed_nodes.h>
 
-#include <algorithm>
 #include <cassert>
 
 namespace tetskin::bullet_detail {

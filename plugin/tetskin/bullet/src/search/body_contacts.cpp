@@ -7,7 +7,6 @@
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/search/kinematic_paths.h>
-#include <tetskin/core/src/base/mesh/mesh_checks.h>
 
 #include <algorithm>
 #include <cassert>

@@ -10,7 +10,6 @@
 #include <tetskin/bullet/src/step/step.h>
 
 #include <algorithm>
-#include <cassert>
 
 namespace tetskin {
 namespace {
