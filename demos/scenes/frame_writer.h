@@ -45,10 +45,9 @@ FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, c
 void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const OutputOptions& options);
 
 /// An OBJ sequence of surfaces in double precision, written as float where that suffices; and optionally the cages
-/// beside them. The
-/// folder holds the frames of one run: files of an earlier run that this one does not overwrite are removed when the
-/// first frame is written. `.tetskin_frames` lists the files that a run writes; no other file is touched, and a folder
-/// that contains frames which the list does not name is refused.
+/// beside them. The folder holds the frames of one run: files of an earlier run that this one does not overwrite are
+/// removed when the first frame is written. `.tetskin_frames` lists the files that a run writes; no other file is
+/// touched, and a folder that contains frames which the list does not name is refused.
 ///
 /// Materials are written twice: once for all frames, named by their first line, and once beside each frame under its
 /// own name, where f3d looks for them.

@@ -6,11 +6,11 @@
 // Only snapshots, and what must not change a world by looking at it, may reach into Bullet in this way.
 #pragma once
 
+#include <tetskin/core/src/base/compiler.h>
+
 namespace tetskin::bullet_detail {
 
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wnon-template-friend"  // as meant: each of these templates has a function of its own
-#endif
+TETSKIN_FRIENDS_OF_TEMPLATES
 
 /// The only member of a type, of a class, that is opened: after
 ///     using ThatMember = Hidden<Object, Type>;
