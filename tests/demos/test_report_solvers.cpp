@@ -93,7 +93,6 @@ TEST_F(ReportSolvers, RefusesWhatCannotBeCompared) {
   for (const report::Solver solver : report::kSolvers) expectRefused(run({"--solvers", "havok"}), nameOf(solver));
   expectRefused(run({"--solvers", "xpbd", "--scenes", "drop"}), "no contact");
   expectRefused(run({"--solvers", "xpbd", "--cages", "same"}), "--cages");
-  expectRefused(run({"--solvers", "xpbd", "--view", "v.html"}), "--view");
   expectRefused(run({"--solvers", "xpbd", "--xpbd-substeps", "0"}), "--xpbd-substeps");
   expectRefused(run({"--xpbd-substeps", "4"}), "--solvers");
   expectRefused(run({"--repetitions", "4"}), "--solvers");
