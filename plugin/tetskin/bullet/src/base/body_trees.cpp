@@ -247,7 +247,8 @@ void BodyWithTrees::returnToStart() {
 }
 
 void BodyWithTrees::visitState(WorldStream& stream) {
-  stream(reach_, shifted_);
+  stream(reach_);
+  stream(shifted_);
   if (!stream.restoring()) return;
   countMove();
   setSpeculation(0);

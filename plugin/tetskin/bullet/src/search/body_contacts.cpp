@@ -7,6 +7,7 @@
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/bullet/src/search/body_contacts.h>
 #include <tetskin/bullet/src/search/kinematic_paths.h>
+#include <tetskin/core/src/base/mesh/mesh_checks.h>
 
 #include <algorithm>
 #include <cassert>
@@ -312,7 +313,10 @@ void BodyContacts::visitState(WorldStream& stream) {
 }
 
 void BodyContacts::visitShape(WorldStream& stream, KnownShape& shape) {
-  stream(shape.key.low, shape.key.high, shape.lastStep, shape.isRemembered);
+  stream(shape.key.low);
+  stream(shape.key.high);
+  stream(shape.lastStep);
+  stream(shape.isRemembered);
   stream.array(shape.memory.touched);
   if (!stream.restoring()) return;
   remembered_ += shape.isRemembered;

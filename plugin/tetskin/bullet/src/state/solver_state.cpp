@@ -135,7 +135,9 @@ void visitSolver(WorldStream& stream, DeformableSolver& solver) {
 
 void visitSolverSettings(WorldStream& stream, DeformableSolver& solver) {
   DeformableSolver::Impl& impl = *solver.impl_;
-  stream(impl.deterministic, impl.nodeNormals, impl.always);
+  stream(impl.deterministic);
+  stream(impl.nodeNormals);
+  stream(impl.always);
 }
 
 }  // namespace tetskin::bullet_detail
@@ -143,7 +145,10 @@ void visitSolverSettings(WorldStream& stream, DeformableSolver& solver) {
 namespace tetskin {
 
 void DeformableSolver::Impl::visitFlags(WorldStream& stream) {
-  stream(solver.m_dt, solver.m_useProjection, solver.m_lineSearch, solver.m_implicit);
+  stream(solver.m_dt);
+  stream(solver.m_useProjection);
+  stream(solver.m_lineSearch);
+  stream(solver.m_implicit);
 }
 
 }  // namespace tetskin
