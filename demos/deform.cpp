@@ -135,8 +135,9 @@ std::string formatOf(const std::string& path) {
 /// What the command line makes of the deformed cages, one after the other.
 class Output {
  public:
-  Output(const DeformCommand& command, const Model& model, const SkinBinding<double>& binding) : command_(command) {
-    if (formatOf(command.output) == ".glb") {
+  Output(const DeformCommand& command, const Model& model, const SkinBinding<double>& binding)
+      : command_(command), format_(formatOf(command.output)) {
+    if (format_ == ".glb") {
       auto writer = GlbWriter::create(command.output, command.frameRate);
       require(writer.status());
       glb_.emplace(std::move(writer).value());
@@ -145,26 +146,34 @@ class Output {
       const auto added = glb_->addModel(name, model.cage, model.mesh, binding.embedding(), command.skin.interpolation);
       require(added.status());
       glb_->addBody(added.value(), name);
+    } else if (format_ == ".pc2") {
+      auto writer = Pc2Writer::create(command.output, model.mesh.vertexCount());
+      require(writer.status());
+      pc2_.emplace(std::move(writer).value());
     }
   }
 
   void add(const TetMesh& deformed, const MeshSkin<double>& skin, const ObjLayout& layout) {
     if (glb_) return require(glb_->addFrame({viewOf(deformed.nodes)}));
+    if (pc2_) return require(pc2_->addFrame(skin.positions()));
     writeSurface(skin, layout, command_.output);
   }
   void finish() {
     if (glb_) require(glb_->finish());
+    if (pc2_) require(pc2_->finish());
   }
 
  private:
   const DeformCommand& command_;
+  std::string format_;
   std::optional<GlbWriter> glb_;
+  std::optional<Pc2Writer> pc2_;
 };
 
 void requireOneFrame(const DeformCommand& command) {
   if (command.deformed.size() == 1 || formatOf(command.output) != ".obj") return;
   throw InputError(command.output + ": an OBJ file holds one frame, and --deformed names " +
-                   std::to_string(command.deformed.size()) + "; use .glb");
+                   std::to_string(command.deformed.size()) + "; use .glb or .pc2");
 }
 
 nlohmann::ordered_json summarise(const Model& model, const DeformCommand& command, const EmbedReport& fit,
@@ -231,12 +240,13 @@ int main(int argc, char** argv) {
         {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed now.vtk -o now.obj --normals transformed",
          "the deformed mesh with its normals"},
         {"tetskin_deform --mesh yours.obj --cage rest.vtk --deformed rest.vtk now.vtk -o all.glb",
-         "the mesh moving as the cages do, one after the other"}},
+         "the mesh moving as the cages do, one after the other; or all.pc2"}},
        ""});
   line.addInput("--mesh", command.model.mesh, "at rest", kRequired);
   line.addInput("--cage", command.model.cage, "at rest", kRequired);
-  line.addInputs("--deformed", command.deformed, "several for .glb: a frame each", kRequired);
-  line.addOutput("-o,--output", command.output, "the deformed mesh: .obj or .glb", kRequired, {".obj", ".glb"});
+  line.addInputs("--deformed", command.deformed, "several for .glb and .pc2: a frame each", kRequired);
+  line.addOutput("-o,--output", command.output, "the deformed mesh: .obj, .glb or .pc2", kRequired,
+                 {".obj", ".glb", ".pc2"});
   line.addPositive("--frame-rate", command.frameRate, "Frames per second of a .glb");
   line.addInterpolationOption(command.skin);
   line.addSkinOptions(command.skin);

@@ -396,7 +396,7 @@ void CommandLine::addOutputOptions(OutputOptions& options) {
   const auto inFolder = [&](const char* name) { return (std::filesystem::path(options.out) / name).string(); };
   addCount("--frames", options.frames, "", kMaxFrames);
   addFolder("--out", options.out, "", isOfFrames);
-  const std::vector<std::string> formats = {"obj", "glb"};
+  const std::vector<std::string> formats = {"obj", "glb", "pc2"};
   labelled(parser_->add("--format", options.formats, "")->delimiter(',')->check(isOneOf(formats)), "LIST", "obj,glb");
   addCount("--every", options.every, "", kMaxFrames);
   addOutput("--view", options.view, "", Need::Optional, {}, options.viewByDefault ? inFolder("view.html") : "");

@@ -29,7 +29,7 @@ struct OutputOptions {
   std::string out;   ///< folder of the frames
   std::string json;  ///< file of the summary; empty: summary.json in the folder
   int frames = 0;
-  int every = 1;  ///< write every n-th frame as OBJ
+  int every = 1;  ///< write every n-th frame as OBJ and PC2
   bool quiet = false;
   std::string view = {};          ///< file of a page that plays the run; empty: none, unless there is one by default
   bool viewByDefault = false;     ///< by default view.html in the folder, where a page can be made
@@ -40,7 +40,7 @@ struct OutputOptions {
   std::string replay = {};        ///< file of a run to play
   std::string program = {};       ///< the demo's name, and its arguments without the files of a run
   std::vector<std::string> arguments = {};
-  std::vector<std::string> formats = {};  ///< "obj", "glb"; empty: see `formatsOf`
+  std::vector<std::string> formats = {};  ///< "obj", "glb", "pc2"; empty: see `formatsOf`
 };
 
 /// A whole command line, and a description of what it does.

@@ -12,15 +12,16 @@
 namespace tetskin::scenes {
 
 Formats formatsOf(const OutputOptions& options) {
-  if (options.formats.empty()) return {true, GlbWriter::whyNot().empty()};
+  if (options.formats.empty()) return {true, GlbWriter::whyNot().empty(), false};
   const auto has = [&](const char* name) {
     return std::count(options.formats.begin(), options.formats.end(), name) > 0;
   };
-  return {has("obj"), has("glb")};
+  return {has("obj"), has("glb"), has("pc2")};
 }
 
 std::string firstFileOf(const OutputOptions& options) {
-  return options.out + (formatsOf(options).obj ? "/frame_0000.obj" : "/animation.glb");
+  const Formats formats = formatsOf(options);
+  return options.out + (formats.obj ? "/frame_0000.obj" : formats.glb ? "/animation.glb" : "/animation.pc2");
 }
 
 void requireFormats(const OutputOptions& options) {

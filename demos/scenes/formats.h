@@ -12,6 +12,7 @@ namespace tetskin::scenes {
 struct Formats {
   bool obj = true;   ///< every n-th frame in a file of its own
   bool glb = false;  ///< all frames in one file
+  bool pc2 = false;  ///< every n-th frame in one file, and the mesh in another
 };
 
 /// The formats that the command line requests; without a request, OBJ and, where this build can write it, GLB.

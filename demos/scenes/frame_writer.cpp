@@ -23,6 +23,9 @@ namespace {
 constexpr const char* kListName = ".tetskin_frames";
 /// The material library of all frames.
 constexpr const char* kLibraryName = "tetskin_frames.mtl";
+constexpr const char* kCacheName = "animation.pc2";
+constexpr const char* kCacheMeshName = "animation.obj";
+constexpr std::size_t kCacheHeader = 32, kCachePoint = 12;  ///< bytes
 
 std::string cageName(int frame) {
   char name[32];
@@ -56,7 +59,7 @@ std::string framesText(int count) {
 
 /// A file that has its name only at the end of a run.
 bool isOfAllFrames(const std::string& name) {
-  return name == "animation.glb";
+  return name == "animation.glb" || name == kCacheName || name == kCacheMeshName || name == "animation.mtl";
 }
 
 }  // namespace
@@ -105,6 +108,7 @@ void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const Out
   const FramePlan plan = framePlanOf(options);
   double bytes = 0.0;
   if (plan.formats.obj) bytes += static_cast<double>(layout.format(viewOf(std::as_const(points)), buffer).size());
+  if (plan.formats.pc2) bytes += static_cast<double>(kCachePoint * points.size());
   requireRoom(plan, plan.count() * bytes);
 }
 
@@ -154,21 +158,42 @@ void FrameWriter::writeFrame(int frame, PointView<const Scalar> surface, PointVi
   if (frame == 0) {
     std::vector<char> buffer;
     const std::size_t obj = layout_.format(surface, buffer, normals).size() + plan_.materials.size();
-    const std::size_t ofFrame = (plan_.formats.obj ? obj : 0) + (cage ? vtkBytes(*cage) : 0);
-    begin(plan_.count() * static_cast<double>(ofFrame) + otherBytes_);
+    const std::size_t point = kCachePoint * surface.size(), beside = cage ? vtkBytes(*cage) : 0;
+    const auto [writesObj, writesGlb, writesCache] = plan_.formats;
+    const std::size_t ofFrame = (writesObj ? obj : 0) + (writesCache ? point : 0) + beside;
+    begin(plan_.count() * static_cast<double>(ofFrame) + static_cast<double>(writesCache ? obj + kCacheHeader : 0) +
+          otherBytes_);
+    if (writesCache) beginCache(surface, normals);
     layout_ = {};
   }
   if (plan_.formats.obj) {
     require(writer_.write(frame, surface, normals));
     writeMaterials(fs::path(writer_.framePath(frame)).stem().string() + ".mtl", plan_.materials);
   }
+  if (cache_) require(cache_->addFrame(surface));
   if (cage) require(saveTetMesh(*cage, pathOf(cageName(frame))));
+}
+
+template <class Scalar>
+void FrameWriter::beginCache(PointView<const Scalar> surface, PointView<const float> normals) {
+  require(layout_.writeTo(pathOf(kCacheMeshName), surface, normals));
+  writeMaterials("animation.mtl", plan_.materials);
+  Result<Pc2Writer> cache =
+      Pc2Writer::create(pathOf(kCacheName), surface.size(), 0.0f, static_cast<float>(plan_.every));
+  require(cache.status());
+  cache_.emplace(std::move(cache).value());
 }
 
 void FrameWriter::addOther(const std::string& name, double bytes) {
   others_.push_back(name);
   otherBytes_ += bytes;
   refuseFramesOfOthers();
+}
+
+void FrameWriter::finish() {
+  if (!cache_) return;
+  require(cache_->finish());
+  cache_.reset();
 }
 
 /// All frames have about as many bytes as the first one.
@@ -186,6 +211,7 @@ void FrameWriter::begin(double bytes) {
 std::string FrameWriter::announcement(double bytes) const {
   std::vector<std::string> parts;
   if (plan_.formats.obj || plan_.cages) parts.push_back(framesText(plan_.count()));
+  if (plan_.formats.pc2) parts.emplace_back(kCacheName);
   parts.insert(parts.end(), others_.begin(), others_.end());
   std::string text = "writing ";
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -206,6 +232,8 @@ std::vector<std::string> FrameWriter::filesOf(int frame) const {
 std::vector<std::string> FrameWriter::filesOfAllFrames() const {
   std::vector<std::string> names = others_;
   if (!plan_.materials.empty()) names.emplace_back(kLibraryName);
+  if (plan_.formats.pc2) names.insert(names.end(), {kCacheName, kCacheMeshName});
+  if (plan_.formats.pc2 && !plan_.materials.empty()) names.emplace_back("animation.mtl");
   if (!plan_.obstacles.positions.empty()) names.insert(names.end(), {"obstacles.obj", "obstacles.mtl"});
   for (int count = 0; count < plan_.count(); ++count) {
     for (std::string& name : filesOf(count * plan_.every)) names.push_back(std::move(name));

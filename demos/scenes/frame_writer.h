@@ -3,8 +3,10 @@
 #pragma once
 
 #include <tetskin/core/mesh.h>
+#include <tetskin/io/animation.h>
 #include <tetskin/io/obj_sequence.h>
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -44,10 +46,11 @@ FramePlan framePlanOf(const OutputOptions& options, const TriangleMesh& drawn, c
 /// is checked again before the first frame.
 void requireRoomFor(const TriangleMesh& mesh, const ObjLayout& layout, const OutputOptions& options);
 
-/// An OBJ sequence of surfaces in double precision, written as float where that suffices; and optionally the cages
-/// beside them. The folder holds the frames of one run: files of an earlier run that this one does not overwrite are
-/// removed when the first frame is written. `.tetskin_frames` lists the files that a run writes; no other file is
-/// touched, and a folder that contains frames which the list does not name is refused.
+/// An OBJ sequence of surfaces in double precision, written as float where that suffices, or a point cache of them in
+/// float with the first as its mesh, `animation.pc2` and `animation.obj`; and optionally the cages beside them. The
+/// folder holds the frames of one run: files of an earlier run that this one does not overwrite are removed when the
+/// first frame is written. `.tetskin_frames` lists the files that a run writes; no other file is touched, and a folder
+/// that contains frames which the list does not name is refused.
 ///
 /// Materials are written twice: once for all frames, named by their first line, and once beside each frame under its
 /// own name, where f3d looks for them.
@@ -64,11 +67,15 @@ class FrameWriter {
   /// cage    if and only if the plan has cages
   void write(int frame, const std::vector<Eigen::Vector3d>& surface, const Box3& bounds, PointView<const float> normals,
              const TetMesh* cage = nullptr);
+  /// Completes what has all frames in one file. Throws InputError.
+  void finish();
 
  private:
   template <class Scalar>
   void writeFrame(int frame, PointView<const Scalar> surface, PointView<const float> normals, const TetMesh* cage);
   void begin(double bytes);
+  template <class Scalar>
+  void beginCache(PointView<const Scalar> surface, PointView<const float> normals);
   std::string announcement(double bytes) const;
   std::vector<std::string> filesOf(int frame) const;
   std::vector<std::string> filesOfAllFrames() const;
@@ -80,6 +87,7 @@ class FrameWriter {
   FramePlan plan_;
   ObjLayout layout_;  ///< used until the first frame is written
   ObjSequenceWriter writer_;
+  std::optional<Pc2Writer> cache_;
   std::vector<std::string> others_;  ///< files of all frames that somebody else writes
   double otherBytes_ = 0.0;
   std::vector<Eigen::Vector3f> rounded_;

@@ -43,6 +43,7 @@ Playback playFrames(const char* doing, const OutputOptions& output, World& world
 int finishRun(const char* program, const OutputOptions& output, const Playback& run, Recording& recording,
               const std::function<nlohmann::ordered_json()>& summarise,
               const std::function<void(const nlohmann::ordered_json& json)>& print) {
+  writer.finish();
   recording.writeGlb();
   nlohmann::ordered_json json = summarise();
   json["frames"] = run.frames;

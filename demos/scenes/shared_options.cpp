@@ -40,8 +40,9 @@ const std::vector<SharedOption>& sharedOptions() {
       {"--output", "Output", "File to write"},
       {"--out", "Output", "Folder to write to"},
       {"--format", "Output",
-       "Formats, separated by commas: obj, a file per frame; glb, a skinned mesh that moves, in one file"},
-      {"--every", "Output", "Write every Nth frame as OBJ; GLB and the page have all"},
+       "Formats, separated by commas: obj, a file per frame; glb, a skinned mesh that moves, in one file; pc2, a point "
+       "cache and its mesh"},
+      {"--every", "Output", "Write every Nth frame as OBJ and PC2; GLB and the page have all"},
       {"--view", "Output", "Write an HTML page that plays the run in a browser"},
       {"--no-view", "Output", "Do not write the HTML page"},
       {"--write-cage", "Output", "Write the deformed cage of each frame, in files cage_0000.vtk and so on"},

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Compares what Blender makes of a run's GLB with its OBJ frames: python3 blender.py FOLDER
+"""Compares what Blender makes of a run's GLB and PC2 with its OBJ frames: python3 blender.py FOLDER
 
-FOLDER is the --out of a demo with one body that wrote --format obj,glb. Needs the module bpy (pip
+FOLDER is the --out of a demo with one body that wrote --format obj,glb or obj,glb,pc2. Needs the module bpy (pip
 install bpy). Exit status 1 if a vertex is farther off than 1e-4 of the body's size.
 """
 import pathlib
@@ -73,6 +73,16 @@ def main():
     bpy.ops.import_scene.gltf(filepath=str(folder / 'animation.glb'), merge_vertices=False)
     skinned = [thing for thing in bpy.data.objects if thing.type == 'MESH' and thing.vertex_groups]
     good = compare('GLB', skinned[0], scene, frames)
+    if (folder / 'animation.pc2').exists():
+        scene = empty_scene()
+        bpy.ops.wm.obj_import(filepath=str(folder / 'animation.obj'), use_split_objects=False)
+        thing = next(thing for thing in bpy.data.objects if thing.type == 'MESH')
+        cache = thing.modifiers.new('cache', 'MESH_CACHE')
+        cache.cache_format = 'PC2'
+        cache.filepath = str(folder / 'animation.pc2')
+        cache.frame_start = 0
+        cache.frame_scale = 1 / (frames[1][0] - frames[0][0])
+        good = compare('PC2', thing, scene, frames) and good
     sys.exit(0 if good else 1)
 
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "loaded_texts.h"
-#include "raw_bytes.h"
 
 #include <gtest/gtest.h>
 #include <tetskin/io/files.h>
+#include <tetskin/io/src/text/binary_numbers.h>
 
 namespace tetskin::test {
 namespace {
@@ -14,8 +14,12 @@ const std::string kFacet =
 
 /// A binary file of one triangle that states so many.
 std::string binaryStl(std::uint32_t triangles, const std::string& begin = "") {
-  return begin + std::string(80 - begin.size(), '\0') + bytesOf(triangles, false) +
-         bytesOfAll<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.5}, false) + std::string(2, '\0');
+  std::string bytes = begin + std::string(80 - begin.size(), '\0');
+  io::appendLittleEndian(triangles, bytes);
+  for (const float number : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.5f}) {
+    io::appendLittleEndian(number, bytes);
+  }
+  return bytes + std::string(2, '\0');
 }
 
 TEST(LoadStl, ReadsStlOfBothKinds) {

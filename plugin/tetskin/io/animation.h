@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A whole run in one file: GLB, a skinned mesh that every engine and viewer plays.
+// A whole run in one file: GLB, a skinned mesh that every engine and viewer plays, and PC2, a cache of all positions.
 #pragma once
 
 #include <tetskin/core/cage.h>
@@ -89,6 +89,39 @@ class TETSKIN_IO_API GlbWriter {
  private:
   struct Impl;
   explicit GlbWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;  ///< null after `finish`
+};
+
+/// Writes the positions of a deforming mesh's vertices in every frame: the point cache PC2, which Blender (modifier
+/// Mesh Cache), Maya and 3ds Max apply to a mesh with as many vertices in the same order. It holds any deformation, as
+/// floats: 32 bytes, and 12 per vertex and frame. Can be moved, not copied; without `finish`, nothing is left. After
+/// `finish`, and when moved from, every call returns FileNotWritable.
+class TETSKIN_IO_API Pc2Writer {
+ public:
+  /// Creates a writer.
+  /// vertexCount  of the mesh
+  /// first, step  the number of the first frame, and from one frame to the next; Blender ignores both
+  /// Errors       FileNotWritable, also for what is no regular file; TooLarge: 2^31 vertices or more
+  static Result<Pc2Writer> create(const std::string& path, std::size_t vertexCount, float first = 0.0f,
+                                  float step = 1.0f);
+  ~Pc2Writer();
+  Pc2Writer(Pc2Writer&& other) noexcept;
+  Pc2Writer& operator=(Pc2Writer&& other) noexcept;
+
+  /// Appends a frame to the file, which does not have its name yet. Positions are vertexCount x 3, finite.
+  /// Errors: SizeMismatch; NonFinite; FileNotWritable.
+  Status addFrame(PointView<const float> positions);
+  /// Overload for positions in double, which are rounded to float.
+  Status addFrame(PointView<const double> positions);
+
+  /// Completes the file, and gives it its name. Errors: Empty without frames; FileNotWritable.
+  Status finish();
+
+ private:
+  struct Impl;
+  explicit Pc2Writer(std::unique_ptr<Impl> impl);
+  template <class Scalar>
+  Status add(PointView<const Scalar> positions);
   std::unique_ptr<Impl> impl_;  ///< null after `finish`
 };
 

@@ -144,7 +144,7 @@ Result<GlbWriter> GlbWriter::create(const std::string& path, double framesPerSec
     return io::fileError(StatusCode::InvalidOption, path, 0, "the frames per second must be above 0 and finite");
   }
   // Opened and removed again: a file that cannot be written is better known before a run than after it.
-  if (Status status = io::checkWritable(path); !status.ok()) return status;
+  if (const Result<io::AtomicFile> probe = io::AtomicFile::create(path); !probe.ok()) return probe.status();
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   impl->framesPerSecond = framesPerSecond;
