@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/command_line.h"
-#include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/summary.h"
 

@@ -11,7 +11,6 @@
 #include "gaps/gap_scenes.h"
 #include "measure/report.h"
 #include "scenes/command_line.h"
-#include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/summary.h"
 #include "stress/stress_scenes.h"
@@ -23,7 +22,7 @@ using namespace tetskin::scenes;
 namespace {
 
 struct MeasureOptions {
-  std::string group = "all", elasticity = "tetskin", only, before, bullet, json, markdown;
+  std::string group = "all", elasticity = "tetskin", only, json;
   Contact contact = Contact::Surface;
   bool quick = false, lasting = false, quiet = false;
 
@@ -33,12 +32,6 @@ struct MeasureOptions {
     return elasticity == "both" ? std::vector<Kind>{ours, Kind::Bullet} : std::vector<Kind>{ours};
   }
 };
-
-/// The heading of this run's column.
-const char* titleOf(Kind kind) {
-  if (kind == Kind::Bullet) return "bullet";
-  return kind == Kind::Surface ? "tetskin-surface" : "tetskin-nodes";
-}
 
 MeasuredScenes scenesOf(const std::string& group) {
   MeasuredScenes all;
@@ -80,13 +73,8 @@ Results runScenes(const MeasureOptions& options) {
 }
 
 int run(const MeasureOptions& options) {
-  std::vector<ResultColumn> columns;
-  if (!options.before.empty()) columns.push_back({"before", readResults(options.before)});
-  if (!options.bullet.empty()) columns.push_back({"Bullet", readResults(options.bullet)});
   const Results results = runScenes(options);
-  columns.insert(columns.begin(), {titleOf(options.kinds().front()), results.scenes});
   if (!options.json.empty()) writeJson(toJson(results.scenes), options.json);
-  if (!options.markdown.empty()) writeFile(options.markdown, toMarkdown(columns));
   if (!options.quiet) {
     std::printf("\n%zu scenes; %zu figures or expectations are not as promised\n", results.scenes.size(),
                 results.broken);
@@ -118,12 +106,7 @@ int main(int argc, char** argv) {
       "Bullet's forces; both: these beside tetskin's");
   line.addContactOption(options.contact);
   line.addText("--only", options.only);
-  line.addInput("--before", options.before,
-                "Results of an earlier version (its --json file), for a column of the Markdown table");
-  line.addInput("--bullet", options.bullet,
-                "Results of --elasticity bullet (its --json file), for a column of the Markdown table");
   line.addSummaryOption(options.json);
-  line.addOutput("--markdown", options.markdown, "one row per promise, with its worst figure");
   line.addQuietOption(options.quiet);
   return line.run(argc, argv, [&] {
     if (options.elasticity == "bullet" && line.given("--contact") && options.contact == Contact::Surface) {

@@ -5,7 +5,6 @@
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -5,10 +5,8 @@
 // too, has the unit of the size.
 #include <btBulletDynamicsCommon.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <cmath>
 #include <memory>
 
 #include "contact/scene_list.h"

@@ -9,7 +9,6 @@
 #include <tetskin/touch/surface_point.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>

@@ -5,7 +5,6 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 

@@ -4,7 +4,6 @@
 // Bodies at rest on a floor, and bodies that begin deep inside one.
 #include <btBulletDynamicsCommon.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 

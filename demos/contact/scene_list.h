@@ -4,8 +4,6 @@
 // The scenes in which contact is measured.
 #pragma once
 
-#include <vector>
-
 #include "measure/run.h"
 
 namespace tetskin::contact_demo {

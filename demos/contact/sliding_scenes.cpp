@@ -10,7 +10,6 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>

@@ -3,7 +3,6 @@
 #include "measure/body_model.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <vector>
 
 namespace tetskin::measure {
 

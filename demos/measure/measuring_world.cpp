@@ -7,7 +7,6 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -4,7 +4,6 @@
 // What is promised for each figure; in scenes of contact, of contact by the surface.
 #pragma once
 
-#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,8 +18,6 @@ struct Promise {
   double maximum = std::numeric_limits<double>::infinity();
 
   bool holds(double value) const { return value >= minimum && value <= maximum; }
-  /// How far the value is from the nearest bound; below 0: it is out of bounds by that much.
-  double slack(double value) const { return std::min(value - minimum, maximum - value); }
 };
 
 const std::vector<Promise>& promises();

@@ -32,16 +32,5 @@ SceneResult runScene(const MeasuredScene& scene, Kind kind);
 
 void print(const SceneResult& result);
 nlohmann::ordered_json toJson(const SceneResults& results);
-/// Reads a file of such results. Throws InputError if it is not one.
-SceneResults readResults(const std::string& path);
-
-/// All results in one column.
-struct ResultColumn {
-  std::string title;
-  SceneResults results;
-};
-/// A table with one line per promise. Each column shows, for each stiffness of the scenes, the figure that comes
-/// closest to breaking the promise, or breaks it by most.
-std::string toMarkdown(const std::vector<ResultColumn>& columns);
 
 }  // namespace tetskin::measure

@@ -6,7 +6,7 @@ its JSON file (or in the folder given).
 
 error_vs_time.py RESULTS.json [FOLDER] [--target-error X] [--tets N] [--no-surface] [--quiet]
 
-For every scene: a table, orders, the reference's own error, and the cheapest setting below an error of X;
+For every scene: a table, the reference's own error, and the cheapest setting below an error of X;
 SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_substeps.png, errors in space and in time over the
 substeps; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
 deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
@@ -45,10 +45,6 @@ HEAD = ("| tets | duplicates | stiffness | surface | substeps | error, RMS | in 
         "at the nodes | normals, degrees | simulation, ms | skin, µs | total, ms | speed-up | embedding, ms | memory, MB |"
         "{more}\n" + 18 * "|---" + "|{lines}\n")
 AGAINST = " error against Bullet's reference | speed-up against it |"
-SMOOTH = "\nOn a smooth map the theoretical orders are 2 (linear) and 3 (quadratic).\n"
-CLAMPED = ("\nThe theoretical orders, 2 for linear embedding and 3 for quadratic, hold for smooth maps. Here the body is clamped "
-           "along edges, where its strain is not smooth, the reference itself is linear in each tet, and coarse cages have "
-           "another shape: they are thicker, and without duplicate elements nearby components are fused.\n")
 
 
 def setting(row):
@@ -106,29 +102,6 @@ def table_line(row, scene, against):
 
 NOT_REDUCED = ("\nNo reduced bodies: the ends of the bar are driven, and vibration modes cannot follow them; Bullet's constraint for "
                "the nodes of a reduced body keeps them at their initial positions.\n")
-
-
-def orders_text(scene):
-    text = "\nObserved orders in space (error over edge length; all of it / embedding only):\n\n"
-    for order in scene["orders"]:
-        if order["material"] == "same":
-            steps = [f" {step['space']:.1f} / {step['embedding']:.1f} ({step['coarse_tets']:,.0f} to "
-                     f"{step['fine_tets']:,.0f} tets)" for step in order["steps"]]
-            overall = order["overall"]
-            text += (f"- {order['interpolation']}: {overall['space']:.1f} / {overall['embedding']:.1f} overall;"
-                     + ",".join(steps) + "\n")
-    return text + (SMOOTH if scene["integrator"] == "none" else CLAMPED) + time_orders_text(scene)
-
-
-def time_orders_text(scene):
-    if not scene["time_orders"]:
-        return ""
-    text = "\nObserved orders in time (error in time over the length of a substep):\n\n"
-    for tets in sorted({order["tets"] for order in scene["time_orders"]}):
-        text += f"- {tets:,.0f} tets: " + ", ".join(
-            f"{order['order']:.1f} ({order['coarse_substeps']:.0f} to {order['fine_substeps']:.0f} substeps)"
-            for order in scene["time_orders"] if order["tets"] == tets) + "\n"
-    return text
 
 
 def reduction_text(scene):
@@ -203,7 +176,6 @@ def tables(results, target):
             text += (f"\nThe error of the reference itself in time is about {scene['reference_time_error']:.1e}, estimated from "
                      f"the same tets in {substeps_of(scene)}.\n")
         text += reduction_text(scene)
-        text += orders_text(scene)
         if target:
             text += cheapest_text(scene, target)
     return text
@@ -510,7 +482,7 @@ def main():
         parser.error("--tets must be above 0")
     try:
         results = json.loads(arguments.results.read_text(encoding="utf-8"))
-        if not all("time_orders" in scene and scene["rows"] for scene in results["scenes"]):
+        if not all("reduction_advice" in scene and scene["rows"] for scene in results["scenes"]):
             raise ValueError("of an older version")
     except (OSError, ValueError, KeyError, TypeError) as error:
         parser.error(f"{arguments.results} is not what tetskin_error_vs_time writes ({error}); run that again")

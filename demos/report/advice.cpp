@@ -18,24 +18,6 @@ namespace {
 constexpr double kVisible = 0.1;
 constexpr double kMinOrder = 1.0, kMaxOrder = 3.0;
 
-/// One row of each cage of one kind, coarsest first. Errors in space do not depend on the row's substeps.
-std::vector<Row> series(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material) {
-  std::vector<Row> found;
-  std::copy_if(rows.begin(), rows.end(), std::back_inserter(found), [&](const Row& row) {
-    return row.isChoice() && row.interpolation == interpolation && row.material == material;
-  });
-  std::sort(found.begin(), found.end(), [](const Row& a, const Row& b) { return a.edge > b.edge; });
-  const auto isSameCage = [](const Row& a, const Row& b) { return a.edge == b.edge; };
-  found.erase(std::unique(found.begin(), found.end(), isSameCage), found.end());
-  return found;
-}
-
-/// coarse, fine  edges or lengths of a step, in the same unit
-double orderOf(double coarseError, double fineError, double coarse, double fine) {
-  if (!(coarseError > 0.0 && fineError > 0.0) || !(coarse > fine)) return 0.0;
-  return std::log(coarseError / fineError) / std::log(coarse / fine);
-}
-
 /// The rows of each cage and surface with several numbers of substeps, fewest first; fewest tets first.
 std::vector<std::vector<Row>> seriesInTime(const std::vector<Row>& rows) {
   std::map<std::tuple<double, std::string, std::string>, std::map<double, Row>> found;
@@ -70,21 +52,6 @@ double ownError(double reference, double p, double error, double x) {
   return error * own / (std::pow(x, p) - own);
 }
 
-/// The slope of the straight line through the logarithms of edge and error; 0 where an error is 0.
-double slope(const std::vector<Row>& rows, double Row::*error) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const Row& row : rows) {
-    if (!(row.*error > 0.0)) return 0.0;
-    const double edge = std::log(row.edge), value = std::log(row.*error);
-    n += 1.0;
-    x += edge;
-    y += value;
-    xx += edge * edge;
-    xy += edge * value;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
 }  // namespace
 
 void markPareto(std::vector<Row>& rows) {
@@ -95,38 +62,6 @@ void markPareto(std::vector<Row>& rows) {
                           (other.totalMs < row.totalMs || other.errorTotalRms < row.errorTotalRms);
                  });
   }
-}
-
-std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
-                                          const std::string& material) {
-  const std::vector<Row> sorted = series(rows, interpolation, material);
-  std::vector<ObservedOrder> orders;
-  for (std::size_t k = 1; k < sorted.size(); ++k) {
-    const Row &coarse = sorted[k - 1], &fine = sorted[k];
-    orders.push_back({coarse.tets, fine.tets, orderOf(coarse.errorSpaceRms, fine.errorSpaceRms, coarse.edge, fine.edge),
-                      orderOf(coarse.errorEmbeddingRms, fine.errorEmbeddingRms, coarse.edge, fine.edge)});
-  }
-  return orders;
-}
-
-ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation,
-                           const std::string& material) {
-  const std::vector<Row> sorted = series(rows, interpolation, material);
-  if (sorted.size() < 2) return {};
-  return {sorted.front().tets, sorted.back().tets, slope(sorted, &Row::errorSpaceRms),
-          slope(sorted, &Row::errorEmbeddingRms)};
-}
-
-std::vector<TimeOrder> timeOrders(const std::vector<Row>& rows) {
-  std::vector<TimeOrder> orders;
-  for (const std::vector<Row>& cage : seriesInTime(rows)) {
-    for (std::size_t k = 1; k < cage.size(); ++k) {
-      const Row &coarse = cage[k - 1], &fine = cage[k];
-      orders.push_back({coarse.material, coarse.tets, coarse.substeps, fine.substeps,
-                        orderOf(coarse.errorTimeRms, fine.errorTimeRms, 1.0 / coarse.substeps, 1.0 / fine.substeps)});
-    }
-  }
-  return orders;
 }
 
 ReductionLimit reductionLimit(const std::vector<Row>& rows) {

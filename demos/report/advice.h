@@ -14,28 +14,6 @@ namespace tetskin::report {
 /// Marks the rows that no other choice beats in both time and error. The reference is left out.
 void markPareto(std::vector<Row>& rows);
 
-/// The exponent of the edge length with which an error falls, from each cage to the next finer one.
-struct ObservedOrder {
-  double coarseTets = 0, fineTets = 0;
-  double space = 0, embedding = 0;  ///< 0 where an error is 0
-};
-/// The observed orders of the rows with this interpolation and material.
-std::vector<ObservedOrder> observedOrders(const std::vector<Row>& rows, const std::string& interpolation,
-                                          const std::string& material);
-
-/// The order over all these cages: the slope of a straight line through the logarithms, by least squares. 0 if there
-/// are fewer than two cages.
-ObservedOrder overallOrder(const std::vector<Row>& rows, const std::string& interpolation, const std::string& material);
-
-/// The exponent of the step's length with which a cage's error in time falls, from one number of substeps to the next.
-struct TimeOrder {
-  std::string material;
-  double tets = 0, coarseSubsteps = 0, fineSubsteps = 0;
-  double order = 0;  ///< 0 where an error is 0
-};
-/// The observed orders of all cages that were simulated with several numbers of substeps.
-std::vector<TimeOrder> timeOrders(const std::vector<Row>& rows);
-
 /// A cage made as a reference is, but coarser: mean length of its edges, and its distance from the reference.
 struct CoarserLevel {
   double edge = 0, error = 0;

@@ -4,7 +4,6 @@
 
 #include <tetskin/core/mesh_skin.h>
 
-#include <array>
 #include <vector>
 
 namespace tetskin::report {

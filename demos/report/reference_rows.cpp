@@ -3,7 +3,6 @@
 //
 // The reference of a scene, and how far it can be trusted.
 #include <algorithm>
-#include <cmath>
 
 #include "report/advice.h"
 #include "report/scene_runner.h"

@@ -20,7 +20,6 @@
 // plot_program       runs demos/plots, which makes tables and plots of them
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "report/report_options.h"

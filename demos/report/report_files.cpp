@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "report/report_files.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "report/advice.h"
@@ -10,54 +9,6 @@
 #include "scenes/table.h"
 
 namespace tetskin::report {
-namespace {
-
-nlohmann::ordered_json toJson(const ObservedOrder& order) {
-  return {{"coarse_tets", order.coarseTets},
-          {"fine_tets", order.fineTets},
-          {"space", order.space},
-          {"embedding", order.embedding}};
-}
-
-/// The kinds of cages, in the order of the rows.
-std::vector<std::string> materialsOf(const SceneResult& scene) {
-  std::vector<std::string> materials;
-  for (const Row& row : scene.rows) {
-    const bool isNew = std::find(materials.begin(), materials.end(), row.material) == materials.end();
-    if (isNew && !row.isReduced()) materials.push_back(row.material);
-  }
-  return materials;
-}
-
-nlohmann::ordered_json ordersOf(const SceneResult& scene) {
-  auto json = nlohmann::ordered_json::array();
-  for (const char* interpolation : {"linear", "quadratic"}) {
-    for (const std::string& material : materialsOf(scene)) {
-      nlohmann::ordered_json one = {{"interpolation", interpolation}, {"material", material}};
-      one["overall"] = toJson(overallOrder(scene.rows, interpolation, material));
-      one["steps"] = nlohmann::ordered_json::array();
-      for (const ObservedOrder& order : observedOrders(scene.rows, interpolation, material)) {
-        one["steps"].push_back(toJson(order));
-      }
-      if (!one["steps"].empty()) json.push_back(std::move(one));
-    }
-  }
-  return json;
-}
-
-nlohmann::ordered_json timeOrdersOf(const SceneResult& scene) {
-  auto json = nlohmann::ordered_json::array();
-  for (const TimeOrder& order : timeOrders(scene.rows)) {
-    json.push_back({{"material", order.material},
-                    {"tets", order.tets},
-                    {"coarse_substeps", order.coarseSubsteps},
-                    {"fine_substeps", order.fineSubsteps},
-                    {"order", order.order}});
-  }
-  return json;
-}
-
-}  // namespace
 
 std::string csvOf(const ReportResult& result) {
   std::string text = "scene,integrator,material,interpolation";
@@ -94,8 +45,6 @@ nlohmann::ordered_json jsonOf(const ReportResult& result) {
     one["substeps"] = scene.rows.front().substeps;
     one["reference_error"] = scene.referenceError;
     one["reference_time_error"] = scene.referenceTimeError;
-    one["orders"] = ordersOf(scene);
-    one["time_orders"] = timeOrdersOf(scene);
     one["reduction_advice"] = reductionAdvice(scene.rows);
     const ReductionLimit limit = reductionLimit(scene.rows);
     one["reduction_limit"] = {{"modes", limit.modes}, {"amplitude", limit.amplitude}};

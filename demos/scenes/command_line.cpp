@@ -219,19 +219,6 @@ struct CommandLine::Parser {
     CLI::Option* option = app.add_option_function<std::string>(name, choose, optionText(name, text));
     labelled(placed(option, name), joined(known, '|'), preset)->check(isOneOf(known));
   }
-
-  /// An option of an earlier version is answered with its present name.
-  void requirePresentNames(int argc, char** argv) const {
-    std::vector<std::string> known;
-    for (const CLI::Option* option : app.get_options()) {
-      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    }
-    for (int k = 1; k < argc; ++k) {
-      const std::string argument = argv[k], name = argument.substr(0, argument.find('='));
-      const std::string now = presentName(name, known);
-      if (!now.empty()) throw InputError(name + ": this option is now called " + now);
-    }
-  }
 };
 
 std::vector<std::string> CommandLine::Parser::argumentsWithout(const std::vector<std::string>& names) const {
@@ -440,7 +427,6 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& demo) {
   try {
     try {
       parser_->arguments.assign(argv + 1, argv + argc);
-      parser_->requirePresentNames(argc, argv);
       parser_->app.parse(argc, argv);
       NamedFiles files;
       for (const auto& tell : parser_->files) tell(files);

@@ -43,22 +43,6 @@ std::string PrintedTable::text() const {
   return text;
 }
 
-std::string PrintedTable::markdown() const {
-  std::string text = "|", rule = "|";
-  for (std::size_t k = 0; k < widths_.size(); ++k) {
-    const std::string& unit = header_[1][k];
-    text += " " + header_[0][k] + (unit.empty() ? "" : " " + unit) + " |";
-    rule += "---|";
-  }
-  text += "\n" + rule + "\n";
-  for (const std::vector<std::string>& row : rows_) {
-    text += "|";
-    for (const std::string& cell : row) text += " " + cell + " |";
-    text += "\n";
-  }
-  return text;
-}
-
 std::string formatted(const char* format, double number) {
   char text[128];
   std::snprintf(text, sizeof text, format, number);

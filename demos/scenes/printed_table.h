@@ -17,8 +17,7 @@ struct TableColumn {
   std::size_t width = 0;  ///< at least so many characters
 };
 
-/// Rows are gathered. They are printed at the end, so that they do not mix with the progress of the run, or written as
-/// Markdown.
+/// Rows are gathered, and printed at the end, so that they do not mix with the progress of the run.
 class PrintedTable {
  public:
   explicit PrintedTable(std::vector<TableColumn> columns);
@@ -27,8 +26,6 @@ class PrintedTable {
   /// A line of titles, one of units, then the rows, each indented by two blanks. The first column is aligned to the
   /// left, all others to the right. Header lines without any text are left out.
   std::string text() const;
-  /// Each column's unit is behind its title.
-  std::string markdown() const;
 
  private:
   std::vector<std::size_t> widths_;

@@ -5,7 +5,6 @@
 #include <tetskin/reduced/reduced_body.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "scenes/input_error.h"

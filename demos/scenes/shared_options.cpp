@@ -3,7 +3,6 @@
 #include "scenes/shared_options.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace tetskin::scenes {
 
@@ -49,7 +48,6 @@ const std::vector<SharedOption>& sharedOptions() {
       {"--write-cage", "Output", "Write the deformed cage of each frame, in files cage_0000.vtk and so on"},
       {"--dump-embedding", "Output", "Write the tet and the barycentric weights of every vertex to this CSV file"},
       {"--json", "Output", "Write the results to this JSON file"},
-      {"--markdown", "Output", "Write the results to this Markdown file, as tables"},
       {"--hash", "Output", "Print a hash of the node positions in all frames; identical runs print the same one"},
       {"--check-determinism", "Output",
        "Make each step twice, from a snapshot, and compare every bit; takes twice the time"},
@@ -64,19 +62,6 @@ const SharedOption* sharedOption(const std::string& names) {
   const auto& all = sharedOptions();
   const auto found = std::find_if(all.begin(), all.end(), [&](const SharedOption& o) { return o.name == name; });
   return found == all.end() ? nullptr : &*found;
-}
-
-std::string presentName(const std::string& earlier, const std::vector<std::string>& known) {
-  static const std::pair<const char*, const char*> renamed[] = {{"--force", "--elasticity"},
-                                                                {"--whole", "--no-duplicate-elements"},
-                                                                {"--loose", "--no-fit"},
-                                                                {"--scene", "--scenes"},
-                                                                {"--stiffness", "--spring-stiffness"}};
-  const auto isKnown = [&](const std::string& name) { return std::count(known.begin(), known.end(), name) > 0; };
-  for (const auto& [before, now] : renamed) {
-    if (before == earlier && !isKnown(before) && isKnown(now)) return now;
-  }
-  return {};
 }
 
 }  // namespace tetskin::scenes

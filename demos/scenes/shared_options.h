@@ -21,7 +21,4 @@ const std::vector<SharedOption>& sharedOptions();
 /// Null for an option that the program describes itself. `names` may contain a short name, too: "-o,--output".
 const SharedOption* sharedOption(const std::string& names);
 
-/// The present name of an option of an earlier version, for a program with the options `known`; empty if there is none.
-std::string presentName(const std::string& earlier, const std::vector<std::string>& known);
-
 }  // namespace tetskin::scenes

@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "measure/extremes.h"
 #include "measure/measuring_world.h"

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -71,13 +72,12 @@ inline double number(const nlohmann::json& row, const char* key) {
   return row.at(key).get<double>();
 }
 
-inline double overall(const nlohmann::json& scene, const std::string& interpolation, const char* name) {
-  for (const auto& order : scene.at("orders")) {
-    if (order.at("interpolation") == interpolation && order.at("material") == "same") {
-      return order.at("overall").at(name).get<double>();
-    }
-  }
-  return 0.0;
+/// The exponent of the edge length with which an error falls, from the coarsest to the finest of these cages.
+inline double orderOf(const std::vector<nlohmann::json>& rows, const char* error) {
+  const auto [fine, coarse] = std::minmax_element(
+      rows.begin(), rows.end(), [](const auto& a, const auto& b) { return number(a, "edge") < number(b, "edge"); });
+  return std::log(number(*coarse, error) / number(*fine, error)) /
+         std::log(number(*coarse, "edge") / number(*fine, "edge"));
 }
 
 }  // namespace tetskin::test

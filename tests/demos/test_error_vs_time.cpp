@@ -22,8 +22,8 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
   ASSERT_EQ(json.at("scenes").size(), 4u);
 
   const auto& exact = sceneOf(json, "exact");
-  EXPECT_GT(overall(exact, "linear", "embedding"), 1.8);
-  EXPECT_GT(overall(exact, "quadratic", "embedding"), 2.7);
+  EXPECT_GT(orderOf(rowsOf(exact, "linear"), "error_embedding_rms"), 1.8);
+  EXPECT_GT(orderOf(rowsOf(exact, "quadratic"), "error_embedding_rms"), 2.7);
   for (const auto& row : exact.at("rows")) {
     EXPECT_EQ(row.at("error_simulation_rms"), 0.0);
     EXPECT_EQ(row.at("error_total_rms"), row.at("error_embedding_rms"));
@@ -34,7 +34,6 @@ TEST_F(ErrorVsTime, QuickReportHoldsWhatItShould) {
     EXPECT_GT(number(scene, "reference_error"), 0.0);
     EXPECT_GT(number(scene, "reference_time_error"), 0.0);
     EXPECT_EQ(rowsOf(scene, "reference").size(), 3u);
-    EXPECT_EQ(scene.at("time_orders").size(), 6u);
     for (const auto& row : rowsOf(scene, "quadratic")) {
       // Both references simulate the same body: their motions differ by far less than those of coarse cages do.
       EXPECT_NEAR(number(row, "error_against_bullet_rms"), number(row, "error_total_rms"),

@@ -40,7 +40,7 @@ TEST_F(Measure, NothingIsLostInFreeFlight) {
 }
 
 TEST_F(Measure, SaysWhatIsPromisedAndWhetherItHolds) {
-  const CommandResult result = measure({"--only", "thin plate", "--json", "m.json", "--markdown", "m.md"});
+  const CommandResult result = measure({"--only", "thin plate", "--json", "m.json"});
   ASSERT_EQ(result.status, 0) << result.out << result.err;
   for (const auto& scene : folder.json("m.json")) {
     const auto gap = figuresOf(scene).at("least gap, S");
@@ -48,8 +48,6 @@ TEST_F(Measure, SaysWhatIsPromisedAndWhetherItHolds) {
     EXPECT_GE(gap["value"].get<double>(), gap["least"].get<double>()) << scene;
     EXPECT_EQ(gap.count("most"), 0u) << scene;
   }
-  EXPECT_NE(folder.read("m.md").find("| thin plate, k50, k500 | least gap, S | >= -0.009 |"), std::string::npos)
-      << folder.read("m.md");
   EXPECT_NE(result.out.find(" passed\n"), std::string::npos) << result.out;
 }
 
@@ -90,10 +88,6 @@ TEST_F(Measure, PromisesNothingOfBulletsSolver) {
   EXPECT_NE(result.out.find("FAILED"), std::string::npos) << result.out;
   const auto bullet = folder.json("b.json");
   EXPECT_FALSE(figuresOf(bullet[0]).at("linear momentum lost")["passed"].get<bool>()) << bullet;
-  ASSERT_EQ(measure({"--only", "free flight/k500", "--bullet", "b.json", "--markdown", "m.md", "--quiet"}).status, 0);
-  const std::string table = folder.read("m.md");
-  EXPECT_NE(table.find("| tetskin-surface | Bullet |"), std::string::npos) << table;
-  EXPECT_NE(table.find("| hit, k50, k500 | linear momentum lost | <= 0.001 |  | **"), std::string::npos) << table;
 }
 
 /// A shape of each kind: the distances that the program measures and the contacts are computed independently.

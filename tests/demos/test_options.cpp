@@ -166,21 +166,6 @@ TEST_F(Options, OneOfSeveralProgramsHasTheSameDescriptionAndPlaceInAll) {
   }
 }
 
-TEST_F(Options, AnEarlierNameIsAnsweredByThePresentOne) {
-  const std::array<const char*, 3> renamed[] = {{TETSKIN_DROP, "--force", "--elasticity"},
-                                                {TETSKIN_MEASURE, "--force", "--elasticity"},
-                                                {TETSKIN_ERROR_VS_TIME, "--scene", "--scenes"},
-                                                {TETSKIN_DRAG, "--stiffness", "--spring-stiffness"},
-                                                {TETSKIN_DRAG, "--whole", "--no-duplicate-elements"},
-                                                {TETSKIN_CAGE, "--loose", "--no-fit"}};
-  for (const auto& [path, before, now] : renamed) {
-    for (const char* end : {"", "=3"}) {
-      expectRefused(folder.run(path, {std::string(before) + end}),
-                    std::string(before) + ": this option is now called " + now + "\n");
-    }
-  }
-}
-
 // The tests of the pages run the examples themselves.
 TEST_F(Options, HelpOfEveryProgramEndsWithExamplesAndExitStatuses) {
   for (const std::string path : kAllPrograms) {

@@ -45,9 +45,8 @@ TEST_F(ReportPlots, HasTablesAndPlotsMade) {
   for (const char* words :
        {"# Error against run time: serpent", "## sag, tetskin", "## exact", "| the reference's tets | 4 |",
         "| reference | 16 |", "The error of the reference itself in space is about",
-        "The error of the reference itself in time is about", "Observed orders in time",
-        "linear, calibrated, 1 substep: ", "- quadratic: ", "calibrated**",
-        "theoretical orders are 2 (linear) and 3 (quadratic)", "Cheapest setting with an error below 0.5: "}) {
+        "The error of the reference itself in time is about", "linear, calibrated, 1 substep: ", "calibrated**",
+        "Cheapest setting with an error below 0.5: "}) {
     EXPECT_NE(tables.find(words), std::string::npos) << words << tables;
   }
   for (const char* name : {"sag_tetskin", "sag_tetskin_frames", "sag_tetskin_substeps", "exact"}) {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Scenes with a body and obstacles that are hard to handle in contact.
-#include <cmath>
 
 #include "scenes/table.h"
 

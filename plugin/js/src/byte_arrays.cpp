@@ -4,8 +4,6 @@
 
 #include <tetskin/core/src/base/bytes.h>
 
-#include <type_traits>
-
 namespace tetskin::js {
 namespace {
 

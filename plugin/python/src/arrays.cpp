@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "arrays.h"
 
-#include <cmath>
 #include <cstring>
 #include <functional>
 

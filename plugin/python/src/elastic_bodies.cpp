@@ -13,8 +13,8 @@ struct ElasticModel {
   Body body;
 };
 
-ElasticModel made(const CageModel& cage, double youngsModulus, double poissonRatio, double stiffnessDamping,
-                  double density, double tolerance, int maxIterations, bool deterministic) {
+void make(ElasticModel* self, const CageModel& cage, double youngsModulus, double poissonRatio, double stiffnessDamping,
+          double density, double tolerance, int maxIterations, bool deterministic) {
   ElasticOptions options;
   options.youngsModulus = youngsModulus;
   options.poissonRatio = poissonRatio;
@@ -23,7 +23,7 @@ ElasticModel made(const CageModel& cage, double youngsModulus, double poissonRat
   options.tolerance = tolerance;
   options.maxIterations = maxIterations;
   options.deterministic = deterministic;
-  return {std::make_shared<ElasticBody<double>>(
+  new (self) ElasticModel{std::make_shared<ElasticBody<double>>(
       released([&] { return take(ElasticBody<double>::create(*cage.cage, options)); }))};
 }
 
@@ -45,18 +45,12 @@ void bindElasticBodies(nb::module_& module) {
   Class<ElasticModel>(module, "ElasticBody",
                       "A body of elastic tets by itself, without contact, in an engine of any kind.")
       .words([](const ElasticModel& m) { return counted(m.body->nodeCount(), "node", "nodes"); })
-      .def(
-          "__init__",
-          [](ElasticModel* self, const CageModel& cage, double youngsModulus, double poissonRatio,
-             double stiffnessDamping, double density, double tolerance, int maxIterations, bool deterministic) {
-            new (self) ElasticModel(made(cage, youngsModulus, poissonRatio, stiffnessDamping, density, tolerance,
-                                         maxIterations, deterministic));
-          },
-          "cage"_a, nb::kw_only(), "youngs_modulus"_a = 1e5, "poisson_ratio"_a = 0.3, "stiffness_damping"_a = 0.0,
-          "density"_a = 1.0, "tolerance"_a = 5e-3, "max_iterations"_a = 200, "deterministic"_a = false,
-          "youngs_modulus: pressure units, above 0; poisson_ratio: 0 to below 0.5; stiffness_damping: seconds; "
-          "density: mass per "
-          "volume, above 0; tolerance: residual of a step relative to that at its start.")
+      .def("__init__", make, "cage"_a, nb::kw_only(), "youngs_modulus"_a = 1e5, "poisson_ratio"_a = 0.3,
+           "stiffness_damping"_a = 0.0, "density"_a = 1.0, "tolerance"_a = 5e-3, "max_iterations"_a = 200,
+           "deterministic"_a = false,
+           "youngs_modulus: pressure units, above 0; poisson_ratio: 0 to below 0.5; stiffness_damping: seconds; "
+           "density: mass per "
+           "volume, above 0; tolerance: residual of a step relative to that at its start.")
       .def_prop_ro(
           "node_count", [](const ElasticModel& m) { return m.body->nodeCount(); }, "Number of nodes.")
       .def_prop_rw(

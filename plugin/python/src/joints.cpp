@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "handles.h"
 
-#include <cmath>
-
 namespace tetskin::python {
 namespace {
 

@@ -6,7 +6,6 @@
 
 #include <tetskin/tetskin.h>
 
-#include <algorithm>
 #include <cctype>
 
 namespace tetskin::python {

@@ -7,7 +7,6 @@
 #include "shape_meshes.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include "view/view_page.h"

@@ -51,6 +51,15 @@ void setMass(RigidHandle& rigid, double mass) {
   body.activate(true);
 }
 
+/// Adds a rigid body with the shape that is made of the first argument.
+template <class Of, class Make>
+auto adding(Make make) {
+  return locked([make](const std::shared_ptr<World>& world, const Of& of, double mass, const Vec3& position,
+                       const Quaternion& rotation, double friction, bool kinematic) {
+    return RigidHandle{world, world->addRigid(make(of), mass, toBullet(position, rotation), friction, kinematic)};
+  });
+}
+
 }  // namespace
 
 std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid) {
@@ -130,39 +139,22 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
       .def("remove", locked([](RigidHandle& r) { r.world->remove(*r.state); }),
            "Removes it from its world, with its joints, springs and welds. Removing it again changes nothing.");
 
+  const auto add = [&](const char* name, auto function, const char* of, const char* text) {
+    world.def(name, function, nb::arg(of), nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{},
+              "rotation"_a = Quaternion{0, 0, 0, 1}, "friction"_a = 0.5, "kinematic"_a = false, text);
+  };
+  add("add_rigid_body", adding<ShapeModel>([](const ShapeModel& shape) { return shape; }), "shape",
+      "Adds a rigid body. mass: 0 for one that does not move by itself; rotation: x, y, z, w; kinematic: moved by its "
+      "position and rotation.");
+  add("add_box", adding<Vec3>(box), "half_extents", "As add_rigid_body of Shape.box.");
+  add("add_sphere", adding<double>(sphere), "radius", "As add_rigid_body of Shape.sphere.");
   world
-      .def("add_rigid_body",
-           locked([](const std::shared_ptr<World>& w, const ShapeModel& shape, double mass, const Vec3& position,
-                     const Quaternion& rotation, double friction, bool kinematic) {
-             return RigidHandle{w, w->addRigid(shape, mass, toBullet(position, rotation), friction, kinematic)};
-           }),
-           "shape"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
-           "friction"_a = 0.5, "kinematic"_a = false,
-           "Adds a rigid body. mass: 0 for one that does not move by itself; rotation: x, y, z, w; kinematic: moved by "
-           "its position and rotation.")
       .def(
           "add_plane", locked([](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
             return RigidHandle{w, w->addRigid(plane(normal, offset), 0.0, btTransform::getIdentity(), friction, false)};
           }),
           nb::kw_only(), "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0, "friction"_a = 0.5,
           "Adds a ground: y = 0 by default.")
-      .def("add_box",
-           locked([](const std::shared_ptr<World>& w, const Vec3& halfExtents, double mass, const Vec3& position,
-                     const Quaternion& rotation, double friction, bool kinematic) {
-             return RigidHandle{w,
-                                w->addRigid(box(halfExtents), mass, toBullet(position, rotation), friction, kinematic)};
-           }),
-           "half_extents"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{},
-           "rotation"_a = Quaternion{0, 0, 0, 1}, "friction"_a = 0.5, "kinematic"_a = false,
-           "As add_rigid_body of Shape.box.")
-      .def(
-          "add_sphere",
-          locked([](const std::shared_ptr<World>& w, double radius, double mass, const Vec3& position,
-                    const Quaternion& rotation, double friction, bool kinematic) {
-            return RigidHandle{w, w->addRigid(sphere(radius), mass, toBullet(position, rotation), friction, kinematic)};
-          }),
-          "radius"_a, nb::kw_only(), "mass"_a = 0.0, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
-          "friction"_a = 0.5, "kinematic"_a = false, "As add_rigid_body of Shape.sphere.")
       .def_prop_ro("rigid_bodies", locked([](const std::shared_ptr<World>& w) {
                      std::vector<RigidHandle> all;
                      for (const auto& state : w->rigids()) all.push_back({w, state});

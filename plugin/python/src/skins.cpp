@@ -3,7 +3,6 @@
 #include "models.h"
 
 #include <tetskin/core/bone_palette.h>
-#include <mutex>
 
 namespace tetskin::python {
 namespace {

@@ -8,7 +8,6 @@
 #include <tetskin/solver/src/exported/point_search.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace tetskin {

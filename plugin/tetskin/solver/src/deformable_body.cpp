@@ -322,9 +322,7 @@ void DeformableBody::Impl::visitState(WorldStream& stream) {
     if (static_cast<int>(n) < body->m_nodes.size() && body->m_nodes[static_cast<int>(n)].m_im == 0) stream(masses[n]);
   }
   ElasticMaterial now = material;
-  stream(now.youngsModulus);
-  stream(now.poissonRatio);
-  stream(now.damping);
+  stream(now.youngsModulus, now.poissonRatio, now.damping);
   if (now == material) return;
   material = now;
   applyMaterial(now);

@@ -8,8 +8,6 @@
 #include <tetskin/touch/src/points/point_jacobian.h>
 #include <tetskin/touch/src/rows/node_pushes.h>
 
-#include <cassert>
-
 namespace tetskin {
 
 using namespace bullet_detail;

@@ -6,8 +6,6 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <cmath>
-
 namespace tetskin {
 
 using namespace bullet_detail;

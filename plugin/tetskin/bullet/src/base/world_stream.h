@@ -33,14 +33,15 @@ class WorldStream : public StateStream {
     plain(&v[0], 3);
     if (restoring()) v[3] = 0;
   }
-  void operator()(btMatrix3x3& m) {
-    for (int k = 0; k < 3; ++k) (*this)(m[k]);
-  }
-  void operator()(btTransform& t) {
-    (*this)(t.getBasis());
-    (*this)(t.getOrigin());
-  }
+  void operator()(btMatrix3x3& m) { (*this)(m[0], m[1], m[2]); }
+  void operator()(btTransform& t) { (*this)(t.getBasis(), t.getOrigin()); }
   void operator()(btQuaternion& q) { plain(&q[0], 4); }
+  template <class First, class Second, class... More>
+  void operator()(First& first, Second& second, More&... more) {
+    (*this)(first);
+    (*this)(second);
+    ((*this)(more), ...);
+  }
 
   /// An object of the world, by its index there; or null. While a snapshot is restored, the world's list of objects has
   /// the order of the snapshot. An object that is no longer in the world may have been destroyed: it is read as null.

@@ -75,9 +75,7 @@ void ContactBody::read() {
 
 /// Everything else is read from the body in each step; its motion since the last one begins at these positions.
 void ContactBody::visitState(bullet_detail::WorldStream& stream, bool moves) {
-  stream(self);
-  stream(id);
-  stream(reads);
+  stream(self, id, reads);
   std::vector<btVector3> none;
   stream.each(moves || stream.restoring() ? positions : none, [&](btVector3& p) { stream(p); });
   if (!positions.empty() && positions.size() != data().nodes.size()) stream.fail();

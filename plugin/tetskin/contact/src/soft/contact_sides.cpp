@@ -89,11 +89,7 @@ void ContactSides::clear() {
 /// Sides of the previous step are not saved: the next step replaces them when it begins.
 void ContactSides::visitState(bullet_detail::WorldStream& stream) {
   if (stream.restoring()) clear();
-  stream.each(now_, [&](ContactSide& side) {
-    stream(side.sample);
-    stream(side.point);
-    stream(side.normal);
-  });
+  stream.each(now_, [&](ContactSide& side) { stream(side.sample, side.point, side.normal); });
 }
 
 bool asksForMotion(const DistanceGrid& grid, const GridDistance& nearest, const ContactSide* before) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace tetskin::contact_detail {
 void PairCandidates::update(ContactBody& first, ContactBody& second, btScalar dt) {

@@ -97,9 +97,7 @@ void PairMotion::listNear(const ContactBody& first, const ContactBody& second) {
 
 void PairMotion::visitState(StateStream& stream) {
   stream.plain(reads_, 2);
-  stream(searched_);
-  stream(path_);
-  stream(searchedComing_);
+  stream(searched_, path_, searchedComing_);
 }
 
 }  // namespace tetskin::contact_detail

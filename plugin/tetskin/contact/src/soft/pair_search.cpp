@@ -146,23 +146,12 @@ void PairMemory::visitState(bullet_detail::WorldStream& stream, std::vector<Touc
   if (stream.restoring()) candidates.drop();
   motion.visitState(stream);
   sides.visitState(stream);
-  stream(overlap.deepest);
-  stream(overlap.normals);
-  stream(overlap.inside);
-  stream(overlap.agreeing);
-  stream(follows);
-  stream.each(touched, [&](TouchedSample& sample) {
-    stream(sample.sample);
-    stream(sample.age);
-  });
+  stream(overlap.deepest, overlap.normals, overlap.inside, overlap.agreeing, follows);
+  stream.each(touched, [&](TouchedSample& sample) { stream(sample.sample, sample.age); });
   stream.array(pierced);
   std::vector<Touch> none;
   stream.each(followed || stream.restoring() ? touches : none, [&](Touch& touch) {
-    stream(touch.sample);
-    stream(touch.tet);
-    stream(touch.restFound);
-    stream(touch.restNormal);
-    stream(touch.restDistance);
+    stream(touch.sample, touch.tet, touch.restFound, touch.restNormal, touch.restDistance);
   });
 }
 

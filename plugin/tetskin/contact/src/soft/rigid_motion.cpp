@@ -5,7 +5,6 @@
 #include <tetskin/core/src/base/arithmetic/turns.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tetskin::contact_detail {
 

@@ -5,7 +5,6 @@
 #include <tetskin/core/src/base/mesh/weld.h>
 
 #include <algorithm>
-#include <cassert>
 
 namespace tetskin::contact_detail {
 namespace {

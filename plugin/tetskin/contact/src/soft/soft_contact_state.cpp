@@ -24,16 +24,10 @@ void visitPoint(WorldStream& stream, CarriedPoint& point) {
 void visitContact(WorldStream& stream, PointContact& contact) {
   stream.object(contact.body);
   stream.object(contact.object);
-  stream(contact.point);
-  stream(contact.sample);
+  stream(contact.point, contact.sample);
   visitPoint(stream, contact.at);
   visitPoint(stream, contact.onObject);
-  stream(contact.position);
-  stream(contact.normal);
-  stream(contact.distance);
-  stream(contact.predicted);
-  stream(contact.friction);
-  stream(contact.impulse);
+  stream(contact.position, contact.normal, contact.distance, contact.predicted, contact.friction, contact.impulse);
 }
 
 bool isBetweenSleepers(const PointContact& contact) {
@@ -105,8 +99,7 @@ void SoftContactRows::visitPairs(WorldStream& stream) {
   if (stream.saving()) {
     for (auto& [key, state] : pairStates_) {
       std::pair<int, int> ids = key;
-      stream(ids.first);
-      stream(ids.second);
+      stream(ids.first, ids.second);
       visitPair(stream, ids, state);
     }
     return;
@@ -114,8 +107,7 @@ void SoftContactRows::visitPairs(WorldStream& stream) {
   pairStates_.clear();
   for (std::size_t k = 0; k < count && !stream.failed(); ++k) {
     std::pair<int, int> ids;
-    stream(ids.first);
-    stream(ids.second);
+    stream(ids.first, ids.second);
     visitPair(stream, ids, pairStates_[ids]);
   }
 }

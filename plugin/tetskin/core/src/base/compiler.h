@@ -25,6 +25,13 @@
 #define TETSKIN_ONE_LOAD(v)
 #endif
 
+// From here on, GCC does not warn of templates that have a friend each, which is no template.
+#if defined(__GNUC__) && !defined(__clang__)
+#define TETSKIN_FRIENDS_OF_TEMPLATES _Pragma("GCC diagnostic ignored \"-Wnon-template-friend\"")
+#else
+#define TETSKIN_FRIENDS_OF_TEMPLATES
+#endif
+
 // Vectors of a compiler without this operator are put together number by number.
 #if defined(TETSKIN_GNU) && (defined(__clang__) || __GNUC__ >= 12)
 #define TETSKIN_SHUFFLE(...) __builtin_shufflevector(__VA_ARGS__)

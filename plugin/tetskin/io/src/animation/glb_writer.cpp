@@ -12,9 +12,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <filesystem>
 #include <set>
-#include <system_error>
 #include <utility>
 
 namespace tetskin {

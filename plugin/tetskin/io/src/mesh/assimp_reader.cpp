@@ -16,7 +16,6 @@
 #include <cassert>
 #include <exception>
 #include <filesystem>
-#include <utility>
 #include <vector>
 
 namespace tetskin::io {

@@ -17,7 +17,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <exception>
 #include <limits>
 #include <map>

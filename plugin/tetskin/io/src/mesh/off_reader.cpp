@@ -10,7 +10,6 @@
 #include <tetskin/io/src/text/file_text.h>
 #include <tetskin/io/src/text/text_records.h>
 
-#include <cassert>
 #include <cstdint>
 #include <string_view>
 #include <type_traits>

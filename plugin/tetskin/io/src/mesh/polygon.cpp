@@ -8,7 +8,6 @@
 #include <tetskin/io/src/mesh/polygon.h>
 
 #include <cassert>
-#include <cmath>
 
 namespace tetskin::io {
 

@@ -12,9 +12,7 @@
 namespace tetskin::bullet_detail {
 
 /// `setMotionState` asks the new one.
-struct MotionStateMember {
-  friend btMotionState* btRigidBody::*memberOf(MotionStateMember);
-};
+using MotionStateMember = Hidden<btRigidBody, btMotionState*>;
 template struct Opened<MotionStateMember, &btRigidBody::m_optionalMotionState>;
 
 namespace {

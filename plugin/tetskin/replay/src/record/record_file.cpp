@@ -28,9 +28,7 @@ std::uint64_t hashOfChunk(std::uint32_t kind, const Bytes& bytes) {
 }  // namespace
 
 void StepChunk::visit(StateStream& stream) {
-  stream(seconds);
-  stream(maxSubSteps);
-  stream(fixedTimeStep);
+  stream(seconds, maxSubSteps, fixedTimeStep);
   stream.array(change);
   stream.array(kinematic);
   stream.array(motion);

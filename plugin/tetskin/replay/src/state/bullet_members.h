@@ -29,12 +29,23 @@ void visitAll(WorldStream& stream, Members&... members) {
   (visitMember(stream, members), ...);
 }
 
-/// In a source, after the declaration `void visitMembers(WorldStream&, Object&)`:
+template <class Object>
+struct MembersOf {
+  friend void visitOpened(MembersOf, WorldStream& stream, Object& object);
+};
+
+/// In a source,
 ///     template struct Visited<Object, &Object::m_hidden, ...>;
-/// defines that function.
+/// says what `visitMembers` writes or reads of that class.
 template <class Object, auto... members>
 struct Visited {
-  friend void visitMembers(WorldStream& stream, Object& object) { visitAll(stream, object.*members...); }
+  friend void visitOpened(MembersOf<Object>, WorldStream& stream, Object& object) {
+    visitAll(stream, object.*members...);
+  }
 };
+template <class Object>
+void visitMembers(WorldStream& stream, Object& object) {
+  visitOpened(MembersOf<Object>(), stream, object);
+}
 
 }  // namespace tetskin::bullet_detail

@@ -50,13 +50,11 @@ void visitState(WorldStream& stream, btTranslationalLimitMotor2& m) {
            m.m_currentLimit);
 }
 
-void visitMembers(WorldStream& stream, btTypedConstraint& joint);
 using AnyJoint = btTypedConstraint;
 template struct Visited<AnyJoint, &AnyJoint::m_isEnabled, &AnyJoint::m_breakingImpulseThreshold,
                         &AnyJoint::m_needsFeedback, &AnyJoint::m_overrideNumSolverIterations,
                         &AnyJoint::m_appliedImpulse>;
 
-void visitMembers(WorldStream& stream, btAngularLimit& limit);
 using AngularLimit = btAngularLimit;
 template struct Visited<AngularLimit, &AngularLimit::m_center, &AngularLimit::m_halfRange, &AngularLimit::m_softness,
                         &AngularLimit::m_biasFactor, &AngularLimit::m_relaxationFactor>;
@@ -64,13 +62,11 @@ void visitState(WorldStream& stream, btAngularLimit& limit) {
   visitMembers(stream, limit);
 }
 
-void visitMembers(WorldStream& stream, btPoint2PointConstraint& joint);
 using BallJoint = btPoint2PointConstraint;
 template struct Visited<BallJoint, &BallJoint::m_pivotInA, &BallJoint::m_pivotInB, &BallJoint::m_flags,
                         &BallJoint::m_erp, &BallJoint::m_cfm, &BallJoint::m_setting,
                         &BallJoint::m_useSolveConstraintObsolete>;
 
-void visitMembers(WorldStream& stream, btHingeConstraint& joint);
 using HingeJoint = btHingeConstraint;
 template struct Visited<HingeJoint, &HingeJoint::m_rbAFrame, &HingeJoint::m_rbBFrame,
                         &HingeJoint::m_motorTargetVelocity, &HingeJoint::m_maxMotorImpulse,
@@ -85,10 +81,8 @@ template struct Visited<HingeJoint, &HingeJoint::m_rbAFrame, &HingeJoint::m_rbBF
                         &HingeJoint::m_useReferenceFrameA, &HingeJoint::m_flags, &HingeJoint::m_normalCFM,
                         &HingeJoint::m_normalERP, &HingeJoint::m_stopCFM, &HingeJoint::m_stopERP>;
 
-void visitMembers(WorldStream& stream, btHingeAccumulatedAngleConstraint& joint);
 template struct Visited<btHingeAccumulatedAngleConstraint, &btHingeAccumulatedAngleConstraint::m_accumulatedAngle>;
 
-void visitMembers(WorldStream& stream, btConeTwistConstraint& joint);
 using ConeJoint = btConeTwistConstraint;
 template struct Visited<
     ConeJoint, &ConeJoint::m_rbAFrame, &ConeJoint::m_rbBFrame, &ConeJoint::m_limitSoftness, &ConeJoint::m_biasFactor,
@@ -98,7 +92,6 @@ template struct Visited<
     &ConeJoint::m_qTarget, &ConeJoint::m_maxMotorImpulse, &ConeJoint::m_accMotorImpulse, &ConeJoint::m_flags,
     &ConeJoint::m_linCFM, &ConeJoint::m_linERP, &ConeJoint::m_angCFM>;
 
-void visitMembers(WorldStream& stream, btSliderConstraint& joint);
 using SliderJoint = btSliderConstraint;
 template struct Visited<
     SliderJoint, &SliderJoint::m_useSolveConstraintObsolete, &SliderJoint::m_useOffsetForConstraintFrame,
@@ -117,67 +110,52 @@ template struct Visited<
     &SliderJoint::m_accumulatedLinMotorImpulse, &SliderJoint::m_poweredAngMotor, &SliderJoint::m_targetAngMotorVelocity,
     &SliderJoint::m_maxAngMotorForce, &SliderJoint::m_accumulatedAngMotorImpulse>;
 
-void visitMembers(WorldStream& stream, btGeneric6DofConstraint& joint);
 using SixDofJoint = btGeneric6DofConstraint;
 template struct Visited<SixDofJoint, &SixDofJoint::m_frameInA, &SixDofJoint::m_frameInB, &SixDofJoint::m_linearLimits,
                         &SixDofJoint::m_angularLimits, &SixDofJoint::m_useLinearReferenceFrameA,
                         &SixDofJoint::m_useOffsetForConstraintFrame, &SixDofJoint::m_flags>;
 
-void visitMembers(WorldStream& stream, btGeneric6DofSpringConstraint& joint);
 using SpringJoint = btGeneric6DofSpringConstraint;
 template struct Visited<SpringJoint, &SpringJoint::m_springEnabled, &SpringJoint::m_equilibriumPoint,
                         &SpringJoint::m_springStiffness, &SpringJoint::m_springDamping>;
 
-void visitMembers(WorldStream& stream, btGeneric6DofSpring2Constraint& joint);
 using SpringJoint2 = btGeneric6DofSpring2Constraint;
 template struct Visited<SpringJoint2, &SpringJoint2::m_frameInA, &SpringJoint2::m_frameInB,
                         &SpringJoint2::m_linearLimits, &SpringJoint2::m_angularLimits, &SpringJoint2::m_rotateOrder,
                         &SpringJoint2::m_flags>;
 
-void visitMembers(WorldStream& stream, btGearConstraint& joint);
 using GearJoint = btGearConstraint;
 template struct Visited<GearJoint, &GearJoint::m_axisInA, &GearJoint::m_axisInB, &GearJoint::m_useFrameA,
                         &GearJoint::m_ratio>;
 
-void visitMembers(WorldStream& stream, btMultiBodyConstraint& joint);
 using BodyJoint = btMultiBodyConstraint;
 template struct Visited<BodyJoint, &BodyJoint::m_maxAppliedImpulse, &BodyJoint::m_isUnilateral>;
 /// The impulses with which the next step starts are at the beginning of its data; Jacobians, computed in each step,
 /// follow.
-struct JointData {
-  friend btAlignedObjectArray<btScalar> BodyJoint::*memberOf(JointData);
-};
+using JointData = Hidden<BodyJoint, btAlignedObjectArray<btScalar>>;
 template struct Opened<JointData, &BodyJoint::m_data>;
 
-void visitMembers(WorldStream& stream, btMultiBodyJointMotor& joint);
 using LinkMotor = btMultiBodyJointMotor;
 template struct Visited<LinkMotor, &LinkMotor::m_desiredVelocity, &LinkMotor::m_desiredPosition, &LinkMotor::m_kd,
                         &LinkMotor::m_kp, &LinkMotor::m_erp, &LinkMotor::m_rhsClamp>;
-void visitMembers(WorldStream& stream, btMultiBodyJointLimitConstraint& joint);
 template struct Visited<btMultiBodyJointLimitConstraint, &btMultiBodyJointLimitConstraint::m_lowerBound,
                         &btMultiBodyJointLimitConstraint::m_upperBound>;
-void visitMembers(WorldStream& stream, btMultiBodyFixedConstraint& joint);
 using LinkWeld = btMultiBodyFixedConstraint;
 template struct Visited<LinkWeld, &LinkWeld::m_pivotInA, &LinkWeld::m_pivotInB, &LinkWeld::m_frameInA,
                         &LinkWeld::m_frameInB>;
-void visitMembers(WorldStream& stream, btMultiBodyPoint2Point& joint);
 template struct Visited<btMultiBodyPoint2Point, &btMultiBodyPoint2Point::m_pivotInA,
                         &btMultiBodyPoint2Point::m_pivotInB>;
-void visitMembers(WorldStream& stream, btMultiBodySliderConstraint& joint);
 using LinkSlider = btMultiBodySliderConstraint;
 template struct Visited<LinkSlider, &LinkSlider::m_pivotInA, &LinkSlider::m_pivotInB, &LinkSlider::m_frameInA,
                         &LinkSlider::m_frameInB, &LinkSlider::m_jointAxis>;
-void visitMembers(WorldStream& stream, btMultiBodyGearConstraint& joint);
 using LinkGear = btMultiBodyGearConstraint;
 template struct Visited<LinkGear, &LinkGear::m_pivotInA, &LinkGear::m_pivotInB, &LinkGear::m_frameInA,
                         &LinkGear::m_frameInB, &LinkGear::m_gearRatio, &LinkGear::m_gearAuxLink, &LinkGear::m_erp,
                         &LinkGear::m_relativePositionTarget>;
-void visitMembers(WorldStream& stream, btMultiBodySphericalJointMotor& joint);
 using BallMotor = btMultiBodySphericalJointMotor;
 template struct Visited<BallMotor, &BallMotor::m_desiredVelocity, &BallMotor::m_desiredPosition,
                         &BallMotor::m_use_multi_dof_params, &BallMotor::m_kd, &BallMotor::m_kp, &BallMotor::m_erp,
                         &BallMotor::m_rhsClamp, &BallMotor::m_maxAppliedImpulseMultiDof, &BallMotor::m_damping>;
-void visitMembers(WorldStream& stream, btMultiBodySphericalJointLimit& joint);
 using BallLimit = btMultiBodySphericalJointLimit;
 template struct Visited<BallLimit, &BallLimit::m_desiredVelocity, &BallLimit::m_desiredPosition,
                         &BallLimit::m_use_multi_dof_params, &BallLimit::m_kd, &BallLimit::m_kp, &BallLimit::m_erp,

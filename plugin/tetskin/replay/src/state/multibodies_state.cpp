@@ -24,7 +24,6 @@ void visitState(WorldStream& stream, btSpatialMotionVector& vector) {
   visitAll(stream, vector.m_topVec, vector.m_bottomVec);
 }
 
-void visitMembers(WorldStream& stream, btMultiBody& body);
 using AnyMultiBody = btMultiBody;
 template struct Visited<
     AnyMultiBody, &AnyMultiBody::m_basePos, &AnyMultiBody::m_basePos_interpolate, &AnyMultiBody::m_baseQuat,

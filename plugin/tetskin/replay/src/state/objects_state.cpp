@@ -7,7 +7,6 @@
 
 namespace tetskin::bullet_detail {
 
-void visitMembers(WorldStream& stream, btCollisionObject& object);
 template struct Visited<
     btCollisionObject, &btCollisionObject::m_worldTransform, &btCollisionObject::m_interpolationWorldTransform,
     &btCollisionObject::m_interpolationLinearVelocity, &btCollisionObject::m_interpolationAngularVelocity,
@@ -21,12 +20,9 @@ template struct Visited<
     &btCollisionObject::m_checkCollideWith, &btCollisionObject::m_updateRevision>;
 
 /// Whom it passes through, as `setIgnoreCollisionCheck` says: `m_checkCollideWith` counts them.
-struct PassesThrough {
-  friend btAlignedObjectArray<const btCollisionObject*> btCollisionObject::*memberOf(PassesThrough);
-};
+using PassesThrough = Hidden<btCollisionObject, btAlignedObjectArray<const btCollisionObject*>>;
 template struct Opened<PassesThrough, &btCollisionObject::m_objectsWithoutCollisionCheck>;
 
-void visitMembers(WorldStream& stream, btRigidBody& body);
 template struct Visited<
     btRigidBody, &btRigidBody::m_linearVelocity, &btRigidBody::m_angularVelocity, &btRigidBody::m_inverseMass,
     &btRigidBody::m_linearFactor, &btRigidBody::m_gravity, &btRigidBody::m_gravity_acceleration,
@@ -40,7 +36,6 @@ template struct Visited<
     &btRigidBody::m_pushVelocity, &btRigidBody::m_turnVelocity>;
 
 /// The world's clock and settings.
-void visitMembers(WorldStream& stream, btDeformableMultiBodyDynamicsWorld& world);
 using World = btDeformableMultiBodyDynamicsWorld;
 template struct Visited<World, &World::m_localTime, &World::m_fixedTimeStep, &World::m_internalTime, &World::m_gravity,
                         &World::m_synchronizeAllMotionStates, &World::m_latencyMotionStateInterpolation,

@@ -35,57 +35,51 @@ struct PointCache {
   bool* owned = nullptr;  ///< null: it is always there
 };
 
-}  // namespace
+template <class Algorithm>
+using ManifoldMember = Hidden<Algorithm, btPersistentManifold*>;
+template <class Algorithm>
+using OwnedMember = Hidden<Algorithm, bool>;
 
-// NOLINTBEGIN(bugprone-macro-parentheses): a class
-#define TETSKIN_CACHE_OF(Class)                                                                 \
-  struct Class##Manifold {                                                                      \
-    friend btPersistentManifold* Class::*memberOf(Class##Manifold);                             \
-  };                                                                                            \
-  template struct Opened<Class##Manifold, &Class::m_manifoldPtr>;                               \
-  struct Class##Owned {                                                                         \
-    friend bool Class::*memberOf(Class##Owned);                                                 \
-  };                                                                                            \
-  template struct Opened<Class##Owned, &Class::m_ownManifold>;                                  \
-  static PointCache cacheOf(Class& algorithm) {                                                 \
-    return {&(algorithm.*memberOf(Class##Manifold())), &(algorithm.*memberOf(Class##Owned()))}; \
-  }
-// NOLINTEND(bugprone-macro-parentheses)
-TETSKIN_CACHE_OF(btConvexConvexAlgorithm)
-TETSKIN_CACHE_OF(btBoxBoxCollisionAlgorithm)
-TETSKIN_CACHE_OF(btSphereSphereCollisionAlgorithm)
-TETSKIN_CACHE_OF(btSphereTriangleCollisionAlgorithm)
-TETSKIN_CACHE_OF(btConvexPlaneCollisionAlgorithm)
-#undef TETSKIN_CACHE_OF
-
-struct TriangleCallback {
-  friend btConvexTriangleCallback btConvexConcaveCollisionAlgorithm::*memberOf(TriangleCallback);
-};
-template struct Opened<TriangleCallback, &btConvexConcaveCollisionAlgorithm::m_btConvexTriangleCallback>;
-static PointCache cacheOf(btConvexConcaveCollisionAlgorithm& algorithm) {
-  return {&(algorithm.*memberOf(TriangleCallback())).m_manifoldPtr, nullptr};
+template <class Algorithm>
+PointCache cacheOf(Algorithm& algorithm) {
+  return {&(algorithm.*memberOf(ManifoldMember<Algorithm>())), &(algorithm.*memberOf(OwnedMember<Algorithm>()))};
 }
 
+}  // namespace
+
+template struct Opened<ManifoldMember<btConvexConvexAlgorithm>, &btConvexConvexAlgorithm::m_manifoldPtr>;
+template struct Opened<OwnedMember<btConvexConvexAlgorithm>, &btConvexConvexAlgorithm::m_ownManifold>;
+template struct Opened<ManifoldMember<btBoxBoxCollisionAlgorithm>, &btBoxBoxCollisionAlgorithm::m_manifoldPtr>;
+template struct Opened<OwnedMember<btBoxBoxCollisionAlgorithm>, &btBoxBoxCollisionAlgorithm::m_ownManifold>;
+template struct Opened<ManifoldMember<btSphereSphereCollisionAlgorithm>,
+                       &btSphereSphereCollisionAlgorithm::m_manifoldPtr>;
+template struct Opened<OwnedMember<btSphereSphereCollisionAlgorithm>, &btSphereSphereCollisionAlgorithm::m_ownManifold>;
+template struct Opened<ManifoldMember<btSphereTriangleCollisionAlgorithm>,
+                       &btSphereTriangleCollisionAlgorithm::m_manifoldPtr>;
+template struct Opened<OwnedMember<btSphereTriangleCollisionAlgorithm>,
+                       &btSphereTriangleCollisionAlgorithm::m_ownManifold>;
+template struct Opened<ManifoldMember<btConvexPlaneCollisionAlgorithm>,
+                       &btConvexPlaneCollisionAlgorithm::m_manifoldPtr>;
+template struct Opened<OwnedMember<btConvexPlaneCollisionAlgorithm>, &btConvexPlaneCollisionAlgorithm::m_ownManifold>;
+
+using TriangleCallback = Hidden<btConvexConcaveCollisionAlgorithm, btConvexTriangleCallback>;
+template struct Opened<TriangleCallback, &btConvexConcaveCollisionAlgorithm::m_btConvexTriangleCallback>;
 using CompoundAlgorithm = btCompoundCollisionAlgorithm;
-struct ChildrenMember {
-  friend btAlignedObjectArray<btCollisionAlgorithm*> CompoundAlgorithm::*memberOf(ChildrenMember);
-};
+using ChildrenMember = Hidden<CompoundAlgorithm, btAlignedObjectArray<btCollisionAlgorithm*>>;
 template struct Opened<ChildrenMember, &CompoundAlgorithm::m_childCollisionAlgorithms>;
-struct IsSwappedMember {
-  friend bool CompoundAlgorithm::*memberOf(IsSwappedMember);
-};
+using IsSwappedMember = Hidden<CompoundAlgorithm, bool>;
 template struct Opened<IsSwappedMember, &CompoundAlgorithm::m_isSwapped>;
-struct RevisionMember {
-  friend int CompoundAlgorithm::*memberOf(RevisionMember);
-};
+using RevisionMember = Hidden<CompoundAlgorithm, int>;
 template struct Opened<RevisionMember, &CompoundAlgorithm::m_compoundShapeRevision>;
 using TwoCompoundsAlgorithm = btCompoundCompoundCollisionAlgorithm;
-struct ChildPairsMember {
-  friend btHashedSimplePairCache* TwoCompoundsAlgorithm::*memberOf(ChildPairsMember);
-};
+using ChildPairsMember = Hidden<TwoCompoundsAlgorithm, btHashedSimplePairCache*>;
 template struct Opened<ChildPairsMember, &TwoCompoundsAlgorithm::m_childCollisionAlgorithmCache>;
 
 namespace {
+
+PointCache cacheOf(btConvexConcaveCollisionAlgorithm& algorithm) {
+  return {&(algorithm.*memberOf(TriangleCallback())).m_manifoldPtr, nullptr};
+}
 
 enum class AlgorithmKind : unsigned char { None, Stateless, Convex, Compound, TwoCompounds, Unknown };
 

@@ -16,9 +16,7 @@ namespace tetskin::bullet_detail {
 
 using World = btDeformableMultiBodyDynamicsWorld;
 
-struct ActionsMember {
-  friend btAlignedObjectArray<btActionInterface*> btDiscreteDynamicsWorld::*memberOf(ActionsMember);
-};
+using ActionsMember = Hidden<btDiscreteDynamicsWorld, btAlignedObjectArray<btActionInterface*>>;
 template struct Opened<ActionsMember, &btDiscreteDynamicsWorld::m_actions>;
 
 namespace {

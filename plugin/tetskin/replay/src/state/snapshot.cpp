@@ -51,13 +51,7 @@ struct Header {
   std::uint64_t ends[kPartCount + 1] = {};  ///< of the directory and of each part, from the payload's beginning
 
   void visit(StateStream& stream) {
-    stream(magic);
-    stream(layout);
-    stream(library);
-    stream(scalarBytes);
-    stream(byteOrder);
-    stream(length);
-    stream(hash);
+    stream(magic, layout, library, scalarBytes, byteOrder, length, hash);
     stream.plain(ends, kPartCount + 1);
   }
   static std::size_t bytes() {

@@ -62,8 +62,7 @@ void visitNodes(WorldStream& stream, btSoftBody& body) {
   std::vector<int> more;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     Node& node = body.m_nodes[n];
-    stream(node.m_x);
-    stream(node.m_v);
+    stream(node.m_x, node.m_v);
     if (stream.saving()) {
       if (hasMore(node)) more.push_back(n);
     } else {

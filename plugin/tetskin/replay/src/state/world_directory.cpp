@@ -16,21 +16,13 @@ namespace tetskin::bullet_detail {
 
 using World = btDeformableMultiBodyDynamicsWorld;
 
-struct MovingBodiesMember {
-  friend btAlignedObjectArray<btRigidBody*> btDiscreteDynamicsWorld::*memberOf(MovingBodiesMember);
-};
+using MovingBodiesMember = Hidden<btDiscreteDynamicsWorld, btAlignedObjectArray<btRigidBody*>>;
 template struct Opened<MovingBodiesMember, &btDiscreteDynamicsWorld::m_nonStaticRigidBodies>;
-struct JointsMember {
-  friend btAlignedObjectArray<btTypedConstraint*> btDiscreteDynamicsWorld::*memberOf(JointsMember);
-};
+using JointsMember = Hidden<btDiscreteDynamicsWorld, btAlignedObjectArray<btTypedConstraint*>>;
 template struct Opened<JointsMember, &btDiscreteDynamicsWorld::m_constraints>;
-struct MultiBodiesMember {
-  friend btAlignedObjectArray<btMultiBody*> btMultiBodyDynamicsWorld::*memberOf(MultiBodiesMember);
-};
+using MultiBodiesMember = Hidden<btMultiBodyDynamicsWorld, btAlignedObjectArray<btMultiBody*>>;
 template struct Opened<MultiBodiesMember, &btMultiBodyDynamicsWorld::m_multiBodies>;
-struct BodyJointsMember {
-  friend btAlignedObjectArray<btMultiBodyConstraint*> btMultiBodyDynamicsWorld::*memberOf(BodyJointsMember);
-};
+using BodyJointsMember = Hidden<btMultiBodyDynamicsWorld, btAlignedObjectArray<btMultiBodyConstraint*>>;
 template struct Opened<BodyJointsMember, &btMultiBodyDynamicsWorld::m_multiBodyConstraints>;
 
 namespace {

@@ -38,9 +38,7 @@ struct FrameCurve {
 
   template <class Stream>
   void visitState(Stream& stream) {
-    stream(way);
-    stream(early);
-    stream(late);
+    stream(way, early, late);
   }
 };
 
@@ -77,11 +75,7 @@ struct FrameMotion {
 
   template <class Stream>
   void visitState(Stream& stream) {
-    stream(velocity);
-    stream(mean);
-    stream(before);
-    stream(seconds);
-    stream(secondsBefore);
+    stream(velocity, mean, before, seconds, secondsBefore);
   }
 
  private:

@@ -8,7 +8,6 @@
 #include <tetskin/solver/src/base/row_source.h>
 #include <Eigen/Core>
 
-#include <memory>
 #include <vector>
 
 namespace tetskin::bullet_detail {

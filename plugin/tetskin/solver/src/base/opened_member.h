@@ -6,11 +6,21 @@
 // Only snapshots, and what must not change a world by looking at it, may reach into Bullet in this way.
 #pragma once
 
+#include <tetskin/core/src/base/compiler.h>
+
 namespace tetskin::bullet_detail {
 
-/// One member: after `struct Name { friend Type Object::*memberOf(Name); }`,
-///     template struct Opened<Name, &Object::m_hidden>;
-/// makes `object.*memberOf(Name())` that member.
+TETSKIN_FRIENDS_OF_TEMPLATES
+
+/// The only member of a type, of a class, that is opened: after
+///     using ThatMember = Hidden<Object, Type>;
+///     template struct Opened<ThatMember, &Object::m_hidden>;
+/// `object.*memberOf(ThatMember())` is that member.
+template <class Object, class Type>
+struct Hidden {
+  friend Type Object::*memberOf(Hidden);
+};
+
 template <class Name, auto member>
 struct Opened {
   friend decltype(member) memberOf(Name) { return member; }

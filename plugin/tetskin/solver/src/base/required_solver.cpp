@@ -6,9 +6,7 @@
 
 namespace tetskin::bullet_detail {
 
-struct SolverOfWorld {
-  friend btDeformableBodySolver* btDeformableMultiBodyDynamicsWorld::*memberOf(SolverOfWorld);
-};
+using SolverOfWorld = Hidden<btDeformableMultiBodyDynamicsWorld, btDeformableBodySolver*>;
 template struct Opened<SolverOfWorld, &btDeformableMultiBodyDynamicsWorld::m_deformableBodySolver>;
 
 DeformableSolver* deformableSolver(btSoftBodySolver* solver) {

@@ -171,14 +171,8 @@ void DrivenNodes::visitState(WorldStream& stream) {
     stream.each(nodes, [&](DrivenNode& driven) {
       stream(driven.node);
       if (driven.node < 0 || driven.node >= body.m_nodes.size()) stream.fail();
-      stream(driven.position);
-      stream(driven.target);
-      stream(driven.velocity);
-      stream(driven.sinceMoved);
-      stream(driven.interval);
-      stream(driven.left);
-      stream(driven.from);
-      stream(driven.done);
+      stream(driven.position, driven.target, driven.velocity, driven.sinceMoved, driven.interval, driven.left,
+             driven.from, driven.done);
       driven.curve.visitState(stream);
       driven.motion.visitState(stream);
     });

@@ -137,20 +137,14 @@ void seeItself(RestingBody& sleeper) {
 /// The shape is that of the object, unless the application has given it another one since.
 void visitState(WorldStream& stream, Neighbour& neighbour) {
   stream.object(neighbour.object);
-  stream(neighbour.isSoft);
-  stream(neighbour.isObstacle);
-  stream(neighbour.stands);
-  stream(neighbour.transform);
-  stream(neighbour.friction);
-  stream(neighbour.low);
-  stream(neighbour.high);
+  stream(neighbour.isSoft, neighbour.isObstacle, neighbour.stands, neighbour.transform, neighbour.friction,
+         neighbour.low, neighbour.high);
   if (!neighbour.isObstacle) return;
   const btCollisionShape* shape = neighbour.object ? neighbour.object->getCollisionShape() : nullptr;
   bool isItsShape = shape && neighbour.shape.shape == shape;
   stream(isItsShape);
   if (stream.restoring()) neighbour.shape.shape = isItsShape ? shape : nullptr;
-  stream(neighbour.shape.low);
-  stream(neighbour.shape.high);
+  stream(neighbour.shape.low, neighbour.shape.high);
 }
 
 }  // namespace
@@ -279,8 +273,7 @@ void Sleepers::visitState(WorldStream& stream) {
     stream(isStored);
     if (stream.restoring() && isStored) sleeper.before.emplace();
     if (!isStored) return;
-    stream(sleeper.before->nodes);
-    stream(sleeper.before->friction);
+    stream(sleeper.before->nodes, sleeper.before->friction);
   });
 }
 

@@ -202,9 +202,7 @@ void Stillness::shift(const btVector3& by) {
 void Stillness::visitState(WorldStream& stream) {
   stream.byObject(waits_, [&](const btSoftBody&, Wait& wait) {
     stream.each(wait.positions, [&](btVector3& position) { stream(position); });
-    stream(wait.velocity);
-    stream(wait.displacement);
-    stream(wait.speed);
+    stream(wait.velocity, wait.displacement, wait.speed);
     if (stream.restoring()) wait.step = step_;
   });
 }

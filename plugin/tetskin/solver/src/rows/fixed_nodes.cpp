@@ -4,7 +4,6 @@
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/fixed_nodes.h>
 
-#include <algorithm>
 #include <cassert>
 
 namespace tetskin::bullet_detail {

@@ -309,16 +309,11 @@ void SolverBodies::visitState(WorldStream& stream) {
     seen_.copyFromArray(stream.world().getSoftBodyArray());  // what leaves before the next step is known to go
   }
   stream.byObject(persistent_, [&](const btSoftBody&, PersistentState& kept) {
-    stream(kept.hasRows);
-    stream(kept.hasContacts);
+    stream(kept.hasRows, kept.hasContacts);
     stream.each(kept.frictionAnchors, [&](FrictionAnchor& anchor) {
-      stream(anchor.point);
-      stream(anchor.sample);
+      stream(anchor.point, anchor.sample);
       stream.object(anchor.object);
-      stream(anchor.normal);
-      stream(anchor.position);
-      stream(anchor.normalForce);
-      stream(anchor.stuck);
+      stream(anchor.normal, anchor.position, anchor.normalForce, anchor.stuck);
     });
   });
 }

@@ -13,7 +13,6 @@
 #include <mutex>
 #include <set>
 #include <tuple>
-#include <utility>
 
 namespace tetskin::bullet_detail {
 namespace {

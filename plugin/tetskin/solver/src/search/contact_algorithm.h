@@ -8,8 +8,6 @@
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/solver/src/search/body_contacts.h>
 
-#include <memory>
-
 namespace tetskin::bullet_detail {
 
 /// From now on, the dispatcher asks the soft body of each new pair of a soft and a rigid body for its contacts: see

@@ -8,7 +8,6 @@
 #include <cassert>
 #include <iterator>
 #include <numeric>
-#include <utility>
 
 namespace tetskin::bullet_detail {
 namespace {

@@ -188,11 +188,7 @@ void KinematicPaths::forget(const std::unordered_set<const btCollisionObject*>& 
 /// The rest of a path is set as the next step begins.
 void KinematicPaths::visitState(WorldStream& stream) {
   stream.byObject(paths_, [&](const btRigidBody&, KinematicPath& path) {
-    stream(path.from);
-    stream(path.to);
-    stream(path.steps);
-    stream(path.done);
-    stream(path.last);
+    stream(path.from, path.to, path.steps, path.done, path.last);
     for (FrameCurve* curve : {&path.moves, &path.turns}) curve->visitState(stream);
     for (FrameMotion* motion : {&path.motion, &path.turning}) motion->visitState(stream);
     if (path.steps < 1 || path.done < 1) stream.fail();

@@ -245,8 +245,7 @@ bool RecordedForces::isPresent(const Participant& participant) const {
 void visitState(WorldStream& stream, std::array<AppliedForces, 2>& ofPair) {
   for (AppliedForces& forces : ofPair) {
     for (Wrench* wrench : {&forces.contact, &forces.friction, &forces.joints, &forces.anchors}) {
-      stream(wrench->force);
-      stream(wrench->torque);
+      stream(wrench->force, wrench->torque);
     }
   }
 }
@@ -260,9 +259,7 @@ void RecordedForces::clear() {
 
 /// Visits pairs whose objects are in the world: others are not reported.
 void RecordedForces::visitState(WorldStream& stream) {
-  stream(mark_);
-  stream(seconds_);
-  stream(secondsBefore_);
+  stream(mark_, seconds_, secondsBefore_);
   std::vector<Pair> present;
   for (const Pair& pair : pairs_) {
     if (isPresent(pair.participants[0]) && isPresent(pair.participants[1])) present.push_back(pair);
@@ -278,8 +275,7 @@ void RecordedForces::visitState(WorldStream& stream) {
     }
     bullet_detail::visitState(stream, pair.impulses);
     bullet_detail::visitState(stream, pair.before);
-    stream(pair.asleep);
-    stream(pair.sleeps);
+    stream(pair.asleep, pair.sleeps);
   });
   if (!stream.restoring()) return;
   pairs_ = std::move(present);

@@ -11,7 +11,6 @@
 #include <tetskin/solver/src/step/step.h>
 
 #include <algorithm>
-#include <cassert>
 
 namespace tetskin {
 namespace {

@@ -209,14 +209,8 @@ void Joint::shift(const btVector3& by) {
 }
 
 void Joint::visitState(WorldStream& stream) {
-  stream(anchor_.frame);
-  stream(anchorBefore_);
-  stream(settings_.stiffness);
-  stream(settings_.damping);
-  stream(settings_.maxForce);
-  stream(nodeMass_);
-  stream(force_);
-  stream(torque_);
+  stream(anchor_.frame, anchorBefore_, settings_.stiffness, settings_.damping, settings_.maxForce, nodeMass_, force_,
+         torque_);
 }
 
 /// The nodes that carry the point, which is where it was attached.

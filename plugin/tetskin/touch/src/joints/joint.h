@@ -17,7 +17,6 @@
 #include <tetskin/touch/src/points/point_jacobian.h>
 
 #include <limits>
-#include <memory>
 
 namespace tetskin::touch_detail {
 

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/touch/src/tree/surface_ray_caster.h>
 
-#include <algorithm>
 #include <cassert>
 #include <numeric>
 

@@ -76,6 +76,13 @@ class StateStream {
       bytes(&value, sizeof value);
     }
   }
+  /// Several, one after another.
+  template <class First, class Second, class... More>
+  void operator()(First& first, Second& second, More&... more) {
+    (*this)(first);
+    (*this)(second);
+    ((*this)(more), ...);
+  }
   /// The length of a list whose elements take at least `leastBytes` each: one that the remaining bytes cannot hold is
   /// refused.
   std::size_t length(std::size_t now, std::size_t leastBytes = 1) {
