@@ -427,7 +427,7 @@ int run(const DragOptions& options) {
     tellSolve(drag.world().solveTotals(), json);
     return json;
   };
-  return finishRun("tetskin_drag", output, run, recording, summarise, [&](const nlohmann::ordered_json& json) {
+  return finishRun("tetskin_drag", output, run, writer, recording, summarise, [&](const nlohmann::ordered_json& json) {
     std::printf("\n%s\n", phases.table().c_str());
     printSummary(json, output);
   });

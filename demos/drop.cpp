@@ -230,7 +230,7 @@ int run(const DropOptions& options) {
 
   const Playback run = drop.simulate(writer);
   const int status = finishRun(
-      "tetskin_drop", output, run, recording, [&] { return drop.summarise(run); },
+      "tetskin_drop", output, run, writer, recording, [&] { return drop.summarise(run); },
       [&](const nlohmann::ordered_json& json) { printSummary(json, output); });
   if (status == kDone && !run.aboveFloor) {
     std::fprintf(stderr, "tetskin_drop: the surface passed through the floor at y = %g, down to y = %g\n",

@@ -55,7 +55,7 @@ int run(const PileOptions& options) {
   };
   const Playback run = playFrames("simulating", output, pile.world(), step, measure, write);
   return finishRun(
-      "tetskin_pile", output, run, recording, [&] { return summarise(options, pile, measured, run); },
+      "tetskin_pile", output, run, writer, recording, [&] { return summarise(options, pile, measured, run); },
       [&](const nlohmann::ordered_json& json) {
         std::printf("\n%s\n", measured.table().c_str());
         printSummary(json, options);

@@ -40,8 +40,8 @@ Playback playFrames(const char* doing, const OutputOptions& output, World& world
   return run;
 }
 
-int finishRun(const char* program, const OutputOptions& output, const Playback& run, Recording& recording,
-              const std::function<nlohmann::ordered_json()>& summarise,
+int finishRun(const char* program, const OutputOptions& output, const Playback& run, FrameWriter& writer,
+              Recording& recording, const std::function<nlohmann::ordered_json()>& summarise,
               const std::function<void(const nlohmann::ordered_json& json)>& print) {
   writer.finish();
   recording.writeGlb();
