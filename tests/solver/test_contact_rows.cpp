@@ -5,12 +5,10 @@
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/contact_rows.h>
 #include <tetskin/solver/src/rows/fixed_nodes.h>
-#include <tetskin/solver/src/step/recorded_forces.h>
 
 #include <cmath>
 #include <initializer_list>
 #include <memory>
-#include <utility>
 
 #include "deformable_test.h"
 
@@ -154,21 +152,6 @@ TEST_F(WarmRows, OfANodeBeginWithTheDirectionsInWhichBulletFixesIt) {
   EXPECT_NEAR(std::abs(body.fixed[1].direction.z()), 1, 1e-6);
   EXPECT_EQ(body.fixed[2].kind, FixedNode::AlongDirection);
   EXPECT_EQ(body.fixed[3].kind, FixedNode::Fixed);
-}
-
-/// Of a pair, whichever of the two it is whose point is in contact.
-TEST_F(WarmRows, AreRecordedForBothBodiesOfAPair) {
-  PointContact below = contact(8, 4, -kUp);
-  std::swap(below.at, below.onObject);
-  below.body = &lower_->body();
-  below.object = &upper_->body();
-  begin({contact(7, 3), below});
-  end({{btVector3(0, 0, 0), 1}, {btVector3(0, 0, 0), 2}});
-  RecordedForces recorded(world_.deformable());
-  recorded.record(bodies_, rows_, kStepSeconds);
-  const btVector3 up = recorded.on(upper_->body(), &lower_->body()).total().force;
-  EXPECT_GT(up.y(), 0) << "both push it up";
-  EXPECT_EQ(recorded.on(lower_->body(), &upper_->body()).total().force, -up);
 }
 
 /// A fold is pushed several ways.
