@@ -91,8 +91,7 @@ int run(CageCommand command) {
   return statusOf(fit);
 }
 
-/// Makes a cage of tets that fill a mesh: quadratic ones where the file has such; otherwise of each tet, if
-/// wanted.
+/// Makes a cage of tets that fill a mesh: quadratic ones where the file has such; otherwise of each tet, if wanted.
 int runFilled(const CageCommand& command) {
   Cage cage = scenes::loadCage(command.filled);
   const auto quadraticTetsOf = [](const Cage& made) {

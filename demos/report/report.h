@@ -15,7 +15,7 @@
 // solver             what else simulates the same cage
 //   xpbd_fit           the constants that suit XPBD best
 // scene_runner       all cages of a scene
-//   advice             orders, Pareto front, the reference's own errors
+//   advice             Pareto front, the reference's own errors
 //   report_files       results for programs
 // plot_program       runs demos/plots, which makes tables and plots of them
 #pragma once

@@ -42,7 +42,7 @@ foreach(library core bullet cage contact elastic io reduced replay solver thread
     string(REGEX REPLACE "[^\n]* (vtable|typeinfo|typeinfo name) for tetskin::elastic_detail::ConjugateGradient<(float|double)>::CouplingOperator" ""
       names "${names}")
   endif()
-  if(names MATCHES "${shown}(findTets|skinPoints|(io|cage_detail|elastic_detail|kernels)::|BodyWithTrees)[^\n]*")
+  if(names MATCHES "${shown}(findTets|skinPoints|(io|cage_detail|elastic_detail|kernels)::|bullet_detail::(BodyContacts|ContactRows|SchurComplement))[^\n]*")
     message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
   endif()
   if(NOT names MATCHES "${shown}(embed|createSoftBody|createCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree|DeformableWorld|saveSnapshot)")

@@ -7,7 +7,6 @@
 
 #include <stdexcept>
 
-#include "saved.h"
 #include "solver/deformable_test.h"
 #include "solver/rigid_scene.h"
 #include "support/allocation_count.h"

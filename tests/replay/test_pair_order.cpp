@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The order of pairs, and all that follows from it, where memory is laid out in another way.
-#include "saved.h"
 #include "solver/rigid_scene.h"
 
 #include <gtest/gtest.h>

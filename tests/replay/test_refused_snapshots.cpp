@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // What a snapshot cannot hold, and bytes that are none: refused with the reason, and nothing is changed.
-#include "saved.h"
 #include "solver/rigid_scene.h"
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Nothing in a snapshot is there in vain: with any part from another moment, a run goes on otherwise.
-#include "saved.h"
 #include "solver/rigid_scene.h"
 
 #include <gtest/gtest.h>

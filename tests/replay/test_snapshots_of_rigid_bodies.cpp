@@ -3,7 +3,6 @@
 //
 // Snapshots of worlds of rigid bodies, joints and multibodies: the restored world goes on to the last bit, and so do
 // the bytes of later snapshots.
-#include "saved.h"
 #include "solver/rigid_scene.h"
 
 #include <gtest/gtest.h>

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "deformable_test.h"
-#include "support/replays.h"
 
 namespace tetskin::test {
 namespace {
@@ -167,25 +166,6 @@ TEST(BodiesThatReturn, KeepTheirFilters) {
   body->removeFromWorld();
   ASSERT_TRUE(body->addToWorld(world.deformable()).ok());
   EXPECT_EQ(body->body().getBroadphaseHandle()->m_collisionFilterMask, 64);
-}
-
-TEST(BodiesThatReturn, AreKnownToSnapshots) {
-  TetskinWorld world;
-  const auto stays = added(world, smallCageAbove(2));
-  const auto body = added(world, smallCageAbove(0.05));
-  step(world, 20);
-  const Bytes snapshot = saved(world.deformable());
-  step(world, 20);
-  const auto first = nodesOf(body->body()), second = nodesOf(stays->body());
-  body->removeFromWorld();
-  step(world, 5);
-  const auto restore = [&] { return restored(world.deformable(), snapshot); };
-  EXPECT_EQ(restore().code, StatusCode::SnapshotMismatch);
-  ASSERT_TRUE(body->addToWorld(world.deformable()).ok());
-  ASSERT_TRUE(restore().ok()) << restore().message;
-  step(world, 20);
-  EXPECT_EQ(nodesOf(body->body()), first);
-  EXPECT_EQ(nodesOf(stays->body()), second);
 }
 
 TEST(BodiesThatReturn, AndTheirWorldsMayGoInAnyOrder) {

@@ -93,7 +93,7 @@ class TETSKIN_CORE_API CageLocator {
 
  private:
   struct Impl;
-  std::shared_ptr<const Impl> impl_;
+  std::shared_ptr<const Impl> impl_;  ///< null: moved from; never shared
 };
 
 // Quadratic tets: ten nodes, whose displacement is a quadratic function between them. They bend as linear tets, which

@@ -104,7 +104,7 @@ class TETSKIN_ELASTIC_API ElasticBody {
 
  private:
   struct Impl;
-  std::shared_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;  ///< null: no nodes; never shared
 };
 
 }  // namespace tetskin

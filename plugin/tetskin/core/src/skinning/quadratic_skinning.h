@@ -7,6 +7,7 @@
 #include <tetskin/core/src/kernels/skinning_kernels.h>
 #include <tetskin/core/src/skinning/skinning.h>
 
+#include <cassert>
 #include <vector>
 
 namespace tetskin {

@@ -25,7 +25,7 @@ void addCross(const Eigen::Vector3d& arm, const Vectors& vectors, Sums&& sums) {
 }  // namespace
 
 RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) {
-  assert(masses.size() == rowOf(mesh.nodeCount()));
+  assert(mesh.nodeCount() > 0 && masses.size() == rowOf(mesh.nodeCount()));
   DisjointSets sets(mesh.nodeCount());
   for (const Tet& tet : mesh.tets) {
     for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
