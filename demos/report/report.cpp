@@ -8,10 +8,12 @@
 
 #include "report/advice.h"
 #include "report/report_files.h"
+#include "report/report_view.h"
 #include "scenes/files.h"
 #include "scenes/input_error.h"
 #include "scenes/placement.h"
 #include "scenes/progress.h"
+#include "scenes/view_page.h"
 
 namespace tetskin::report {
 namespace {
@@ -78,6 +80,13 @@ void requireFolder(const std::string& folder) {
   throw scenes::InputError(folder + ": cannot be created; check the path and its permissions");
 }
 
+using Runners = std::vector<std::unique_ptr<SceneRunner>>;
+
+const SceneRunner* runnerOf(const std::string& scene, const Runners& runners) {
+  return std::find_if(runners.begin(), runners.end(), [&](const auto& runner) { return runner->scene() == scene; })
+      ->get();
+}
+
 }  // namespace
 
 ReportResult makeReport(const ReportOptions& desired) {
@@ -86,19 +95,22 @@ ReportResult makeReport(const ReportOptions& desired) {
   options.referenceTets = model.reference.tets;
   requireFolder(options.out);
   scenes::requireWritable(options.json);
+  if (!options.view.empty()) scenes::requireViewable();
   CageShelf cages(model.mesh);
   ReferenceShelf references(model.mesh, model.reference);
-  std::vector<std::unique_ptr<SceneRunner>> runners;
+  Runners runners;
   double cost = 0.0;
   for (const std::string& scene : options.scenes) {
     runners.push_back(std::make_unique<SceneRunner>(model, cages, references, options, scene));
     for (const Job& job : runners.back()->jobs()) cost += runners.back()->costOf(job);
   }
+  const SceneRunner* shown = options.view.empty() ? nullptr : runnerOf(shownScene(options), runners);
   ReportResult result{model.name, model.mesh.vertexCount(), model.mesh.triangleCount(), model.reference, {}};
   JobProgress progress(cost, options.quiet);
   for (std::unique_ptr<SceneRunner>& runner : runners) {
     result.scenes.push_back(runScene(*runner, progress));
     writeReport(result, options, runner->colouredMesh());
+    if (runner.get() == shown) writeView(*runner, model, options);
     runner.reset();  // also frees its reference, which may be large
   }
   return result;

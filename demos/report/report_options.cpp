@@ -31,6 +31,14 @@ std::vector<std::string> inOrder(const std::vector<std::string>& wanted) {
 
 }  // namespace
 
+std::string shownScene(const ReportOptions& options) {
+  const std::vector<std::string>& scenes = options.scenes;
+  if (std::count(scenes.begin(), scenes.end(), "sag") > 0) return "sag";
+  const auto first =
+      std::find_if(scenes.begin(), scenes.end(), [](const std::string& scene) { return scene != "exact"; });
+  return first == scenes.end() ? std::string() : *first;
+}
+
 int usualSubsteps(const ReportOptions& options) {
   const auto distance = [](std::size_t substeps) {
     return std::abs(std::log(static_cast<double>(substeps) / scenes::SceneOptions().substeps));
@@ -87,6 +95,7 @@ ReportCommandLine::ReportCommandLine(scenes::CommandLine& line) : line_(line) {
   line.addPositive("--target-error", o.targetError,
                    "Print the cheapest setting with a smaller error, as a fraction of the box's diagonal", "none");
   line.addCount("--show-tets", o.shownTets, "Write a mesh coloured by the errors of the cage nearest to this size");
+  line.addOutput("--view", o.view, "the cage of --show-tets beside the reference, in sag or else the first scene");
   line.addFolder("--out", o.out, "",
                  [&o](const std::string& name) {  // all files, except results that --json names
                    return name.rfind("error_", 0) == 0 && (o.json.empty() || name != "error_vs_time.json");
@@ -113,7 +122,7 @@ void ReportCommandLine::chooseSolvers() {
   }
   o.solvers = solversOf(solvers_);
   if (o.solvers.empty()) throw scenes::InputError("--solvers: name at least one solver");
-  for (const char* option : {"--cages", "--no-calibration", "--modes", "--no-reduction"}) {
+  for (const char* option : {"--cages", "--no-calibration", "--modes", "--no-reduction", "--view"}) {
     if (line_.given(option)) throw scenes::InputError(std::string(option) + " cannot be used with --solvers");
   }
   if (!line_.given("--scenes")) o.scenes = {"sag"};
@@ -166,6 +175,8 @@ const ReportOptions& ReportCommandLine::finish() {
   if (interpolation_ == "quadratic") o.surfaces = {SurfaceKind::Quadratic};
   chooseCages();
   if (noReduction_) o.modes.clear();
+  if (!o.view.empty() && shownScene(o).empty())
+    throw scenes::InputError("--view: none of the scenes in --scenes is simulated; add sag, for example");
   sortUniquely(o.modes);
   chooseSolvers();
   chooseSubsteps();

@@ -37,8 +37,12 @@ struct ReportOptions {
   std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
   double targetError = 0.0;      ///< in diagonals of the mesh's box; 0: none
   std::string out = "out/error_vs_time", json;
+  std::string view;  ///< file of a page that plays the cage of `shownTets` beside the reference; empty: none
   bool quiet = false;
 };
+
+/// The scene that a page plays: sag, or the first one that is simulated; empty if none is.
+std::string shownScene(const ReportOptions& options);
 
 /// The one of the substeps that is nearest to what all demos take.
 int usualSubsteps(const ReportOptions& options);

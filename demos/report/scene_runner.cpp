@@ -124,6 +124,21 @@ int SceneRunner::referenceSubsteps(const Job& job) const {
   return job.bullets || isExact() ? 0 : static_cast<int>(options_.referenceSubsteps);
 }
 
+const Job* SceneRunner::colouredJob() const {
+  const auto job = std::find_if(jobs_.begin(), jobs_.end(), [](const Job& j) { return j.coloured; });
+  return job == jobs_.end() ? nullptr : &*job;
+}
+
+ShownMotion SceneRunner::shownMotion() {
+  assert(!isExact() && colouredJob());
+  const Job& job = *colouredJob();
+  const Cage& cage = cages_.at(job.tets, job.kind).cage;
+  Simulation simulation = simulate(entry_, cage, optionsOf(job, cage, job.substeps.front()), model_.mesh, {}, [] {});
+  (void)reference();
+  return {cage, std::move(simulation.trajectory), referenceCage(), right_[false].trajectory,
+          std::move(simulation.obstacles)};
+}
+
 const Job* SceneRunner::referenceJob(bool bullets) const {
   const auto found = std::find_if(jobs_.begin(), jobs_.end(),
                                   [&](const Job& job) { return isReference(job) && job.bullets == bullets; });

@@ -43,6 +43,15 @@ struct ReportModel {
   ReferenceSource reference;
 };
 
+/// How a coarse cage moves, and how the reference does: node positions by frame.
+struct ShownMotion {
+  const Cage& cage;
+  Trajectory nodes;
+  const Cage& right;
+  const Trajectory& rightNodes;
+  TriangleMesh obstacles;
+};
+
 /// The scene in which nothing is simulated, as a control.
 constexpr const char* kExact = "exact";
 
@@ -64,6 +73,10 @@ class SceneRunner {
   std::vector<Row> run(const Job& job, const std::function<void(double)>& progress);
   /// The coloured mesh of the job that makes one, after its rows are made.
   const std::optional<std::string>& colouredMesh() const { return coloured_; }
+  /// The motion of that job, simulated again; not available for the exact scene. Valid as long as this object.
+  ShownMotion shownMotion();
+  /// The surface of the mesh in the reference.
+  const Points& rightSurface(int frame) { return reference().surfaceAt(frame).positions; }
 
  private:
   /// The motion of a cage in some number of substeps, with what is known before surfaces are compared.
@@ -84,6 +97,7 @@ class SceneRunner {
   };
 
   const Job* referenceJob(bool bullets) const;
+  const Job* colouredJob() const;
   const scenes::SceneOptions& material(bool bullets = false);
   Reference& reference(bool bullets = false);
   int referenceSubsteps(const Job& job) const;

@@ -84,6 +84,7 @@ Simulation simulate(const scenes::SceneEntry& entry, const Cage& cage, const sce
   Simulation result;
   const std::size_t before = scenes::heapBytes();
   const std::unique_ptr<scenes::Scene> scene = entry.make(cage, options);
+  result.obstacles = scene->world().obstacles();
   if (const ReductionReport* report = scene->world().reduction()) {
     result.modes = static_cast<int>(report->projectionErrors.size());
     result.projectionError = *std::max_element(report->projectionErrors.begin(), report->projectionErrors.end());

@@ -39,6 +39,7 @@ struct Simulation {
   SurfaceCosts surfaces;
   int modes = 0;                 ///< of a reduced body
   double projectionError = 0.0;  ///< largest projection error of these modes
+  TriangleMesh obstacles;        ///< of the scene, in its world
   bool finite = true;            ///< finite and not exploded; the trajectory ends before the first frame that is not
 };
 

@@ -98,6 +98,8 @@ TEST_F(Outputs, OfReportsAreNotItsInput) {
   fs::create_directory(folder.path("o"));
   folder.write("o/error_sag.ply", boxObj());
   expectRefused(folder.run(TETSKIN_ERROR_VS_TIME, {"--mesh", "o/error_sag.ply", "--out", "o", "--quick"}), "--mesh");
+  expectRefused(folder.run(TETSKIN_ERROR_VS_TIME, {"--view", "o/error_vs_time.json", "--out", "o", "--quick"}),
+                "--view");
 }
 
 TEST_F(Outputs, AreLookedAtBeforeAnythingIsRead) {

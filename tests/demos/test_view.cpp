@@ -138,5 +138,25 @@ TEST(View, IsWrittenByTheOthersWhereAskedFor) {
   EXPECT_NE(drag.find("\"places\":"), std::string::npos) << "of its hat, ring and pointer";
 }
 
+TEST(View, ShowsACoarseCageBesideTheReference) {
+  const CommandFolder folder;
+  const std::vector<std::string> quick = {
+      "--triangles", "3000",  "--tets",  "100,200", "--reference-tets", "600",
+      "--frames",    "4",     "--cages", "same",    "--no-reduction",   "--show-tets",
+      "200",         "--out", "o",       "--view",  "view.html"};
+  std::vector<std::string> arguments = quick;
+  arguments.insert(arguments.end(), {"--scenes", "exact,sag"});
+  const CommandResult result = folder.run(TETSKIN_ERROR_VS_TIME, arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string page = folder.read("view.html");
+  EXPECT_NE(page.find("serpent: sag"), std::string::npos);
+  EXPECT_NE(page.find("\"label\":\"reference, "), std::string::npos);
+  EXPECT_NE(page.find("\"moments\":5"), std::string::npos);
+
+  arguments = quick;
+  arguments.insert(arguments.end(), {"--scenes", "exact"});
+  test::expectRefused(folder.run(TETSKIN_ERROR_VS_TIME, arguments), "--view");
+}
+
 }  // namespace
 }  // namespace tetskin::scenes
