@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +18,6 @@ void writeFile(const std::string& path, std::string_view bytes);
 
 /// The deepest existing component of a folder's path; the folder itself if it exists.
 std::filesystem::path existingComponent(std::filesystem::path folder);
-
-/// All bytes of a file; nothing if it cannot be read.
-std::optional<std::string> contentsOf(const std::string& path);
 
 /// Throws InputError if this file cannot be written, so that this is known before the work begins. Does not change the
 /// file.

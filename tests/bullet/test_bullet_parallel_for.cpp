@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
-
-#include <algorithm>
-#include <memory>
-#include <vector>
 
 namespace tetskin {
 namespace {

@@ -5,11 +5,7 @@
 // the body's nodes by index at their current address, and never reads a body that has been destroyed.
 #include "worlds.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body_skin.h>
-
-#include <memory>
-#include <vector>
 
 #include "support/odd_meshes.h"
 

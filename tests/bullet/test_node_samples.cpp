@@ -2,11 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/src/skins/node_samples.h>
 
 #include <set>
-#include <vector>
 
 namespace tetskin {
 

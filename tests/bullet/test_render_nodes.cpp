@@ -4,14 +4,10 @@
 // How bindRenderNodes binds a body, compared with Bullet.
 #include "bullets_render_mesh.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <memory>
 
 namespace tetskin::test {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "skin_test.h"
 
-#include <cmath>
 #include <limits>
 
 namespace tetskin::test {

@@ -2,12 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/embedding.h>
 #include <tetskin/core/src/base/mesh/mesh_checks.h>
-
-#include <memory>
 
 namespace tetskin {
 namespace {

@@ -3,13 +3,11 @@
 #include "support/odd_meshes.h"
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <set>
 

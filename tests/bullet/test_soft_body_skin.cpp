@@ -5,8 +5,6 @@
 
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
 
 namespace tetskin::test {
@@ -132,6 +130,22 @@ TEST_F(Skin, WritesIntoTheCallersInterleavedBuffer) {
     EXPECT_EQ(buffer[8 * v], -5.0f);
     EXPECT_EQ(buffer[8 * v + 4], -5.0f);
   }
+}
+
+TEST_F(Skin, OriginIsSubtracted) {
+  std::vector<Eigen::Vector3d> points(mesh.vertexCount());
+  SkinOptions options;
+  options.target = viewOf(points);
+  options.origin = Eigen::Vector3d(10, 20, 30);
+  body->translate(btVector3(10, 20, 30));
+  ASSERT_TRUE(skin.bind(*body, cage, mesh, options).ok());
+  EXPECT_LT((points[3] - mesh.positions[3]).norm(), 16 * kRounding);
+  ASSERT_TRUE(skin.setOrigin(btVector3(9, 20, 30)).ok());
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
+  EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
+  EXPECT_FALSE(skin.setOrigin(btVector3(9, std::numeric_limits<btScalar>::quiet_NaN(), 30)).ok());
+  ASSERT_EQ(skin.update(), StatusCode::Ok);
+  EXPECT_LT((points[3] - mesh.positions[3] - Eigen::Vector3d(1, 0, 0)).norm(), 16 * kRounding);
 }
 
 TEST_F(Skin, FailedBindLeavesTheSkinAsItWas) {

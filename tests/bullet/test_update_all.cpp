@@ -4,15 +4,12 @@
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/bullet/soft_body_skin.h>
 
-#include <algorithm>
 #include <deque>
 #include <limits>
 #include <map>
-#include <memory>
 
 namespace tetskin {
 namespace {

@@ -5,11 +5,7 @@
 #include "support/odd_meshes.h"
 #include "worlds.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body_skin.h>
-
-#include <cmath>
-#include <functional>
 
 namespace tetskin {
 namespace {

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "worlds.h"
 
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

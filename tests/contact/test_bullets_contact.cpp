@@ -9,9 +9,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <tetskin/solver/src/base/exact_distance.h>
 
-#include <cmath>
-#include <memory>
-
 namespace tetskin::test {
 
 using namespace bullet_detail;

@@ -6,11 +6,6 @@
 #include "contact_test.h"
 #include "solver/recorded_forces.h"
 
-#include <cmath>
-#include <functional>
-#include <memory>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

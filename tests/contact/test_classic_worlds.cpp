@@ -3,7 +3,6 @@
 //
 // Bullet's own contact of soft bodies in the classic worlds, at the cages' surfaces, with bodies made by this library.
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body.h>
 
 #include "../bullet/worlds.h"

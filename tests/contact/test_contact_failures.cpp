@@ -7,7 +7,6 @@
 #include "support/allocation_count.h"
 
 #include <tetskin/replay/snapshot.h>
-#include <vector>
 
 namespace tetskin::test {
 namespace {

@@ -6,12 +6,7 @@
 #include "contact_test.h"
 #include "soft_fixtures.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <memory>
 #include <ostream>
-#include <string>
 #include <tuple>
 #include <utility>
 

@@ -10,9 +10,6 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <memory>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

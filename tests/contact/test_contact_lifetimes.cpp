@@ -4,10 +4,7 @@
 // Bodies, contacts and worlds are destroyed in any order.
 #include "contact_test.h"
 
-#include <algorithm>
 #include <cstdlib>
-#include <memory>
-#include <vector>
 
 namespace tetskin::test {
 namespace {

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/contact_sides.h>
 
-#include <random>
-
 #include "soft_fixtures.h"
 
 namespace tetskin::test {

@@ -4,9 +4,6 @@
 // What a search remembers only to be fast changes no bit: a run that forgets it goes on as one that keeps it.
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
-#include <functional>
-#include <random>
-
 #include "soft_fixtures.h"
 
 namespace tetskin::test {

@@ -2,10 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Soft bodies that rest on each other: their contacts are followed while they hardly move, and end when they do.
-#include <algorithm>
-#include <functional>
-#include <memory>
-#include <vector>
 
 #include "soft_fixtures.h"
 

@@ -11,8 +11,6 @@
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/solver/src/search/mesh_probe.h>
 
-#include <functional>
-#include <string>
 #include <utility>
 
 namespace tetskin::test {

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/pair_candidates.h>
 
-#include <functional>
-#include <random>
 #include <set>
 
 #include "soft_fixtures.h"

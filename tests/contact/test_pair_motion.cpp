@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/contact/src/soft/pair_motion.h>
 
-#include <functional>
-
 #include "soft_fixtures.h"
 
 namespace tetskin::test {

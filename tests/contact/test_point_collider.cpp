@@ -5,7 +5,6 @@
 #include <tetskin/contact/src/rigid/surface_patches.h>
 #include <tetskin/solver/src/search/point_collider.h>
 
-#include <random>
 #include <set>
 
 namespace tetskin::test {

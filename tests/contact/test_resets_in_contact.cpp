@@ -8,7 +8,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <vector>
 
 #include "soft_fixtures.h"
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btQuaternion.h>
-#include <gtest/gtest.h>
 #include <tetskin/contact/src/soft/rigid_motion.h>
 
 #include <numeric>
-#include <random>
 
 namespace tetskin::test {
 namespace {

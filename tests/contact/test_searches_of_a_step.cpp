@@ -6,10 +6,6 @@
 
 #include <tetskin/solver/src/base/body_channel.h>
 
-#include <cmath>
-#include <memory>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

@@ -6,11 +6,6 @@
 #include "contact_test.h"
 #include "solver/recorded_forces.h"
 
-#include <array>
-#include <cmath>
-#include <memory>
-#include <string>
-
 namespace tetskin::test {
 namespace {
 

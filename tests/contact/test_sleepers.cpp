@@ -6,17 +6,11 @@
 #include "soft_fixtures.h"
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <gtest/gtest.h>
 
 #include <tetskin/solver/deformable_world.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace tetskin::test {
 namespace {

@@ -7,8 +7,6 @@
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/threads/thread_pool.h>
 
-#include <vector>
-
 #include "soft_fixtures.h"
 #include "support/replays.h"
 

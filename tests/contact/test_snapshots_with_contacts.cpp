@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/threads/thread_pool.h>
 
-#include <random>
-
 #include "contact_test.h"
 #include "support/replays.h"
 #include "support/snapshot_parts.h"

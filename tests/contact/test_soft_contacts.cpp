@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/replay/snapshot.h>
 #include <limits>
-#include <vector>
 
 #include "soft_fixtures.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <vector>
 
 #include "soft_fixtures.h"
 

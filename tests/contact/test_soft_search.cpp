@@ -3,7 +3,6 @@
 #include <tetskin/contact/src/soft/body_pairs.h>
 #include <tetskin/contact/src/soft/pair_search.h>
 
-#include <random>
 #include <set>
 
 #include "soft_fixtures.h"

@@ -5,9 +5,6 @@
 #include "contact_test.h"
 #include "solver/recorded_forces.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

@@ -7,8 +7,6 @@
 #include <tetskin/solver/src/search/mesh_probe.h>
 #include <tetskin/solver/src/search/point_collider.h>
 
-#include <random>
-
 namespace tetskin::test {
 
 using namespace bullet_detail;

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Runs that the demos record, play again and check.
-#include <tetskin/solver/deformable_world.h>
 #include <tetskin/replay/recorder.h>
+#include <tetskin/solver/deformable_world.h>
 
 #include "command.h"
 

@@ -9,7 +9,6 @@
 
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "replay_models.h"
 
-#include <array>
-#include <cmath>
 #include <map>
 #include <utility>
 

@@ -12,7 +12,6 @@
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 
-#include <cmath>
 #include <cstdlib>
 
 namespace tetskin::test {

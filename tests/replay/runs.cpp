@@ -13,9 +13,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "replay/replay_scenes.h"
 

@@ -15,7 +15,6 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBody.h>
 #include <btBulletDynamicsCommon.h>
-#include <gtest/gtest.h>
 
 namespace tetskin::test {
 namespace {
@@ -64,7 +63,7 @@ TEST(BulletsMembers, AreThoseThatSnapshotsKnow) {
   };
   for (const Size& size : sizes) {
     EXPECT_EQ(size.now, size.of324) << size.name
-                                    << ": what is new belongs into bullet/src/state, unless a step computes it anew";
+                                    << ": what is new belongs into replay/src/state, unless a step computes it anew";
   }
 #else
   GTEST_SKIP() << "the sizes are those on Linux for x86-64";

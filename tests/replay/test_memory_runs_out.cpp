@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Where memory runs out, or a callback throws: the world stays, and can be restored.
-#include <gtest/gtest.h>
 #include <tetskin/replay/snapshot.h>
 
 #include <stdexcept>

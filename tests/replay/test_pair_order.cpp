@@ -4,16 +4,10 @@
 // The order of pairs, and all that follows from it, where memory is laid out in another way.
 #include "solver/rigid_scene.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/replay/snapshot.h>
 
-#include <algorithm>
-#include <functional>
-#include <memory>
-#include <random>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "solver/deformable_test.h"
 #include "support/replays.h"

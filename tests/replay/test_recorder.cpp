@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/replay/recorder.h>
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/solver/deformable_body.h>
@@ -10,8 +9,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <random>
 
 #include "replay/replay_models.h"
 #include "replay/replay_scenes.h"

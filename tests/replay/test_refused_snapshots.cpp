@@ -6,14 +6,10 @@
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Dynamics/btActionInterface.h>
-#include <gtest/gtest.h>
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/replay/src/state/snapshot_hash.h>
 
 #include <cstring>
-#include <functional>
-#include <random>
-#include <string>
 #include <tuple>
 
 #include "support/replays.h"

@@ -2,9 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Objects that are created where others were: what a world does must not depend on where memory is.
-#include <gtest/gtest.h>
 
-#include <functional>
 #include <new>
 
 #include "solver/deformable_test.h"

@@ -9,11 +9,6 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/replay/snapshot.h>
 
-#include <algorithm>
-#include <array>
-#include <functional>
-#include <random>
-
 namespace tetskin::test {
 namespace {
 

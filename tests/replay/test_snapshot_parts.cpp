@@ -4,11 +4,7 @@
 // Nothing in a snapshot is there in vain: with any part from another moment, a run goes on otherwise.
 #include "solver/rigid_scene.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/replay/snapshot.h>
-
-#include <memory>
-#include <vector>
 
 #include "solver/deformable_test.h"
 #include "support/replays.h"

@@ -5,11 +5,7 @@
 // the bytes of later snapshots.
 #include "solver/rigid_scene.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/replay/snapshot.h>
-
-#include <functional>
-#include <string>
 
 #include "support/replays.h"
 

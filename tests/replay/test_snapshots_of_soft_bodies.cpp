@@ -4,9 +4,6 @@
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
 #include <tetskin/replay/snapshot.h>
 
-#include <functional>
-#include <string>
-
 #include "solver/deformable_test.h"
 #include "support/bars.h"
 #include "support/replays.h"

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/replay/src/record/record_file.h>
 #include <tetskin/replay/src/record/state_patch.h>
-
-#include <random>
 
 namespace tetskin::bullet_detail {
 namespace {

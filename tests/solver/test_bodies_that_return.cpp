@@ -4,9 +4,6 @@
 // Bodies that are taken out of their world, and put back or into another one.
 #include <tetskin/bullet/soft_body_skin.h>
 
-#include <functional>
-#include <vector>
-
 #include "deformable_test.h"
 
 namespace tetskin::test {

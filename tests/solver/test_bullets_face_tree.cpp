@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <memory>
 #include <thread>
 
 namespace tetskin::test {

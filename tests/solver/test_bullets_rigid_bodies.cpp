@@ -5,8 +5,6 @@
 // tests/BULLET_DEFECTS.md name these tests; `RigidBodies.MoveAsInBulletsPlainWorld` has the library beside them.
 #include "deformable_test.h"
 
-#include <algorithm>
-
 namespace tetskin {
 namespace {
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/solver/src/rows/contact_row.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
 #include <utility>
 
 namespace tetskin {

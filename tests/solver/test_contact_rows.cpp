@@ -6,9 +6,7 @@
 #include <tetskin/solver/src/rows/contact_rows.h>
 #include <tetskin/solver/src/rows/fixed_nodes.h>
 
-#include <cmath>
 #include <initializer_list>
-#include <memory>
 
 #include "deformable_test.h"
 

@@ -3,11 +3,9 @@
 #include "deformable_test.h"
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 
-#include <cmath>
 #include <limits>
 
 namespace tetskin::test {
@@ -172,8 +170,12 @@ TEST(DeformableBody, RefusesMassSpringAndBadOptions) {
   refuse([](SoftBodyOptions& o) { o.forceModel = ForceModel::MassSpring; });
   refuse([](SoftBodyOptions& o) { o.poissonRatio = 0.5; });
   refuse([](SoftBodyOptions& o) { o.youngsModulus = 1e25; });
-  refuse([](SoftBodyOptions& o) { o.friction = 1.001; });
-  refuse([](SoftBodyOptions& o) { o.solverTolerance = 1.0; });
+  for (const double bad : {std::nan(""), -0.1, 1.001, HUGE_VAL}) {
+    refuse([&](SoftBodyOptions& o) { o.friction = bad; });
+    refuse([&](SoftBodyOptions& o) { o.solverTolerance = bad; });
+  }
+  refuse([](SoftBodyOptions& o) { o.youngsModulus = HUGE_VAL; });
+  refuse([](SoftBodyOptions& o) { o.stiffnessDamping = HUGE_VAL; });
   refuse([](SoftBodyOptions& o) { o.maxIterations = 0; });
   refuse([](SoftBodyOptions& o) { o.stiffnessScale = {1.0}; }, StatusCode::SizeMismatch);
   refuse([](SoftBodyOptions& o) { o.nodeMasses = {1.0}; }, StatusCode::SizeMismatch);

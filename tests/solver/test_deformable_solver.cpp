@@ -7,7 +7,6 @@
 #include <tetskin/solver/src/base/body_channel.h>
 
 #include <chrono>
-#include <cmath>
 
 namespace tetskin::test {
 

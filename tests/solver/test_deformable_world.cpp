@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/solver/deformable_world.h>
 
 #include <limits>
-#include <memory>
-#include <vector>
 
 #include "deformable_test.h"
 #include "support/rigids.h"

@@ -4,10 +4,6 @@
 // Pinned nodes that are moved by their m_x, as a hand, a hook or an animated skeleton moves them.
 #include "deformable_test.h"
 
-#include <functional>
-#include <string>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

@@ -3,14 +3,10 @@
 //
 // What a beam does must follow from its numbers: stiffness, damping, step, size, and place. Its sag times its stiffness
 // is the same for all of them, and the same for linear tets as for quadratic ones, each by its own mesh.
-#include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/solver/deformable_world.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <vector>
 
 #include "deformable_test.h"
 #include "support/odd_meshes.h"

@@ -4,7 +4,6 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <btBulletCollisionCommon.h>
-#include <gtest/gtest.h>
 #include <tetskin/solver/src/base/exact_distance.h>
 
 namespace tetskin::test {

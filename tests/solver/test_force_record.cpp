@@ -7,10 +7,6 @@
 
 #include <LinearMath/btIDebugDraw.h>
 
-#include <cmath>
-#include <memory>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

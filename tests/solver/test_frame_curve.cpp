@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <gtest/gtest.h>
 #include <tetskin/solver/src/base/frame_curve.h>
-
-#include <cmath>
 
 namespace tetskin::test {
 

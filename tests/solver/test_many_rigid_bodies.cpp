@@ -4,11 +4,7 @@
 // Many rigid bodies, which soft bodies carry or push, directly or through each other.
 #include <tetskin/solver/deformable_world.h>
 
-#include <algorithm>
-#include <array>
 #include <map>
-#include <memory>
-#include <vector>
 
 #include "recorded_forces.h"
 #include "rigid_bodies.h"

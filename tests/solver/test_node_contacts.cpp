@@ -5,10 +5,8 @@
 #include "deformable_test.h"
 #include "support/points_within.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/solver/src/search/body_contacts.h>
 
-#include <algorithm>
 #include <set>
 
 namespace tetskin::test {

@@ -2,16 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // How the motion in a world depends on the length of its steps.
-#include <gtest/gtest.h>
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/solver/src/forces/elastic_force.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
 #include <utility>
-#include <vector>
 
 #include "deformable_test.h"
 #include "rigid_bodies.h"

@@ -4,8 +4,6 @@
 // Bodies that are put elsewhere in their motion, or back to their start.
 #include <BulletSoftBody/btDeformableBodySolver.h>
 
-#include <vector>
-
 #include "deformable_test.h"
 #include "support/bars.h"
 

@@ -6,9 +6,6 @@
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/solver/src/forces/forced_bodies.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "deformable_test.h"
 
 namespace tetskin::test {

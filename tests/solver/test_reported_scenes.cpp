@@ -6,11 +6,6 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/elastic/elastic_body.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "deformable_test.h"
 #include "recorded_forces.h"
 #include "rigid_bodies.h"

@@ -12,15 +12,10 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <BulletDynamics/Vehicle/btRaycastVehicle.h>
 #include <btBulletCollisionCommon.h>
-#include <gtest/gtest.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/solver/deformable_world.h>
 
-#include <algorithm>
-#include <functional>
-#include <memory>
 #include <stdexcept>
-#include <vector>
 
 #include "deformable_test.h"
 #include "support/rigids.h"

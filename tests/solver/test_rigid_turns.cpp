@@ -2,13 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <LinearMath/btTransformUtil.h>
 #include <btBulletDynamicsCommon.h>
-#include <gtest/gtest.h>
 #include <tetskin/solver/deformable_world.h>
 #include <tetskin/solver/src/motion/rigid_turns.h>
 
-#include <cmath>
 #include <limits>
-#include <vector>
 
 #include "rigid_scene.h"
 

@@ -4,11 +4,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/solver/src/rows/rigid_unknowns.h>
 
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <memory>
-#include <vector>
 
 #include "deformable_test.h"
 #include "support/allocation_count.h"

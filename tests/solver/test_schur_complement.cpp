@@ -2,12 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/solver/src/system/schur_complement.h>
 
-#include <gtest/gtest.h>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
 #include <utility>
-#include <vector>
 
 namespace tetskin::test {
 

@@ -5,8 +5,6 @@
 #include <tetskin/solver/src/motion/stillness.h>
 #include <tetskin/solver/src/rows/solver_bodies.h>
 
-#include <functional>
-#include <memory>
 #include <utility>
 
 #include "deformable_test.h"

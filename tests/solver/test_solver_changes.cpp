@@ -5,9 +5,6 @@
 // other sizes.
 #include "cloth.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

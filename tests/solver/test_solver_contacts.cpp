@@ -5,10 +5,6 @@
 #include "recorded_forces.h"
 #include "rigid_bodies.h"
 
-#include <algorithm>
-#include <memory>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

@@ -6,8 +6,6 @@
 
 #include <BulletSoftBody/btDeformableMousePickingForce.h>
 
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

@@ -4,8 +4,6 @@
 // A body solved by the library's own solver that moves freely.
 #include "deformable_test.h"
 
-#include <cmath>
-
 namespace tetskin {
 namespace {
 

@@ -4,8 +4,6 @@
 // The library's own solve: where it is used, with which settings, and what it reports about itself.
 #include "cloth.h"
 
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

@@ -6,8 +6,6 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

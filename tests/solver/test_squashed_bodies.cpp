@@ -4,9 +4,6 @@
 // Soft bodies that are squashed flat by rigid ones of many times their mass, far more than they can carry.
 #include "rigid_bodies.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tetskin::test {
 namespace {
 

@@ -9,8 +9,6 @@
 #include <tetskin/solver/src/system/system_solve.h>
 
 #include <Eigen/Cholesky>
-#include <cmath>
-#include <functional>
 
 #include "deformable_test.h"
 

@@ -10,11 +10,7 @@
 
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 
-#include <array>
-#include <functional>
 #include <iterator>
-#include <string>
-#include <vector>
 
 namespace tetskin::test {
 namespace {

@@ -4,7 +4,6 @@
 // Which triangle a point is attached to: as a search through all of them finds it.
 #include "support/odd_meshes.h"
 
-#include <gtest/gtest.h>
 #include <tetskin/core/src/base/mesh/triangle_geometry.h>
 #include <tetskin/touch/src/tree/nearest_triangle.h>
 

@@ -8,11 +8,6 @@
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/replay/snapshot.h>
 
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "solver/recorded_forces.h"
 #include "support/bars.h"
 #include "support/cage_surface.h"

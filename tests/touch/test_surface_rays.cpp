@@ -4,8 +4,6 @@
 
 #include <tetskin/touch/src/tree/ray_triangle.h>
 
-#include <random>
-
 namespace tetskin::test {
 namespace {
 

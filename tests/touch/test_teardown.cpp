@@ -5,12 +5,6 @@
 // here show under a sanitizer, or a memory checker.
 #include "crowded_world.h"
 
-#include <algorithm>
-#include <array>
-#include <functional>
-#include <random>
-#include <vector>
-
 namespace tetskin::test {
 namespace {
 

@@ -27,7 +27,7 @@ namespace tetskin {
 /// Errors   SizeMismatch: the buffer is too small, and holds no snapshot; NotSaved: the world has something that cannot
 ///          be saved, which the message names. Bullet's classes are known by their tables and type information: where
 ///          several modules of a program have a Bullet of their own, with MSVC or without type information, those of
-///          another module are not
+///          another module are not: with MSVC, where tetskin is a DLL, so must be Bullet
 TETSKIN_REPLAY_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
                                                     std::size_t size);
 
