@@ -145,12 +145,12 @@ TEST_F(DeformSequence, BecomesOneFile) {
   EXPECT_EQ(folder.json("s.json")["frames"], 3);
 
   fs::remove(folder.path("o.obj"));
-  expectRefused(sequence("o.obj"), "an OBJ file holds one frame, and --deformed names 3");
+  test::expectRefused(sequence("o.obj"), "an OBJ file holds one frame, and --deformed names 3");
   folder.write("cage_1.vtk", "damaged");
   const std::string before = folder.read("all.pc2");
-  expectRefused(sequence("all.pc2"), "cage_1.vtk");
+  test::expectRefused(sequence("all.pc2"), "cage_1.vtk");
   EXPECT_EQ(folder.read("all.pc2"), before);
-  expectRefused(sequence("cage_2.vtk"), "unsupported output format; use .obj, .glb or .pc2");
+  test::expectRefused(sequence("cage_2.vtk"), "unsupported output format; use .obj, .glb or .pc2");
 }
 
 }  // namespace

@@ -168,8 +168,8 @@ class TETSKIN_CORE_API MeshSkin {
 
   /// An unbound skin.
   MeshSkin() = default;
-  MeshSkin(MeshSkin&& other) noexcept = default;
-  MeshSkin& operator=(MeshSkin&& other) noexcept = default;
+  MeshSkin(MeshSkin&& other) noexcept = default;             ///< the other one is unbound afterwards
+  MeshSkin& operator=(MeshSkin&& other) noexcept = default;  ///< the other one is unbound afterwards
 
   /// Creates a binding, and updates once with the cage's rest nodes. Returns the fit. On an error, this skin is left
   /// unchanged; for a report of a failed fit, call `SkinBinding::create`.

@@ -5,6 +5,11 @@
 // TETSKIN_KERNELS, its namespace, and TETSKIN_LANES, the number of floats in a register.
 #pragma once
 
+#ifndef TETSKIN_LANES  // compiled by itself, as a check
+#define TETSKIN_KERNELS plain
+#define TETSKIN_LANES 1
+#endif
+
 #include <tetskin/core/src/kernels/bone_loops.h>
 #include <tetskin/core/src/kernels/direction_loops.h>
 #include <tetskin/core/src/kernels/filter_loop.h>

@@ -5,6 +5,11 @@
 // TETSKIN_KERNELS, its namespace, and TETSKIN_LANES, the number of floats at a time; of doubles, half of it.
 #pragma once
 
+#ifndef TETSKIN_LANES  // compiled by itself, as a check
+#define TETSKIN_KERNELS plain
+#define TETSKIN_LANES 1
+#endif
+
 #include <tetskin/elastic/src/kernels/quadratic_tet_loops.h>
 #include <tetskin/elastic/src/kernels/row_loops.h>
 #include <tetskin/elastic/src/kernels/tet_loops.h>
