@@ -90,8 +90,8 @@ class TETSKIN_CORE_API BonePalette {
 
   /// A palette of no bones.
   BonePalette() = default;
-  BonePalette(BonePalette&& other) noexcept = default;
-  BonePalette& operator=(BonePalette&& other) noexcept = default;
+  BonePalette(BonePalette&& other) noexcept = default;             ///< the other one is unbound afterwards
+  BonePalette& operator=(BonePalette&& other) noexcept = default;  ///< the other one is unbound afterwards
 
   /// Allocates what updates need: some 100 bytes per node, in double twice as many.
   /// Errors: Empty without a binding; InvalidOption for `gradients` with a linear binding, or an origin that is not

@@ -79,8 +79,8 @@ class TETSKIN_CORE_API CageLocator {
   /// Builds the search structure. Cost O(T log T) for T tets.
   /// cage  valid (see `validate`); not copied, must outlive this object
   explicit CageLocator(const Cage& cage);
-  CageLocator(CageLocator&&) noexcept = default;
-  CageLocator& operator=(CageLocator&&) noexcept = default;
+  CageLocator(CageLocator&&) noexcept = default;             ///< the other one may only be assigned to, or destroyed
+  CageLocator& operator=(CageLocator&&) noexcept = default;  ///< the other one may only be assigned to, or destroyed
 
   /// Index of the tet that holds the point, among those reached through shared faces from the tets of the given
   /// vertices. If none of them holds it, the tet with the smallest barycentric distance among those visited. For a cage

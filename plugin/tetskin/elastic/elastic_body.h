@@ -66,8 +66,8 @@ class TETSKIN_ELASTIC_API ElasticBody {
  public:
   /// An empty body, equal to one that was moved from: it has no nodes, and its step does nothing. Use `create`.
   ElasticBody() = default;
-  ElasticBody(ElasticBody&&) noexcept = default;
-  ElasticBody& operator=(ElasticBody&&) noexcept = default;
+  ElasticBody(ElasticBody&&) noexcept = default;             ///< the other one has no nodes afterwards
+  ElasticBody& operator=(ElasticBody&&) noexcept = default;  ///< the other one has no nodes afterwards
 
   /// Creates a body at rest, at the position of the cage.
   /// cage    valid (see `validate`), without flat tets; any unit; not kept. A plain TetMesh converts to one. Its volume
