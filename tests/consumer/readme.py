@@ -60,9 +60,10 @@ def run_program(prefix, folder, environment):
     write_ring(folder / "dragon.obj")
     run("first program", f"cmake -DCMAKE_PREFIX_PATH={prefix} -DCMAKE_BUILD_TYPE=Release -S . -B build && cmake --build build",
         folder, environment)
-    run("without a mesh", "build/app", folder, environment)
     run("with a mesh", "build/app dragon.obj", folder, environment)
-    run("with a path that is wrong", "status=0; build/app none.obj || status=$?; [ $status -eq 2 ]", folder, environment)
+    for arguments in ("", "none.obj"):
+        run(f"refuses '{arguments}'", f"status=0; build/app {arguments} || status=$?; [ $status -eq 2 ]", folder,
+            environment)
 
 
 def main():

@@ -27,4 +27,5 @@ inline tetskin::SoftBodySkin skin;
 inline tetskin::Embedding embedding;
 inline std::vector<tetskin::SoftBodySkin*> everybody;
 inline std::vector<Vertex> vertices;
+inline void uploadVertices() {}
 inline btScalar unspent = 0, frameTime = btScalar(1) / 144, step = btScalar(1) / 60;  // seconds
