@@ -108,6 +108,11 @@ foreach(way IN ITEMS wheel package beside_others staged_package versions fresh_r
   endif()
 endforeach()
 set_tests_properties(python.wheel PROPERTIES FIXTURES_REQUIRED "" FIXTURES_SETUP python_wheel)
+# How the wheel comes by objects of the main build.
+if(PYTHON_OF_SYSTEM AND CMAKE_GENERATOR STREQUAL "Ninja")
+  add_test(NAME python.same_object COMMAND ${PYTHON_OF_SYSTEM} -B ${CMAKE_CURRENT_SOURCE_DIR}/python/same_object.py)
+  set_tests_properties(python.same_object PROPERTIES LABELS "config;python" TIMEOUT 60)
+endif()
 set_tests_properties(python.wheel python.staged_package PROPERTIES PROCESSORS ${nested_parallel}
   RESOURCE_LOCK "python_build;bullet_sources")
 

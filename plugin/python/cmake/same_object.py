@@ -47,6 +47,10 @@ class Command:
                 if not word.startswith(("-D", "-I", "-U", "-isystem")):
                     self.compiles.append(word)
 
+    def program(self):
+        """The compiler itself, which may have several names: c++, g++."""
+        return os.path.realpath(shutil.which(self.compiler) or self.compiler)
+
     def output(self):
         return self.folder / self.values.get("-o", "")
 
@@ -65,8 +69,8 @@ class Command:
 def is_current(build, other):
     """Whether nothing that the other build's object depends on is newer: its sources, by Ninja's record; the options of
     that build; the compiler."""
-    ninja, compiler, made_of = shutil.which("ninja"), shutil.which(other.compiler), other.values["-o"]
-    if not (ninja and compiler and other.output().exists()):
+    ninja, made_of = shutil.which("ninja"), other.values["-o"]
+    if not (ninja and os.path.exists(other.program()) and other.output().exists()):
         return False
     said = subprocess.run([ninja, "-C", str(build), "-t", "deps", made_of], capture_output=True, text=True, check=False)
     first, *files = said.stdout.splitlines()
@@ -74,7 +78,7 @@ def is_current(build, other):
         return False
     files = [build / file.strip() for file in files if file.strip()]
     made = other.output().stat().st_mtime
-    compiled = os.stat(os.path.realpath(compiler)).st_ctime
+    compiled = os.stat(other.program()).st_ctime
     return compiled <= made and all(file.stat().st_mtime <= made for file in [build / "CMakeCache.txt", *files])
 
 
@@ -92,7 +96,7 @@ def copied(build, own):
                 break
     else:
         return False
-    if (other.compiler, other.compiles) != (own.compiler, own.compiles) or other.output() == own.output():
+    if other.program() != own.program() or other.compiles != own.compiles or other.output() == own.output():
         return False
     if not is_current(build, other):
         return False
