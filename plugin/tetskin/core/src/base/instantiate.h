@@ -6,8 +6,8 @@
 
 #define TETSKIN_FOR_SCALARS(of) of(float) of(double)
 /// The same of a class template.
-#define TETSKIN_INSTANTIATE_CLASS(name) \
-  template class name<float>;           \
-  template class name<double>;
+#define TETSKIN_INSTANTIATE_CLASS(name)                                             \
+  template class name<float>;  /* NOLINT(bugprone-macro-parentheses): a template */ \
+  template class name<double>; /* NOLINT(bugprone-macro-parentheses): a template */
 /// The scalar types of the nodes and of the output.
 #define TETSKIN_FOR_SCALAR_PAIRS(of) of(float, float) of(float, double) of(double, float) of(double, double)

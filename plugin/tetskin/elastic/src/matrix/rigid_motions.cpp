@@ -31,7 +31,7 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) {
     for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
   partOf_ = sets.numbers();
-  components_.resize(static_cast<std::size_t>(1 + *std::max_element(partOf_.begin(), partOf_.end())));
+  components_.resize(static_cast<std::size_t>(*std::max_element(partOf_.begin(), partOf_.end())) + 1);
   for (std::size_t n = 0; n < mesh.nodeCount(); ++n) {
     masses_.push_back(masses[rowOf(n)]);
     components_[partOf_[n]].mass += masses_[n];
