@@ -25,9 +25,9 @@ namespace tetskin {
 /// Returns  the number of bytes of the snapshot
 /// Cost     O(nodes + tets + objects + contacts), some 50 microseconds for 3,000 tets; allocates little
 /// Errors   SizeMismatch: the buffer is too small, and holds no snapshot; NotSaved: the world has something that cannot
-///          be saved, which the message names. Bullet's classes are known by their tables and type information: where
-///          several modules of a program have a Bullet of their own, with MSVC or without type information, those of
-///          another module are not: with MSVC, where tetskin is a DLL, so must be Bullet
+///          be saved, which the message names. Bullet's classes are known by their tables and type information. Where
+///          several modules of a program have a Bullet of their own, with MSVC or without type information, classes of
+///          another module are unknown: with MSVC, if tetskin is a DLL, Bullet has to be one, too
 TETSKIN_REPLAY_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
                                                     std::size_t size);
 
