@@ -12,10 +12,8 @@ namespace tetskin {
 
 using namespace bullet_detail;
 
-using touch_detail::dataOf;
 using touch_detail::PointData;
 using touch_detail::PointJacobian;
-using touch_detail::PointJacobianNode;
 
 namespace {
 
