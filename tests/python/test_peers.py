@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/peers, which compares tetskin with others: that it still runs, with tetskin alone, and that what fails is a
+"""demos/lab/peers, which compares tetskin with others: that it still runs, with tetskin alone, and that what fails is a
 cell."""
 import csv
 import re
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-PEERS = Path(__file__).parents[2] / "demos/peers"
+PEERS = Path(__file__).parents[2] / "demos/lab/peers"
 
 
 @pytest.fixture

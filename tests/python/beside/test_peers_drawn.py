@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/peers, where matplotlib is there: what it draws and tells of a table."""
+"""demos/lab/peers, where matplotlib is there: what it draws and tells of a table."""
 import csv
 import subprocess
 import sys
 from pathlib import Path
 
-PEERS = Path(__file__).parents[3] / "demos/peers"
+PEERS = Path(__file__).parents[3] / "demos/lab/peers"
 
 
 def test_a_run_ends_with_plots_and_tables(tmp_path):
