@@ -44,9 +44,9 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
     const auto size = static_cast<Eigen::Index>(3 * body.nodes.size());
     const VectorXd v = Random(51).vector(3 * body.nodes.size()) + VectorXd::Constant(size, 100.0);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
-    dynamics.predict(kSeconds, nullptr);
+    dynamics.predict({kSeconds}, nullptr);
     EXPECT_NEAR(dynamics.alpha(), kAlpha, 1e-15);
-    dynamics.start(nullptr);
+    dynamics.findResidual(nullptr);
     VectorXd rigid(size), forces(size), right(size), masses(size);
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       TypeParam r[3];
@@ -68,10 +68,11 @@ TYPED_TEST(BodyDynamicsOf, StartsAStepWithTheForcesWhereRigidMotionLeadsAndWhatD
     const VectorXd residual = right - body.dense() * (v - rigid);
     EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - residual).norm(), tolerance);
     BodyDynamics<TypeParam> there = dynamicsOf(body, v);
-    for (std::size_t n = 0; n < body.nodes.size(); ++n) std::copy_n(there.point(n), 3, there.probe(n));
-    there.probeForces(nullptr);
+    BodyProbe<TypeParam> probe(there.matrix());
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) std::copy_n(there.point(n), 3, probe.point(n));
+    there.findForces(probe, nullptr);
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
-      for (int k = 0; k < 3; ++k) EXPECT_NEAR(dynamics.force(n)[k], there.force(n)[k], 0.1 * tolerance);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(dynamics.force(n)[k], probe.force(n)[k], 0.1 * tolerance);
     }
   });
 }
@@ -83,8 +84,8 @@ TYPED_TEST(BodyDynamicsOf, StartsStiffBodiesWhereRigidMotionLeads) {
   for (const bool pinned : {false, true}) {
     if (pinned) body.hold(3);
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
-    dynamics.predict(kSeconds, nullptr);
-    dynamics.start(nullptr);
+    dynamics.predict({kSeconds}, nullptr);
+    dynamics.findResidual(nullptr);
     const VectorXd solution = body.fromWide(dynamics.matrix().solution());
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       const auto at = static_cast<Eigen::Index>(3 * n);
@@ -104,13 +105,13 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
     AssembledBody<TypeParam> body(cageForDynamics(), 0.1, kAlpha);
     const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
-    dynamics.predict(kSeconds, nullptr);
+    dynamics.predict({kSeconds}, nullptr);
     Random random(51);
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       for (int k = 0; k < 3; ++k) dynamics.velocity(n)[k] = static_cast<TypeParam>(1e-3 * random());
     }
-    dynamics.predict(kSeconds, nullptr);  // the matrix is the previous one: it has hardly turned
-    dynamics.start(nullptr);
+    dynamics.predict({kSeconds}, nullptr);  // the matrix is the previous one: it has hardly turned
+    dynamics.findResidual(nullptr);
     VectorXd right(static_cast<Eigen::Index>(3 * body.nodes.size()));
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       TypeParam r[3];
@@ -119,7 +120,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
     }
     const VectorXd x = Random(52).vector(3 * body.nodes.size());
     body.toWide(x, dynamics.matrix().solution());
-    dynamics.restart(nullptr);
+    dynamics.findResidual(nullptr);
     const VectorXd image = body.dense() * x;
     EXPECT_LT((body.fromWide(dynamics.matrix().residual()) - (right - image)).norm(),
               20.0 * this->kEpsilon * (right.norm() + image.norm()));
@@ -191,10 +192,10 @@ BodyDynamics<double> stepsOf(const AssembledBody<double>& body, int steps) {
   SolveLimits limits;
   limits.tolerance = 1e-8;
   for (int k = 1; k < steps; ++k) {
-    dynamics.predict(kSeconds, nullptr);
-    dynamics.start(nullptr);
+    dynamics.predict({kSeconds}, nullptr);
+    dynamics.findResidual(nullptr);
     dynamics.solve(gradient, limits, 100, nullptr);
-    dynamics.remember(kSeconds);
+    dynamics.remember(SolvedWith::ElasticityAlone, nullptr);
     const VectorXd deviation = body.fromWide(dynamics.matrix().solution());
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       for (std::size_t i = 0; i < 3; ++i) {
@@ -203,8 +204,8 @@ BodyDynamics<double> stepsOf(const AssembledBody<double>& body, int steps) {
       }
     }
   }
-  dynamics.predict(kSeconds, nullptr);
-  dynamics.start(nullptr);
+  dynamics.predict({kSeconds}, nullptr);
+  dynamics.findResidual(nullptr);
   return dynamics;
 }
 
@@ -214,7 +215,7 @@ TEST(BodyDynamics, ABodyThatTurnsOutToBeTouchedTakesBackwardEulersStepAndSomeMor
   BodyDynamics<double> free = stepsOf(body, 40), touched = stepsOf(body, 40);
   ASSERT_TRUE(free.isSecondOrder());
   EXPECT_LT(free.alpha(), kAlpha);
-  touched.beTouched(kSeconds, nullptr);
+  touched.beTouched(nullptr);
   EXPECT_FALSE(touched.isSecondOrder());
   EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + kSeconds));
   double history = 0.0, rest = 0.0;
@@ -231,13 +232,12 @@ TEST(BodyDynamics, ABodyThatTurnsOutToBeTouchedTakesBackwardEulersStepAndSomeMor
   }
   EXPECT_GT(history, 1e-6);
   EXPECT_LT(rest, 1e-12);
-  touched.remember(kSeconds);
+  touched.findResidual(nullptr);
+  touched.remember(SolvedWith::ElasticityAlone, nullptr);
   EXPECT_FALSE(touched.remembers());
-  for (int k = 0; k < 7; ++k) touched.setTouched(false);
-  touched.predict(kSeconds, nullptr);
+  for (int k = 0; k < 7; ++k) touched.predict({kSeconds}, nullptr);
   EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + kSeconds));
-  touched.setTouched(false);
-  touched.predict(kSeconds, nullptr);
+  touched.predict({kSeconds}, nullptr);
   EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * kDamping);
 }
 
@@ -246,8 +246,8 @@ TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChang
   for (const double speed : {0.0, 1.0, 20.0}) {  // the last is beyond a turn of 90 degrees per step
     const VectorXd v = speed * Random(51).vector(3 * body.nodes.size());
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
-    dynamics.predict(kSeconds, nullptr);
-    dynamics.start(nullptr);
+    dynamics.predict({kSeconds}, nullptr);
+    dynamics.findResidual(nullptr);
     const VectorXd some = Random(53).vector(3 * body.nodes.size());
     const Vector3d impulse(0.3, -0.2, 0.5);
     body.toWide(some, dynamics.matrix().solution());
@@ -282,7 +282,7 @@ template <class Change>
 bool changesTheMatrix(Change&& change) {
   AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
   BodyDynamics<double> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
-  for (int k = 0; k < 3; ++k) dynamics.predict(kSeconds, nullptr);
+  for (int k = 0; k < 3; ++k) dynamics.predict({kSeconds}, nullptr);
   const std::vector<double> x = body.toPoints(Random(54).vector(3 * body.nodes.size()));
   std::vector<double> image(dynamics.matrix().wideSize());
   const auto product = [&] {
@@ -291,7 +291,7 @@ bool changesTheMatrix(Change&& change) {
   };
   const VectorXd before = product();
   const double seconds = change(dynamics, body);
-  dynamics.predict(seconds, nullptr);
+  dynamics.predict({seconds}, nullptr);
   return (product() - before).norm() > 1e-6 * before.norm();
 }
 
@@ -330,7 +330,7 @@ TEST(BodyDynamics, SolvesWithAMassThatChangesAsIfItHadAlwaysBeenSo) {
   const VectorXd impulses = Random(56).vector(3 * body.nodes.size());
   const auto response = [&](BodyDynamics<double>& dynamics) {
     AlignedVector<double> wide(dynamics.matrix().wideSize(), 0.0), velocities = wide;
-    dynamics.predict(kSeconds, nullptr);
+    dynamics.predict({kSeconds}, nullptr);
     body.toWide(impulses, wide.data());
     dynamics.matrix().precondition(wide.data(), velocities.data(), nullptr);
     return body.fromWide(velocities.data());
@@ -353,9 +353,10 @@ TEST(BodyDynamics, FlatTetsOfAPressedBodyAreDampedByTwoHundredSquaredSteps) {
   const std::vector<double> x = body.toPoints(Random(54).vector(3 * body.nodes.size()));
   const auto product = [&](bool pressed, double damping) {
     BodyDynamics<double> dynamics = dynamicsOf(body, still);
-    dynamics.setPressed(pressed);
+    StepStart start{kSeconds};
+    start.pressed = pressed;
     dynamics.setDamping(damping);
-    for (int k = 0; k < 3; ++k) dynamics.predict(kSeconds, nullptr);
+    for (int k = 0; k < 3; ++k) dynamics.predict(start, nullptr);
     std::vector<double> image(dynamics.matrix().wideSize());
     dynamics.matrix().multiply(x.data(), image.data(), nullptr);
     return body.fromWide(image.data());
@@ -398,7 +399,7 @@ struct SingleTetBesideMany {
   }
   std::vector<double> block() {
     double d[6];
-    dynamics.predict(kSeconds, nullptr);
+    dynamics.predict({kSeconds}, nullptr);
     dynamics.matrix().diagonal(cage.nodeCount() - 2, d);  // block of the single tet, different along all axes
     return std::vector<double>(d, d + 6);
   }
@@ -424,11 +425,11 @@ TYPED_TEST(BodyDynamicsOf, ABodyWithoutTetsIsItsMasses) {
     dynamics.setMass(n, static_cast<TypeParam>(n + 1));
     dynamics.velocity(n)[0] = 5;
   }
-  dynamics.predict(kSeconds, nullptr);
-  dynamics.start(nullptr);
+  dynamics.predict({kSeconds}, nullptr);
+  dynamics.findResidual(nullptr);
   EXPECT_EQ(dynamics.velocity(0)[0], TypeParam(5));
   EXPECT_EQ(dynamics.alpha(), 0.0);
-  EXPECT_EQ(dynamics.probeEnergy(nullptr), 0.0);
+  EXPECT_EQ(dynamics.energy(BodyProbe<TypeParam>(dynamics.matrix()), nullptr), 0.0);
   std::vector<TypeParam> points(4 * dynamics.matrix().slotCount(), 2), image(dynamics.matrix().wideSize());
   dynamics.matrix().multiply(points.data(), image.data(), nullptr);
   for (std::size_t n = 0; n < 3; ++n) {
@@ -453,7 +454,7 @@ TYPED_TEST(BodyDynamicsOf, HasTheRigidMotionsOfPartsThatAreFreeWhereItsForcesAre
   body.hold(3);  // belongs to the first component
   const VectorXd v = Random(51).vector(3 * body.nodes.size());
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, v);
-  dynamics.predict(kSeconds, nullptr);
+  dynamics.predict({kSeconds}, nullptr);
   ASSERT_EQ(dynamics.componentCount(), 2u);
   AlignedVector<TypeParam> motions[BodyDynamics<TypeParam>::kRigidMotions];
   const std::size_t half = body.nodes.size() / 2;
@@ -492,7 +493,7 @@ TYPED_TEST(BodyDynamicsOf, KeepsTheRigidPartOfASolution) {
     for (const std::size_t n : pinned) body.hold(n);
     const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
     BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
-    dynamics.predict(kSeconds, nullptr);
+    dynamics.predict({kSeconds}, nullptr);
     VectorXd some = Random(53).vector(3 * body.nodes.size());
     for (const std::size_t n : pinned) some.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
     body.toWide(some, dynamics.matrix().solution());
@@ -538,7 +539,7 @@ TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
   const AssembledBody<TypeParam> body(twoComponents(cageForDynamics()));
   const VectorXd still = VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size()));
   BodyDynamics<TypeParam> dynamics = dynamicsOf(body, still);
-  dynamics.predict(kSeconds, nullptr);
+  dynamics.predict({kSeconds}, nullptr);
   const std::size_t half = body.nodes.size() / 2;
   for (const std::size_t first : {std::size_t{0}, half}) {
     std::vector<double> masses = body.masses;
@@ -552,7 +553,7 @@ TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
   }
   BodyDynamics<TypeParam> masses({}, 5);  // nodes that no tet connects
   masses.setMass(2, 1);
-  masses.predict(kSeconds, nullptr);
+  masses.predict({kSeconds}, nullptr);
   EXPECT_EQ(masses.rigidCompliance(2, {1, 2, 3}, {1, 0, 0}), 0.0);
 }
 

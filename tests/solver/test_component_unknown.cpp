@@ -28,9 +28,9 @@ class TwoBlocks {
     bodies.collect(all, false, awake);
     bodies.assign(*world.bodySolver().getLagrangianForceArray());
     readNodes(body->body(), dynamics());
-    dynamics().predict(1.0 / 240.0, nullptr);
+    dynamics().predict({1.0 / 240.0}, nullptr);
     dynamics().matrix().free();
-    dynamics().start(nullptr);
+    dynamics().findResidual(nullptr);
   }
   Dynamics& dynamics() { return *bodies.bodies()[0].dynamics; }
   int last() const { return body->body().m_nodes.size() - 1; }

@@ -51,9 +51,9 @@ class System : public testing::Test {
     bodies_.collect(all, false, awake);
     bodies_.assign(*world_.bodySolver().getLagrangianForceArray());
     readNodes(body(), dynamics());
-    dynamics().predict(static_cast<double>(kSeconds), nullptr);
+    dynamics().predict({static_cast<double>(kSeconds)}, nullptr);
     dynamics().matrix().free();
-    dynamics().start(nullptr);
+    dynamics().findResidual(nullptr);
     none_.resize(body().m_nodes.size(), btVector3(0, 0, 0));
     before_.resize(body().m_nodes.size(), btVector3(0, 0, 0));
     others_.beginStep(bodies_, none_, before_, kSeconds);

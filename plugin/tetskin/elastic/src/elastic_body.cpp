@@ -86,7 +86,6 @@ struct ElasticBody<Scalar>::Impl {
     limits.iterations = options.maxIterations;
     dynamics.setMaterial(elastic_detail::lameOf(options.youngsModulus, options.poissonRatio));
     dynamics.setDamping(options.stiffnessDamping);
-    dynamics.setStaggered(true);
     dynamics.setDeterministic(options.deterministic);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);
@@ -113,8 +112,10 @@ struct ElasticBody<Scalar>::Impl {
       }
     }
   }
-  void fillProbes() {
-    for (std::size_t n = 0; n < masses.size(); ++n) std::copy_n(&positions[3 * n], 3, dynamics.probe(n));
+  elastic_detail::BodyProbe<Scalar> probe() const {
+    elastic_detail::BodyProbe<Scalar> probe(dynamics.matrix());
+    for (std::size_t n = 0; n < masses.size(); ++n) std::copy_n(&positions[3 * n], 3, probe.point(n));
+    return probe;
   }
   /// True unless the application has written positions or velocities since the last step.
   bool continues() const {
@@ -184,19 +185,22 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   const bool finite = std::isfinite(acceleration[0] + acceleration[1] + acceleration[2]);
   if (!impl_ || !(seconds > 0.0 && std::isfinite(seconds) && finite)) return 0;
   Impl& p = *impl_;
-  if (!p.continues()) p.dynamics.forget();
-  const double pushed = seconds * p.dynamics.forceShare(seconds);
+  elastic_detail::StepStart start;
+  start.seconds = seconds;
+  start.continues = p.continues();
+  start.staggered = true;
+  const double pushed = seconds * p.dynamics.forceShare(seconds, start.staggered);
   p.read({pushed * acceleration[0], pushed * acceleration[1], pushed * acceleration[2]});
-  p.dynamics.predict(seconds, threads);
-  p.dynamics.start(threads);
+  p.dynamics.predict(start, threads);
+  p.dynamics.findResidual(threads);
   elastic_detail::SolveLimits limits = p.limits;
   // At rest, less than this is left of the weight, and no step needs an iteration.
   double squared = 0.0;
   for (const double a : acceleration) squared += a * a;
   const double unseen = std::min(1e-3, 0.2 * limits.tolerance) * pushed * std::sqrt(squared);
-  limits.enough = p.dynamics.squaredImpulses(std::max(unseen, p.dynamics.roundingSpeed(seconds)));
+  limits.enough = p.dynamics.squaredImpulses(std::max(unseen, p.dynamics.roundingSpeed()));
   const int iterations = p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
-  p.dynamics.remember(seconds);
+  p.dynamics.remember(elastic_detail::SolvedWith::ElasticityAlone, threads);
   p.dynamics.removeMomentum();
   p.write(seconds);
   return iterations;
@@ -205,11 +209,11 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
 template <class Scalar>
 std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
   if (!impl_) return {};
-  impl_->fillProbes();
-  impl_->dynamics.probeForces(nullptr);
+  elastic_detail::BodyProbe<Scalar> probe = impl_->probe();
+  impl_->dynamics.findForces(probe, nullptr);
   std::vector<std::array<double, 3>> out(nodeCount());
   for (std::size_t n = 0; n < out.size(); ++n) {
-    for (std::size_t k = 0; k < 3; ++k) out[n][k] = static_cast<double>(impl_->dynamics.force(n)[k]);
+    for (std::size_t k = 0; k < 3; ++k) out[n][k] = static_cast<double>(probe.force(n)[k]);
   }
   return out;
 }
@@ -217,8 +221,7 @@ std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
 template <class Scalar>
 double ElasticBody<Scalar>::energy() {
   if (!impl_) return 0.0;
-  impl_->fillProbes();
-  return impl_->dynamics.probeEnergy(nullptr);
+  return impl_->dynamics.energy(impl_->probe(), nullptr);
 }
 
 TETSKIN_INSTANTIATE_CLASS(ElasticBody)

@@ -14,30 +14,48 @@
 //   David Baraff, Andrew Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998, doi 10.1145/280814.280821
 #pragma once
 
-#include <tetskin/elastic/src/dynamics/component_motion.h>
-#include <tetskin/elastic/src/dynamics/conjugate_gradient.h>
+#include <tetskin/elastic/src/dynamics/body_components.h>
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
-#include <tetskin/elastic/src/dynamics/initial_guess.h>
-#include <tetskin/elastic/src/dynamics/node_places.h>
-#include <tetskin/elastic/src/dynamics/two_level_gradient.h>
-#include <tetskin/elastic/src/tets/corotated_tets.h>
+#include <tetskin/elastic/src/dynamics/lone_solve.h>
 
 #include <array>
-#include <cmath>
+#include <cassert>
 #include <functional>
-#include <memory>
 #include <optional>
 
 namespace tetskin::elastic_detail {
 
-/// A point of a body where something resists a change of its velocity.
+/// How a body comes to a step.
+struct StepStart {
+  double seconds = 0.0;    ///< length of the step; above 0
+  bool continues = true;   ///< see BodyDynamics::continues; otherwise it forgets its last steps
+  bool staggered = false;  ///< see BodyDynamics::forceShare
+  /// Something outside may hold the body flat: its flat tets are then damped, so that they come to rest.
+  bool pressed = false;
+  /// It had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
+  bool touched = false;
+};
+
+/// What has changed the solution of a step.
+enum class SolvedWith { ElasticityAlone, Others };
+
+/// Positions of a body's nodes, and the elastic forces there: a question that leaves the body's state as it is.
 template <class S>
-struct HeldPoint {
-  const int* nodes = nullptr;
-  const S* weights = nullptr;
-  std::size_t nodeCount = 0;
-  std::array<double, 9> stiffness{};  ///< symmetric: impulse on the body per change of velocity, opposite to it
-  std::array<double, 3> change{};     ///< result: change of the point's velocity
+class BodyProbe {
+ public:
+  explicit BodyProbe(const BlockMatrix<S>& matrix)
+      : matrix_(matrix), points_(4 * matrix.slotCount(), S(0)), forces_(points_) {}
+
+  /// A node's position, which the caller fills, and the force on it, 4 scalars each.
+  S* point(std::size_t node) { return &points_[4 * matrix_.slotOf(node)]; }
+  const S* force(std::size_t node) const { return &forces_[4 * matrix_.slotOf(node)]; }
+
+ private:
+  template <class T>
+  friend class BodyDynamics;
+
+  const BlockMatrix<S>& matrix_;
+  AlignedVector<S> points_, forces_;  ///< by slot
 };
 
 template <class S>
@@ -53,64 +71,134 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   BlockMatrix<S>& matrix() { return matrix_; }
   const BlockMatrix<S>& matrix() const { return matrix_; }
   std::size_t nodeCount() const { return matrix_.nodeCount(); }
+  std::optional<CorotatedTets<S>>& tets() { return tets_; }
 
-  /// Takes effect at the next `predict`.
+  // What takes effect at the next `predict`.
   void setMaterial(const Lame& lame);
   /// damping  seconds
   void setDamping(double damping);
   /// Whether each step has the same bits on every processor; see `elasticInUse`.
   void setDeterministic(bool on);
-  /// pressed  something outside may hold the body flat: its flat tets are then damped, so that they come to rest
-  void setPressed(bool pressed) { pressed_ = pressed; }
-  /// Whether the body had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
-  void setTouched(bool touched);
-  /// Call it after `start` or `startLater` where the body turns out to have contacts in this step, which becomes one of
-  /// a touched body. `restart` must follow before `solve`.
-  void beTouched(double seconds, ParallelFor* threads);
-  /// The first step is half a step of velocities, as they are known at its beginning and belong to its middle from then
-  /// on; each takes half of the lengths of the step before and of its own. Otherwise each takes its own length, as
-  /// Bullet's rigid bodies do: a body of the same velocity then stays beside them.
-  void setStaggered(bool staggered) { staggered_ = staggered; }
+  /// mass  0: the node is pinned
+  void setMass(std::size_t node, S mass);
+  /// A node's state, 4 scalars each. Where the point is what `advance` has returned, the node's own position has more
+  /// digits. From `predict` on, the velocity is that of the rigid motion.
+  S* point(std::size_t node) { return &points_[4 * matrix_.slotOf(node)]; }
+  S* velocity(std::size_t node) { return &velocities_[4 * matrix_.slotOf(node)]; }
+
   /// True if each component has a pinned node.
   bool isHeld() const;
   /// The length of the last step; 0: there was none.
   double lastSeconds() const { return lastSeconds_; }
   void setLastSeconds(double seconds) { lastSeconds_ = seconds; }
-  /// Share of a step's length for which forces act in it: 1, except of staggered velocities.
-  double forceShare(double seconds) const;
-  /// mass  0: the node is pinned
-  void setMass(std::size_t node, S mass);
+  /// Share of the next step's length for which forces act in it: 1, except of staggered velocities. Of these, the first
+  /// step is half a step, as they are known at its beginning and belong to its middle from then on; each takes half of
+  /// the lengths of the step before and of its own. Otherwise each takes its own length, as Bullet's rigid bodies do: a
+  /// body of the same velocity then stays beside them.
+  double forceShare(double seconds, bool staggered) const;
+  /// True if the node is where the last step has brought it, and as fast, except for invisible differences.
+  bool continues(std::size_t node, const S* point, const S* velocity) const;
+  /// True if the last step is remembered for the next one.
+  bool remembers() const { return history_.isKnown(); }
 
-  /// A node's state, 4 scalars each, which the caller fills before `predict`. Where the point is what `advance` has
-  /// returned, the node's own position has more digits.
-  S* point(std::size_t node) { return &points_[4 * matrix_.slotOf(node)]; }
-  S* velocity(std::size_t node) { return &velocities_[4 * matrix_.slotOf(node)]; }
-  /// The elastic force on a node, of the last `probeForces` or `predict`.
-  const S* force(std::size_t node) const { return &forces_[4 * matrix_.slotOf(node)]; }
+  // ---- A step. Each function asserts that those before it have been called.
 
-  /// A node's position, 4 scalars, for `probeForces` and `probeEnergy`: they leave the state as it is, and the
-  /// positions undefined. The caller fills all of them between steps.
-  S* probe(std::size_t node) { return &moved_[4 * matrix_.slotOf(node)]; }
-  void probeForces(ParallelFor* threads);
-  double probeEnergy(ParallelFor* threads);
-
+  /// The beginning of a step: computes the rigid motion, the forces at the points that it reaches, the matrix if it
+  /// must change, and the right side. The solution is a velocity relative to the rigid motion; it begins with its last
+  /// value for a soft body, and with 0 for a stiff one.
+  void predict(const StepStart& start, ParallelFor* threads);
+  /// The body turns out to have contacts in this step, which becomes one of a touched body: its right side is another
+  /// one, and the residual is unknown.
+  void beTouched(ParallelFor* threads);
+  /// Computes residual = right side - A solution for the current solution. The caller may add other forces to it. May
+  /// be called again, until the step is remembered.
+  void findResidual(ParallelFor* threads);
+  /// Solves for the body alone, in at most `maximum` rounds; see LoneSolve. `findResidual` has been called for this
+  /// solution. What acts are the elastic impulses, and what has changed velocities since the last step: at rest, both
+  /// are those of the weight. Returns the number of iterations.
+  /// limits  `acting` is replaced
+  int solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
+  /// Keeps the solved step, for the next one to be of second order; at most once a step. A touched body keeps nothing.
+  void remember(SolvedWith what, ParallelFor* threads);
   /// Moves a node by a velocity at the end of a step, and returns its point.
   const S* advance(std::size_t node, double seconds, const S* by) {
+    assert(stage_ != Stage::Between);
     const std::size_t slot = matrix_.slotOf(node);
     places_.advance(slot, seconds, by);
     places_.round(slot, &points_[4 * slot]);
     return &points_[4 * slot];
   }
 
-  /// Takes the body and all that it remembers along a rigid motion, a rotation about the origin and a translation: the
-  /// next step goes on from the last one there. Points and velocities are the caller's: see `rounded`.
-  /// turn  a matrix by rows;  turns  false: it is that of no rotation
-  void carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by);
+  // Of a step that has begun.
+  /// True if it is of second order.
+  bool isSecondOrder() const { return secondOrder_; }
+  /// True if the body counts as stiff in it.
+  bool isStiff() const { return stiff_; }
+  /// The stiffness factor: dt (dt + damping) times the sum of V (2 mu + lambda) over the least inertia. It is the
+  /// squared ratio of a step to the time in which a deformation recedes.
+  double stiffnessNumber() const { return stiffnessNumber_; }
+  double alpha() const { return alpha_; }
+  /// What alpha would be over what it is, if the step had this length, by backward Euler's scheme.
+  double alphaRatio(double seconds) const {
+    const double now = lastSeconds_ * (lastSeconds_ + damping_);
+    return now > 0.0 ? seconds * (seconds + damping_) / now : 1.0;
+  }
+  /// The square of the norm of impulses that change all velocities by this speed.
+  double squaredImpulses(double speed) const { return speed * speed * unitImpulses_; }
+  /// A speed that hardly changes a displacement within the step, because of rounding.
+  double roundingSpeed() const;
+  /// The elastic force on a node.
+  const S* force(std::size_t node) const {
+    assert(stage_ != Stage::Between);
+    return &forces_[4 * matrix_.slotOf(node)];
+  }
+  void rightSide(std::size_t node, S out[3]) const;
+  /// The solution without elastic forces, in the wide layout: the velocities at the beginning of the step, including
+  /// everything else that acts, relative to the rigid motion.
+  const S* deviation() const {
+    assert(stage_ != Stage::Between);
+    return began_.data();
+  }
+  /// The change of velocity per unit impulse, both at a point and in a direction, if the node's component moves as a
+  /// rigid body. World space.
+  double rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+                         const std::array<double, 3>& direction) const;
+  std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
+  std::size_t componentCount() const { return components_.count(); }
+  /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
+  /// scalars per slot. Writes those of the component's nodes alone: several components may share the vectors, which are
+  /// empty before the first. Returns false, and writes nothing, if some node of it is pinned, or it has no mass.
+  bool rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const;
+
+  // Of its current solution.
+  /// The square of the norm with respect to the masses.
+  double squaredSolution() const;
+  /// The square of the norm, with respect to the masses, of its difference to `deviation`.
+  double squaredChange() const;
+  /// The square of the norm with respect to the matrix, as `findResidual` has computed it.
+  double squaredByMatrix() const;
+  /// Replaces it, for each component, by the rigid motion with its momentum, as far as pinned nodes permit it.
+  void projectToRigidMotion();
+  /// Removes the linear and the angular momentum that internal forces cannot cause, but a solve that is cut short does:
+  /// see `ComponentMotion::excess`.
+  /// torques  by component, beside those of the impulses at the nodes; empty: none
+  /// held     points where contacts resist the change; the caller changes their impulses accordingly
+  void removeMomentum(const NodeImpulse& impulse = {}, const std::vector<std::array<double, 3>>& torques = {},
+                      std::vector<HeldPoint<S>>* held = nullptr);
+  /// Where something other than elasticity has rotated a component in this step, the solution gets that rotation as a
+  /// chord: a straight motion would stretch a stiff body. Nothing changes for soft bodies, for which the effect is
+  /// negligible.
+  void bendTurns();
+
+  // ---- At any time.
+
+  /// The elastic forces, and the energy, at the positions of a probe.
+  void findForces(BodyProbe<S>& probe, ParallelFor* threads);
+  double energy(BodyProbe<S> probe, ParallelFor* threads);
   /// True if this is the node's position, rounded.
   bool isAt(std::size_t node, const S* point) const;
   /// The node's position, rounded: 3 scalars.
   void rounded(std::size_t node, S* point) const { places_.round(matrix_.slotOf(node), point); }
-
   /// The node's position minus its point.
   void remainder(std::size_t node, S* out) const {
     const std::size_t slot = matrix_.slotOf(node);
@@ -118,127 +206,43 @@ class TETSKIN_ELASTIC_API BodyDynamics {
     for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<S>(x[k] - static_cast<double>(points_[4 * slot + k]));
   }
 
-  /// True if the node is where the last step has brought it, and as fast, except for invisible differences.
-  bool continues(std::size_t node, const S* point, const S* velocity) const;
-  /// True if the last step is remembered for the next one.
-  bool remembers() const { return history_.isKnown(); }
-  /// Call it before `predict` where the body has not come here by its last step.
-  void forget() { history_.forget(); }
-  /// Call it when nothing but `solve` has changed the solution, for the next step to be of second order.
-  void remember(double seconds);
-  /// The same if other forces and joints have changed the solution, too. A touched body remembers nothing.
-  void rememberAmongOthers(double seconds, ParallelFor* threads);
-  /// True if the last `predict` has begun a step of second order.
-  bool isSecondOrder() const { return secondOrder_; }
+  // ---- Between steps.
 
-  /// The beginning of a step: computes the rigid motion, the forces at the points that it reaches, and the matrix if it
-  /// must change. From here on, `velocity` is that of the rigid motion.
-  void predict(double seconds, ParallelFor* threads);
-  /// Call it after `predict`: computes the right side of the step, which the matrix's residual and `restart` use.
-  /// The solution is a velocity relative to the rigid motion; it begins with its last value for a soft body, and with 0
-  /// for a stiff one.
-  void start(ParallelFor* threads);
-  /// Like `start`, but without the residual: `restart` must follow before `solve`.
-  void startLater();
-  /// Call it after `start` or `restart`: solves for the body alone, in at most `iterations` rounds. What acts are the
-  /// elastic impulses, and what has changed velocities since the last step: at rest, both are those of the weight.
-  /// Where the conjugate gradient does not come to an end, it is solved in two levels, for some steps from then on.
-  /// Returns the number of iterations.
-  /// limits  `acting` is replaced
-  int solve(ConjugateGradient<S>& gradient, SolveLimits limits, int maximum, ParallelFor* threads);
-  /// The square of the norm of what acts, see SolveLimits, of the last `start`.
-  double squaredActing(ParallelFor* threads);
-  /// The square of the norm of impulses that change all velocities by this speed.
-  double squaredImpulses(double speed) const { return speed * speed * unitImpulses_; }
-  /// True if the body counted as stiff in the last `predict`.
-  bool isStiff() const { return stiff_; }
-  /// The stiffness factor of the last `predict`: dt (dt + damping) times the sum of V (2 mu + lambda) over the least
-  /// inertia. It is the squared ratio of a step to the time in which a deformation recedes.
-  double stiffnessNumber() const { return stiffnessNumber_; }
-  /// The square of the solution's norm with respect to the masses.
-  double squaredSolution() const;
-  /// The solution without elastic forces, in the wide layout: the velocities at the beginning of the step, including
-  /// everything else that acts, relative to the rigid motion.
-  const S* deviation() const { return began_.data(); }
-  /// The square of the norm, with respect to the masses, of the solution's difference to the velocities at the
-  /// beginning of the step, everything else that acts included.
-  double squaredChange() const;
-  /// The square of the solution's norm with respect to the matrix, as `restart` has computed it.
-  double squaredByMatrix() const;
-  /// A speed that hardly changes a displacement within the step, because of rounding.
-  double roundingSpeed(double seconds) const;
-  /// The change of velocity per unit impulse, both at a point and in a direction, if the node's component moves as a
-  /// rigid body. World space, of the last `predict`.
-  double rigidCompliance(std::size_t node, const std::array<double, 3>& point,
-                         const std::array<double, 3>& direction) const;
-  void rightSide(std::size_t node, S out[3]) const;
-  /// Computes residual = right side - A solution for the current solution. The caller adds other forces to the
-  /// residual.
-  void restart(ParallelFor* threads);
-
-  double alpha() const { return alpha_; }
-  /// What alpha would be over what it is, if the last step had this length, by backward Euler's scheme.
-  double alphaRatio(double seconds) const {
-    const double now = lastSeconds_ * (lastSeconds_ + damping_);
-    return now > 0.0 ? seconds * (seconds + damping_) / now : 1.0;
-  }
-  /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
-  /// scalars per slot. Writes those of the component's nodes alone: several components may share the vectors, which are
-  /// empty before the first. Returns false, and writes nothing, if some node of it is pinned, or it has no mass.
-  bool rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const;
-  std::size_t componentOf(std::size_t node) const { return partOf_[matrix_.slotOf(node)]; }
-  std::size_t componentCount() const { return motions_.size(); }
-  /// Replaces the solution, for each component, by the rigid motion with its momentum, as far as pinned nodes permit
-  /// it.
-  void projectToRigidMotion();
-  /// Removes from the solution the linear and the angular momentum that internal forces cannot cause, but a solve that
-  /// is cut short does: see `ComponentMotion::excess`.
-  /// impulse  by node, of everything else that has acted on it in the step; empty: nothing has
-  /// torques  by component, beside those of these impulses at the nodes; empty: none
-  /// held     points where contacts resist the change; the caller changes their impulses accordingly
-  void removeMomentum(const std::function<std::array<double, 3>(std::size_t node)>& impulse = {},
-                      const std::vector<std::array<double, 3>>& torques = {},
-                      std::vector<HeldPoint<S>>* held = nullptr);
-  /// Where something other than elasticity has rotated a component in this step, the solution gets that rotation as a
-  /// chord: a straight motion would stretch a stiff body. Nothing changes for soft bodies, for which the effect is
-  /// negligible.
-  void bendTurns(double seconds);
-
-  std::optional<CorotatedTets<S>>& tets() { return tets_; }
-
+  /// Takes the body and all that it remembers along a rigid motion, a rotation about the origin and a translation: the
+  /// next step goes on from the last one there. Points and velocities are the caller's: see `rounded`.
+  /// turn  a matrix by rows;  turns  false: it is that of no rotation
+  void carry(bool turns, const std::array<double, 9>& turn, const std::array<double, 3>& by);
   /// Writes or reads what it remembers between steps. The material, and the masses of the nodes, must be those of the
   /// snapshot when it is read. The matrix is assembled only if it is not the same.
   /// outdated   while saving: the masses of the nodes are no longer those of the matrix
   /// continues  while saving: true for all nodes, see `continues`
-  /// Returns    true if the last step is remembered
-  bool visitState(StateStream& stream, bool outdated, bool continues);
-  /// The velocity to which the last step has brought a node; call the second function for each node after reading.
-  void reached(std::size_t node, S* velocity) const;
-  void arrive(std::size_t node, const S* velocity);
+  /// reached    called for each node if the last step is remembered: writes the velocity to which that has brought it,
+  ///            or reads it
+  void visitState(StateStream& stream, bool outdated, bool continues,
+                  const std::function<void(std::size_t node, S (&velocity)[3])>& reached);
 
  private:
   /// How far a step is: calls in another order would use what the step before has left.
-  enum class Stage { Before, Predicted, Started, Solvable };
+  enum class Stage { Between, Begun, Solvable, Remembered };
 
-  bool mayRemember() const { return tets_ && !stiff_ && untouched_ >= kUntouched; }
-  void keep(const AlignedVector<S>& impulses, double seconds);
-  void beginForces(double seconds);
-  void chooseScheme(double seconds);
-  static std::vector<std::uint32_t> components(const RestTets& rest, const BlockMatrix<S>& matrix);
-  void findMotions(double seconds);
-  void moveRigidly(double seconds);
-  void assembleIfNeeded(double seconds, double turnFraction, ParallelFor* threads);
-  int solveInTwoLevels(ConjugateGradient<S>& gradient, SolveLimits limits, ParallelFor* threads);
+  NodeStates<S> nodes() const { return {matrix_, places_, velocities_}; }
+  LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_}; }
+  void chooseScheme();
+  void begin();
+  void beginElastic();
+  void assembleIfNeeded(double turnFraction, ParallelFor* threads);
   void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
-  std::vector<ComponentMomentum> momentaNow(bool withRigid = true) const;
-  template <class Change>
-  void changeSolution(const std::vector<RigidVelocity>& velocities, Change&& change);
-  void findResidual(ParallelFor* threads);
-  Eigen::Vector3d placeOf(const HeldPoint<S>& point) const;
+  void assembleAgain(double alpha);
+  void visitReached(StateStream& stream, const std::function<void(std::size_t node, S (&velocity)[3])>& reached);
+  void reachedVelocity(std::size_t node, S* velocity) const;
 
   BlockMatrix<S> matrix_;
+  BodyComponents<S> components_;
+  NodePlaces<S> places_;
   std::optional<CorotatedTets<S>> tets_;
+  LoneSolve<S> loneSolve_;
+  ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
       forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces
   AlignedVector<S> rightSide_, image_;  ///< in the wide layout
@@ -247,29 +251,21 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double unitImpulses_ = 0.0;           ///< `squaredImpulses` of 1, by the matrix without rows
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
-  bool stiff_ = false, pressed_ = false, staggered_ = false, secondOrder_ = false, deterministic_ = false;
-  bool remembered_ = false;      ///< the last step
-  Stage stage_ = Stage::Before;  ///< Started: the residual is missing
+  Stage stage_ = Stage::Between;
+  bool stiff_ = false, pressed_ = false, secondOrder_ = false, deterministic_ = false;
+  bool changed_ = true;      ///< masses or material have changed since the last assembly
+  bool remembered_ = false;  ///< the last step
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
   /// each time that it bounces.
   static constexpr int kUntouched = 8;
-  int untouched_ = kUntouched;  ///< number of steps since it was last touched
-  TimeScheme scheme_;           ///< of the last `predict`
-  double lastSeconds_ = 0.0;    ///< length of the last step; 0: there was none
-  double forceSeconds_ = 0.0;   ///< for which forces act in this step
-  ImpulseHistory<S> history_;
+  int untouched_ = kUntouched;     ///< number of steps since it was last touched
+  TimeScheme scheme_;              ///< of the last `predict`
+  double lastSeconds_ = 0.0;       ///< length of the last step, from `predict` on of this one; 0: there was none
+  double forceSeconds_ = 0.0;      ///< for which forces act in this step
   S length_ = S(0), near_ = S(0);  ///< of the last step that is remembered: see `continues`
   double stiffnessNumber_ = 0.0;
-  bool changed_ = true;                   ///< masses or material have changed since the last assembly
-  std::size_t pinned_;                    ///< number of pinned nodes
-  std::vector<std::uint32_t> partOf_;     ///< by slot: number of its component
-  std::vector<ComponentMotion> motions_;  ///< by component, of the last `predict`
-  NodePlaces<S> places_;
-  std::vector<double> stiffness_;      ///< by component: sum of V (2 mu + lambda) over its tets, linear and quadratic
-  double stiffnessOverInertia_ = 0.0;  ///< times dt^2: how much rotation is taken for strain; the largest
-  InitialGuess<S> guess_;
-  int twoLevelSolves_ = 0;  ///< number of solves in two levels until the conjugate gradient is tried alone again
-  std::unique_ptr<TwoLevelGradient<S>> twoLevelSolve_;  ///< null until it is used
+  double stiffnessOverInertia_ = 0.0;  ///< see BodyComponents, of the last assembly for other masses or materials
+  std::size_t pinned_;                 ///< number of pinned nodes
 };
 
 }  // namespace tetskin::elastic_detail

@@ -175,4 +175,13 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   std::vector<std::uint32_t> couplingAt_;  ///< by entry and lane: number of the coupling + 1; 0: none
 };
 
+/// Calls visit(slot, first scalar in wide vectors) for all slots.
+template <class Visit>
+void bySlots(std::size_t slots, Visit&& visit) {
+  constexpr std::size_t kGroup = kernels::kGroup;
+  for (std::size_t chunk = 0; chunk < slots / kGroup; ++chunk) {
+    for (std::size_t lane = 0; lane < kGroup; ++lane) visit(kGroup * chunk + lane, kernels::kWideVector * chunk + lane);
+  }
+}
+
 }  // namespace tetskin::elastic_detail

@@ -5,6 +5,7 @@
 #include <tetskin/solver/src/forces/node_vectors.h>
 
 #include <cassert>
+#include <utility>
 
 namespace tetskin::bullet_detail {
 
@@ -51,8 +52,9 @@ double ElasticForce::totalElasticEnergy(btScalar) {
   if (m_softBodies.size() == 0 || !body_.body->isActive()) return 0.0;
   const auto& nodes = body_.body->m_nodes;
   assert(body_.dynamics->nodeCount() == static_cast<std::size_t>(nodes.size()));
-  for (int n = 0; n < nodes.size(); ++n) toPoint(nodes[n].m_q, body_.dynamics->probe(static_cast<std::size_t>(n)));
-  return body_.dynamics->probeEnergy(nullptr);
+  elastic_detail::BodyProbe<btScalar> probe(body_.dynamics->matrix());
+  for (int n = 0; n < nodes.size(); ++n) toPoint(nodes[n].m_q, probe.point(static_cast<std::size_t>(n)));
+  return body_.dynamics->energy(std::move(probe), nullptr);
 }
 
 void ElasticForce::visitState(WorldStream& stream) {

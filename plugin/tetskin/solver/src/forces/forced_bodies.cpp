@@ -204,18 +204,16 @@ void ForcedBody::visitState(WorldStream& stream) {
       continues &= !(node.m_im > 0) || dynamics->continues(at, node.m_x, node.m_vn);
     }
   }
-  if (!dynamics->visitState(stream, outdated, continues)) return;
-  for (int n = 0; n < body->m_nodes.size(); ++n) {
-    const btSoftBody::Node& node = body->m_nodes[n];
-    const auto at = static_cast<std::size_t>(n);
+  dynamics->visitState(stream, outdated, continues, [&](std::size_t n, btScalar(&velocity)[3]) {
+    const btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
     btVector3 reached = node.m_vn;
     if (node.m_im == 0) {
       // The application may have stopped it since, or led it on.
-      if (stream.saving()) dynamics->reached(at, reached.m_floats);
+      if (stream.saving()) reached = fromPoint(velocity);
       stream(reached);
     }
-    if (stream.restoring()) dynamics->arrive(at, reached);
-  }
+    toPoint(reached, velocity);
+  });
 }
 
 }  // namespace tetskin::bullet_detail

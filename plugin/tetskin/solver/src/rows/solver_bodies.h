@@ -59,6 +59,7 @@ struct SolvedBody {
   std::vector<FixedNode> fixed;  ///< without pinned ones
   std::vector<int> foreign;  ///< nodes that something else than the step places: anchors of Bullet's, the application
   double unseenSpeed = 0.0;  ///< the error of velocities that is not visible
+  elastic_detail::StepStart start;  ///< by which its step begins
   bool shaken = false;       ///< contacts found at rounded positions shake it: see DeformableSolver::Impl::findShaken
   bool solvedAgain = false;  ///< solved once more with the effects of contacts and other forces
   bool velocityChanged = false;  ///< something other than elasticity has changed velocities, or will

@@ -129,12 +129,12 @@ bool continuesLastStep(const SolvedBody& solved) {
   return true;
 }
 
-/// The first step of a held body, and steps of varying length, by BodyDynamics::setStaggered. Free bodies go on falling
+/// The first step of a held body, and steps of varying length, by BodyDynamics::forceShare. Free bodies go on falling
 /// beside Bullet's rigid ones.
-void staggerHeld(const SolvedBody& solved, btScalar dt) {
+void staggerHeld(SolvedBody& solved) {
   Dynamics& dynamics = *solved.dynamics;
-  dynamics.setStaggered(solved.elastic && dynamics.isHeld());
-  const auto share = static_cast<btScalar>(dynamics.forceShare(static_cast<double>(dt)));
+  solved.start.staggered = solved.elastic && dynamics.isHeld();
+  const auto share = static_cast<btScalar>(dynamics.forceShare(solved.start.seconds, solved.start.staggered));
   if (share == 1) return;
   for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
     const btSoftBody::Node& node = solved.body->m_nodes[n];
@@ -206,10 +206,13 @@ void DeformableSolver::Impl::predict() {
   useOwnSettings();
   applyOthers();
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
-    if (!continuesLastStep(body)) body.dynamics->forget();
+    body.start.seconds = static_cast<double>(dt());
+    body.start.continues = continuesLastStep(body);
+    body.start.pressed = body.hadRows;
+    body.start.touched = body.hadContacts;
     readNodes(*body.body, *body.dynamics);
     body.dynamics->setDeterministic(deterministic);
-    staggerHeld(body, dt());
+    staggerHeld(body);
   });
   for (SolvedBody& body : bodies.bodies()) prepareSearch(body);
   for (SolvedSystem& system : bodies.systems()) {
@@ -238,13 +241,11 @@ void DeformableSolver::Impl::useOwnSettings() {
 
 void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
   Dynamics& dynamics = *body.dynamics;
-  dynamics.setPressed(body.hadRows);
-  dynamics.setTouched(body.hadContacts);
-  dynamics.predict(static_cast<double>(dt()), inner);
+  dynamics.predict(body.start, inner);
   body.unseenSpeed = unseenSpeed(body);
   dynamics.matrix().free();
-  if (body.deferSolve) return dynamics.startLater();
-  dynamics.start(inner);
+  if (body.deferSolve) return;
+  dynamics.findResidual(inner);
   if (body.elastic) solveAlone(body, body.hadRows ? 0 : body.settings->iterations, inner);
 }
 
@@ -307,7 +308,7 @@ void DeformableSolver::Impl::assemble() {
   }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     const auto index = static_cast<std::size_t>(&body - bodies.bodies().data());
-    if (touched[index]) body.dynamics->beTouched(static_cast<double>(dt()), inner);
+    if (touched[index]) body.dynamics->beTouched(inner);
   });
 }
 
@@ -374,13 +375,13 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
     for (const std::size_t b : system.bodies) {
       SolvedBody& body = bodies.bodies()[b];
       body.solvedAgain = true;
-      if (body.elastic) body.dynamics->rememberAmongOthers(static_cast<double>(dt()), inner);
+      if (body.elastic) body.dynamics->remember(elastic_detail::SolvedWith::Others, inner);
     }
   } else if (first.elastic) {
     // A body that has waited for contacts, and has none, is solved with all iterations; another one continues where it
     // stopped.
     if (first.deferSolve) {
-      first.dynamics->restart(inner);
+      first.dynamics->findResidual(inner);
       solveAlone(first, first.settings->iterations, inner);
     } else {
       const int before = first.solve->iterations();
@@ -391,7 +392,7 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
   if (first.elastic && !again) system.converged = first.solve->squaredResidual() <= first.solve->enough();
   const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.velocityChanged;
   if (!free || !first.elastic) return;
-  first.dynamics->remember(static_cast<double>(dt()));
+  first.dynamics->remember(elastic_detail::SolvedWith::ElasticityAlone, inner);
   first.dynamics->removeMomentum();
 }
 
@@ -407,7 +408,7 @@ void DeformableSolver::Impl::finishContacts() {
 
 void DeformableSolver::Impl::writeBack() {
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
-    if (body.solvedAgain) body.dynamics->bendTurns(static_cast<double>(dt()));
+    if (body.solvedAgain) body.dynamics->bendTurns();
     writeVelocities(body);
     listForeignNodes(body);
   });

@@ -75,7 +75,7 @@ double DeformableSolver::Impl::unseenSpeed(const SolvedBody& body) const {
   const auto seconds = static_cast<double>(dt());
   const btDiscreteDynamicsWorld* world = body.world();
   const double gravity = world ? static_cast<double>(world->getGravity().length()) : 0.0;
-  return std::max(kUnseen * gravity * seconds, body.dynamics->roundingSpeed(seconds));
+  return std::max(kUnseen * gravity * seconds, body.dynamics->roundingSpeed());
 }
 
 std::vector<RowSource*> DeformableSolver::Impl::rowSources() {

@@ -141,7 +141,7 @@ void SystemSolve::findResiduals() {
       std::copy(body.residual.begin(), body.residual.end(), body.matrix().residual());
       return;
     }
-    body.dynamics().restart(inner);
+    body.dynamics().findResidual(inner);
     in_.others.addResiduals(system_, body.index);
     for (std::size_t c = body.firstComponent; c < body.lastComponent; ++c) {
       components_[c].addImages(-partOf(reduced_, components_[c]), body.matrix().residual());
