@@ -12,7 +12,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// The first bytes of a file; the digits are those of the format's version.
+/// The first bytes of a file; the digits are the format's version.
 constexpr char kMagic[] = "tetskin replay 03\n";
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 
