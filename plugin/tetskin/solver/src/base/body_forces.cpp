@@ -90,7 +90,7 @@ void BodyGravity::reinitialize(bool) {
   }
 }
 
-/// A body wakes as its gravity changes: not so by being restored.
+/// A change of gravity wakes the body; restoring it does not.
 void BodyGravity::visitState(WorldStream& stream) {
   bool isSet = own_.has_value();
   stream(isSet);
@@ -139,8 +139,8 @@ void BodyGravity::stopSleepers() {
   }
 }
 
-/// The gravity that Bullet has found. Forces of this library that stand behind this one still answer, so that there is
-/// always one.
+/// The gravity that Bullet has found. Forces of this library that come after this one still answer, so there is always
+/// one.
 btVector3 BodyGravity::requestedGravity() const {
   for (int i = list_->size() - 1; i >= 0; --i) {
     if ((*list_)[i]->getForceType() != BT_GRAVITY_FORCE) continue;
