@@ -19,7 +19,7 @@ namespace {
 using elastic_detail::RefinedBodies;
 using elastic_detail::StiffnessFit;
 
-/// Fraction of the time after which the refinements are made, about.
+/// Approximate fraction of the time after which the refinements are ready.
 constexpr double kBodiesDone = 0.2;
 
 Status check(const Cage& cage, const CalibrationOptions& options) {
@@ -42,7 +42,7 @@ int refinementsFor(std::size_t tets) {
   return refinements;
 }
 
-/// The cage without nodes that no tet uses, which would have no mass, and without stiffness factors.
+/// The cage without unused nodes, which would have no mass, and without stiffness factors.
 Cage used(const Cage& cage) {
   std::vector<int> number(cage.mesh.nodeCount(), -1);
   Cage result;
