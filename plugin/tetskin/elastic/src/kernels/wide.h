@@ -73,8 +73,8 @@ TETSKIN_INLINE Lanes<S, W> absolute(const Lanes<S, W>& v) {
 }
 
 #if defined(TETSKIN_VECTOR_TYPES) && defined(TETSKIN_SHUFFLE) && defined(__wasm_simd128__)
-// WebAssembly has registers of four floats; eight floats are two of them. Code that is written lane by lane below would
-// be compiled so.
+// WebAssembly has registers of four floats; eight floats are two of them. What is written lane by lane below would be
+// compiled lane by lane.
 #define TETSKIN_HALVES 1
 template <class S>
 TETSKIN_INLINE Lanes<S, 8> joined(const Lanes<S, 4>& low, const Lanes<S, 4>& high) {
