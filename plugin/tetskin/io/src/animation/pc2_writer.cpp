@@ -12,7 +12,7 @@
 namespace tetskin {
 namespace {
 
-/// Where the header states the number of frames: after the name, the version, the number of vertices, the first frame
+/// Position of the number of frames in the header: after the name, the version, the number of vertices, the first frame
 /// and the step.
 constexpr long kFrameCountOffset = 28;
 

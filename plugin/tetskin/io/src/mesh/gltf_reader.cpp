@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The meshes of a glTF 2.0 scene. tinygltf parses the text; buffers are read here, so that it opens no file, decodes no
-// image, and need not match what a document states with what there is.
+// The meshes of a glTF 2.0 scene. tinygltf only parses the text. Buffers are read here, so tinygltf opens no file,
+// decodes no image, and need not check what a document states against its actual content.
 //
 // This work is based on:
 //   "glTF 2.0 Specification", Khronos Group, 2021
@@ -28,7 +28,7 @@ namespace tetskin::io {
 
 namespace {
 
-/// Extensions of the looks: the shape is complete without them.
+/// Extensions about looks: the shape is complete without them.
 constexpr std::array<std::string_view, 9> kLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                     "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
                                                     "KHR_xmp",        "AGI_",         "KHR_technique"};
@@ -45,7 +45,7 @@ class GltfReader {
   Result<TriangleMesh> read();
 
  private:
-  /// The accessors of a primitive's vertices, -1 for none; primitives that have them all in common share vertices.
+  /// The accessors of a primitive's vertices, -1 for none; primitives with the same accessors share vertices.
   using Vertices = std::array<int, 3>;
   struct Visit {
     int node = 0;
@@ -68,7 +68,8 @@ class GltfReader {
   std::vector<ScenePart> parts_;
 };
 
-/// The nodes of the scene that is shown: the first one by default, and all that are no child without any scene.
+/// The root nodes of the displayed scene, which is the first one by default; without any scene, all nodes that are not
+/// children.
 std::vector<int> GltfReader::roots() const {
   const std::size_t shown = static_cast<std::size_t>(std::max(model_.defaultScene, 0));
   if (shown < model_.scenes.size()) return model_.scenes[shown].nodes;
@@ -213,7 +214,7 @@ Status GltfReader::addVertices(const Vertices& vertices, const Eigen::Affine3d& 
   Status status = accessors_.read(vertices[2], 2, numbers);
   if (status.ok()) status = differs(2);
   if (!status.ok()) return status;
-  for (std::size_t v = 0; v < count; ++v) {  // theirs begin at the upper left
+  for (std::size_t v = 0; v < count; ++v) {  // glTF's begin at the upper left
     const Eigen::Vector2d texcoord(numbers[2 * v], 1.0 - numbers[2 * v + 1]);
     part.texcoords.push_back(texcoord.allFinite() ? Eigen::Vector2f(texcoord.cast<float>()) : Eigen::Vector2f(0, 0));
   }
