@@ -86,7 +86,7 @@ class [[nodiscard]] Result {
   Result(T value) : value_(std::move(value)) {}  // NOLINT: implicit by design
   /// Failure. A status that is Ok is an error, and stops the program.
   Result(Status status) : status_(std::move(status)) {  // NOLINT: implicit by design
-    if (status_.ok()) failResult("a tetskin::Result was made of a status that is Ok, and has no value");
+    if (status_.ok()) failResult("a tetskin::Result was made from an Ok status, which has no value");
   }
 
   bool ok() const { return value_.has_value(); }    ///< there is a value

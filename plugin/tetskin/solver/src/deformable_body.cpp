@@ -393,7 +393,7 @@ void DeformableBody::removeFromWorld() {
 }
 
 Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
-  if (impl_->isActedOn()) return invalid("the body is in a world already: call removeFromWorld first");
+  if (impl_->isActedOn()) return invalid("the body is already in a world: call removeFromWorld first");
   const auto& inWorld = world.getSoftBodyArray();
   const bool isThere = inWorld.findLinearSearch(impl_->body.get()) < inWorld.size();
   if (impl_->isInAWorld() && !isThere) return invalid("the body is in another world: remove it there first");
@@ -475,7 +475,7 @@ Status DeformableBody::setPinned(int node, bool pinned) {
 Status DeformableBody::setPinnedPosition(int node, const btVector3& position) {
   if (Status status = impl_->checkNode(node); !status.ok()) return status;
   if (!isPinned(node)) {
-    return invalid("node " + std::to_string(node) + " is not pinned: call setPinned before it is led");
+    return invalid("node " + std::to_string(node) + " is not pinned: call setPinned first");
   }
   if (!toEigen(position).allFinite()) {
     return {StatusCode::NonFinite, "the position of pinned node " + std::to_string(node) + " is not finite"};

@@ -174,9 +174,10 @@ Result<std::size_t> GlbWriter::addModel(const std::string& name, const Cage& cag
   model.nodeCount = cage.mesh.nodeCount();
   model.bones = io::bonesOf(embedding);
   if (model.bones.size() > SkinnedMesh::kMaxBones) {
-    return io::fileError(StatusCode::TooLarge, impl_->path, 0,
-                         "cannot hold " + name + ", as " + std::to_string(model.bones.size()) +
-                             " nodes of its cage carry vertices, and 65536 bones are the most; use a coarser cage");
+    return io::fileError(
+        StatusCode::TooLarge, impl_->path, 0,
+        "cannot hold " + name + ", as " + std::to_string(model.bones.size()) +
+            " nodes of its cage carry vertices, but at most 65536 bones are possible; use a coarser cage");
   }
   if (interpolation == Interpolation::Quadratic) {
     auto palette = BonePalette<double>::create(binding.value());

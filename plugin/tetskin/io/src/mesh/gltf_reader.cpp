@@ -125,7 +125,7 @@ Status GltfReader::placeOf(int n, Eigen::Affine3d& place) const {
   };
   if (!is(node.matrix, 16) || !is(node.translation, 3) || !is(node.rotation, 4) || !is(node.scale, 3)) {
     return accessors_.error(StatusCode::Malformed,
-                            "has a wrong number of numbers in the place of node " + std::to_string(n));
+                            "has the wrong number of values in the transform of node " + std::to_string(n));
   }
   place.setIdentity();
   if (!node.matrix.empty()) {
@@ -171,7 +171,7 @@ Status GltfReader::addMesh(int m, const std::string& nodeName, bool skinned, con
     // Integers of a skinned mesh are scaled by its bones, which are left out.
     if (skinned && accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
       return fileError(StatusCode::UnsupportedFormat, path_, 0,
-                       "has a mesh with bones and quantised positions, which its bones alone scale; save it without "
+                       "has a mesh with bones and quantised positions, which only its bones scale; save it without "
                        "quantisation (gltfpack: with -noq)");
     }
     ScenePart& part = parts_[at->second];
@@ -262,7 +262,8 @@ Result<TriangleMesh> parse(const std::string& path) {
   }
   if (Status status = keepShape(path, text); !status.ok()) return status;
   if (text.firstVersion) {
-    return fileError(StatusCode::UnsupportedFormat, path, 0, "is of glTF 1.0, which is not read; save it as glTF 2.0");
+    return fileError(StatusCode::UnsupportedFormat, path, 0,
+                     "is glTF 1.0, which is not supported; save it as glTF 2.0");
   }
   tinygltf::Model model;
   tinygltf::TinyGLTF parser;

@@ -61,9 +61,8 @@ Result<GltfText> splitGltf(const std::string& path, std::string bytes) {
   if (bytes.compare(0, 4, "glTF") != 0) {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n", bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0);
     if (first == std::string::npos || bytes[first] != '{') {
-      return fileError(
-          StatusCode::Malformed, path, 0,
-          "is no glTF 2.0, which begins with 'glTF', as a GLB, or with '{', as text; export the model again");
+      return fileError(StatusCode::Malformed, path, 0,
+                       "is not glTF 2.0, which begins with 'glTF' (GLB) or with '{' (text); export the model again");
     }
     text.json = std::move(bytes);
     return text;

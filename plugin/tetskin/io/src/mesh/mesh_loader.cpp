@@ -56,7 +56,7 @@ Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report) {
   if (extension == ".3mf") {  // assimp 5.2.5 frees some images of a package twice
     if (const Result<std::string> bytes = io::readFile(path); !bytes.ok()) return bytes.status();
     return io::fileError(StatusCode::UnsupportedFormat, path, 0,
-                         "packages of 3MF are not read; save the model as STL or PLY");
+                         "3MF packages are not supported; save the model as STL or PLY");
   }
   return io::readWithAssimp(path);
 }

@@ -80,7 +80,7 @@ Status RecordReader::open(const std::string& path) {
   file_.seekg(0);
   file_.read(magic, kMagicSize);
   if (!file_ || std::memcmp(magic, kMagic, kMagicSize) != 0) {
-    return {StatusCode::Malformed, path + ": is no run that tetskin's Recorder has written, or of another version"};
+    return {StatusCode::Malformed, path + ": was not written by tetskin's Recorder, or is of another version"};
   }
   left_ = size_ - kMagicSize;
   return {};

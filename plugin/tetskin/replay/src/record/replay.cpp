@@ -132,7 +132,7 @@ void Replay::Impl::compare(const StepChunk& step) {
   report.differs = true;
   const auto index = static_cast<int>(other.first - motion.begin());
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-  report.object = index < objects.size() ? nameOf(*objects[index]) : "an object that is not there any more";
+  report.object = index < objects.size() ? nameOf(*objects[index]) : "an object that no longer exists";
 }
 
 Replay::Replay(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -74,7 +74,7 @@ Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) 
   header.visit(stream);
   if (stream.failed()) return malformed("it has " + std::to_string(size) + " bytes, less than its header");
   const Header own;
-  if (header.magic != own.magic) return malformed("it does not begin as a snapshot does");
+  if (header.magic != own.magic) return malformed("it does not begin like a snapshot");
   if (header.byteOrder != own.byteOrder) return unsupported("it is from a machine with another byte order");
   if (header.scalarBytes != own.scalarBytes) {
     return unsupported("its numbers have " + std::to_string(header.scalarBytes) + " bytes, Bullet's here " +

@@ -146,7 +146,7 @@ btVector3 BodyGravity::requestedGravity() const {
     if ((*list_)[i]->getForceType() != BT_GRAVITY_FORCE) continue;
     return static_cast<const btDeformableGravityForce*>((*list_)[i])->m_gravity;
   }
-  assert(false && "Bullet has asked for a gravity, and this one was not there");
+  assert(false && "Bullet asked for gravity, but this force was not in the list");
   return m_gravity;
 }
 

@@ -112,7 +112,7 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
     if (bodies[b]->m_clusters.size() > 0) stream.refuse("a soft body with clusters");
     bool byBullet = solvedHere.count(bodies[b]) == 0 || collidesByBulletsTrees(*bodies[b]);
     stream(byBullet);
-    if (byBullet) stream.same(treesOf(*bodies[b]), "a soft body that Bullet searches contacts of had other trees");
+    if (byBullet) stream.same(treesOf(*bodies[b]), "a soft body whose contacts Bullet searches had other trees");
     const BodyChannel* channel = channelOf(*bodies[b]);
     const bool atSurface = channel && channel->surfaceContacts().lock();
     stream.same(atSurface, "a soft body had contact at its surface, or had none");

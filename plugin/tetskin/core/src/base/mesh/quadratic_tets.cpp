@@ -108,10 +108,10 @@ Result<Cage> refineQuadratic(const Cage& linear) {
   if (Status status = validateAttributes(linear); !status.ok()) return status;
   if (linear.hasDuplicates()) {
     return invalid(
-        "a cage with duplicate elements has no quadratic one: create it with CageOptions::duplicateElements false");
+        "a cage with duplicate elements cannot become quadratic: create it with CageOptions::duplicateElements false");
   }
   if (report.zeroVolume.count + report.repeatedNode.count > 0) {
-    return Status{StatusCode::Degenerate, "a flat tet has no quadratic one; remove flat tets"};
+    return Status{StatusCode::Degenerate, "a flat tet cannot become quadratic; remove flat tets"};
   }
   if (Status status = checkTetCounts(mesh.nodeCount(), kSubTets * mesh.tetCount()); !status.ok()) return status;
   Cage cage(refineUniformly(positive).mesh);
