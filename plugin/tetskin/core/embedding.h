@@ -50,7 +50,7 @@ struct EmbeddedPoint {
     return weightedSum(weights, velocityOf);
   }
 
-  /// Velocity of the point at `clampedWeights`, where forces act. The work of an impulse is relative to this velocity.
+  /// Velocity of the point at `clampedWeights`, where forces act: the velocity on which an impulse does work.
   template <class VelocityOf>
   auto clampedVelocity(const VelocityOf& velocityOf) const {
     return weightedSum(clampedWeights, velocityOf);

@@ -156,8 +156,8 @@ class TETSKIN_CORE_API StepHistory {
 
  private:
   std::vector<Eigen::Matrix<Scalar, 3, 1>> before_, last_;
-  bool usable_ = false;   ///< the next step may begin at last_
-  bool between_ = false;  ///< last_ may continue before_
+  bool usable_ = false;   ///< the next step can continue from last_
+  bool between_ = false;  ///< last_ has continued from before_
 };
 
 /// A render mesh carried by the nodes of a cage, however they are moved: bind once at rest, update with the node

@@ -72,7 +72,7 @@ struct ReplayReport {
   btScalar secondsPerStep = 0;  ///< length of Bullet's steps in the last of these
   bool differs = false;         ///< the last of these has not ended in the recorded state
   std::string object;           ///< if so, the first object whose motion differs: its index in the world, and its kind
-  bool cutShort = false;        ///< the file ends within a step, as after a crash
+  bool cutShort = false;        ///< the file ends within a step, as if the program was killed in it
 };
 
 /// Plays a run from a file, step by step. Kinematic bodies go to their recorded places: the application's motion states

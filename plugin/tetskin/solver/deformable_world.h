@@ -104,7 +104,7 @@ class TETSKIN_SOLVER_API DeformableSolver : public btDeformableBodySolver {
   /// Times of all steps so far; subtract two readings to get those of the steps between.
   const StepTimes& stepTimes() const;
 
-  // Called by Bullet.
+  // What Bullet calls.
   void reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) override;
   void predictMotion(btScalar dt) override;
   void processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) override;

@@ -16,7 +16,7 @@ class BlockRows {
  public:
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-  /// cage   valid, rest space, no tet flat; with linear and quadratic tets. Not kept
+  /// cage   valid, rest space, no tet flat; its quadratic tets are used as such. Not kept
   /// scale  by tet: stiffness factor relative to a Young's modulus of 1; empty: the cage's, over its material
   /// Cost   O(T log T) for T tets
   BlockRows(const Cage& cage, double poissonRatio, const std::vector<double>& scale);

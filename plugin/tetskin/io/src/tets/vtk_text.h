@@ -39,7 +39,7 @@ class VtkText {
   /// The next word, unchanged or in lower case; empty at the end of the file.
   std::string_view name() { return in_.word(); }
   std::string word() { return lower(in_.word()); }
-  /// The next but one word, which stays unread.
+  /// Looks ahead at the next word, without reading it.
   std::string wordAhead() const { return lower(TextScanner(in_).word()); }
   std::string_view restOfLine() { return in_.restOfLine(); }
   /// The next word as an integer; false if it is not one.

@@ -20,8 +20,8 @@ namespace tetskin::bullet_detail {
 /// The path from the beginning of a frame, of positions in m or of rotation vectors in radians.
 struct FrameCurve {
   btVector3 way{0, 0, 0};    ///< over the whole frame
-  btVector3 early{0, 0, 0};  ///< extra path at the velocity of the beginning
-  btVector3 late{0, 0, 0};   ///< extra path at the velocity of the end
+  btVector3 early{0, 0, 0};  ///< extra path if it kept the velocity of the beginning
+  btVector3 late{0, 0, 0};   ///< extra path if it had the velocity of the end throughout
 
   /// fraction  of the frame's time, 0 to 1
   btVector3 at(btScalar fraction) const {

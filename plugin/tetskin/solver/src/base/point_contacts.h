@@ -19,7 +19,7 @@ struct PointContact {
   std::uint32_t sample = 0;                   ///< tells apart the places that share this number
   CarriedPoint at;                            ///< the point
   const btCollisionObject* object = nullptr;  ///< rigid body, link or any other collision object; or a soft body
-  CarriedPoint onObject;                      ///< the point on a soft body's surface; unused for other objects
+  CarriedPoint onObject;                      ///< the point in the object, if that is a soft body; otherwise unused
   btVector3 position;                         ///< at the beginning of the step
   btVector3 normal;                           ///< away from the object, of unit length
   btScalar distance = 0;   ///< along the normal, at the beginning of the step, minus the distance to be kept

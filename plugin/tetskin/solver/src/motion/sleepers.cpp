@@ -156,7 +156,7 @@ SleepingState::SleepingState(const btSoftBody& body) : friction(body.m_cfg.kDF) 
   const auto bitsOf = [](btScalar value) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof value);
-    // A product's upper bits depend only on the upper bits of a double: the signs of two would cancel.
+    // In a product, the upper bits of a double affect only the upper bits: the signs of two would cancel.
     return bits ^ (bits >> 32);
   };
   for (int n = 0; n < body.m_nodes.size(); ++n) {
