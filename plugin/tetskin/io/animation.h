@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A whole run in one file: GLB, a skinned mesh that every engine and viewer can play, and PC2, a cache of all
-// positions.
+// A whole run in one file: GLB, a skinned mesh that every engine and viewer plays, and PC2, a cache of all positions.
 #pragma once
 
 #include <tetskin/core/cage.h>

@@ -62,8 +62,7 @@ TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileRe
 struct TETSKIN_IO_API TetFileReport {
   std::size_t skippedCells = 0;   ///< cells that are not tets: surfaces, lines, hexahedra, ...
   std::size_t quadraticTets = 0;  ///< tets of second order that became quadratic ones, of eight tets each
-  std::size_t movedNodes = 0;     ///< nodes on curved edges that were moved to the middle, so that the edge became
-                                  ///< straight
+  std::size_t movedNodes = 0;     ///< nodes on curved edges that were moved to the middle, to make the edge straight
   double farthestMove = 0.0;      ///< the largest distance of such a move, in the file's unit
 
   /// Readable summary in one line; empty if everything was read.

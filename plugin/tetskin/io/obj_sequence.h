@@ -15,8 +15,7 @@ namespace io {
 struct ObjStatement;
 }
 
-/// An OBJ file without its vertex positions: the text of the file to write, formatted once, with a gap for every
-/// vertex.
+/// An OBJ file without its vertex positions: the text to write, formatted once, with a gap for every vertex.
 ///
 /// It keeps everything in the OBJ file, byte for byte (order, polygons, texture coordinates, groups, materials,
 /// comments, vertex colours behind the coordinates), except

@@ -132,8 +132,7 @@ enum class RigidForceModel {
 struct DeformableWorldOptions {
   btVector3 gravity{0, btScalar(-9.81), 0};  ///< world length / s^2
   ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
-  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; also makes the world turn rigid bodies
-                                   ///< deterministically
+  bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; rigid bodies then turn so, too
   RigidForceModel rigidForces = RigidForceModel::PlainWorld;  ///< choose the other for scenes tuned in Bullet's world
 };
 
@@ -182,7 +181,7 @@ class TETSKIN_SOLVER_API DeformableWorld : private DeformableWorldObjects, publi
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
 
-  /// Called by Bullet. With a deterministic solver, rigid bodies turn by arithmetic and square roots alone.
+  /// Called by Bullet. With a deterministic solver, rigid bodies are turned with arithmetic and square roots only.
   void predictUnconstraintMotion(btScalar dt) override;
 
  protected:
@@ -194,8 +193,8 @@ class TETSKIN_SOLVER_API DeformableWorld : private DeformableWorldObjects, publi
 /// from all positions in the world: soft and rigid bodies, multibodies, joints to points in space, targets of springs,
 /// motion states, and all remembered positions. The world continues as before.
 ///
-/// Not moved is what the world does not hold: bodies outside of it; the application's own positions, in motion states
-/// that compute them, in forces and in actions; pivots in space of multibodies' joints. Broadphases other than
+/// It does not move what the world does not hold: bodies outside of it; the application's own positions, in motion
+/// states that compute them, in forces and in actions; pivots in space of multibodies' joints. Broadphases other than
 /// btDbvtBroadphase may find pairs anew. For skins that interpolate, call `SoftBodySkin::markTeleported`.
 ///
 /// world   created with a `DeformableSolver`

@@ -54,8 +54,8 @@ struct LatticeTables {
   std::array<std::array<int, 6>, kTetsPerCube> floors;  ///< each tet spans [f, f+2] along each plane direction
   std::array<std::array<LatticeStep, 4>, kTetsPerCube> neighbours;  ///< across the face opposite to each corner
   std::array<std::array<LatticeStep, kStarSize>, 2> star;           ///< tets around a node of each kind
-  std::array<std::array<std::uint32_t, kStarSize>, 2> starLinks;  ///< bits of the tets that share a face and that node
-                                                                  ///< with it
+  std::array<std::array<std::uint32_t, kStarSize>, 2> starLinks;    ///< bits of those that share a face and that node
+                                                                    ///< with it
 };
 const LatticeTables& latticeTables();
 
@@ -80,7 +80,6 @@ LatticeTet locate(const Eigen::Vector3d& p);
 /// Centroid of a tet in lattice coordinates.
 Eigen::Vector3d centroid(const LatticeTet& tet);
 
-/// The four nodes of a tet.
 std::array<LatticeNode, 4> nodesOf(const LatticeTet& tet);
 
 /// The position and size of the lattice in the mesh's space.
@@ -108,7 +107,6 @@ class LatticeSet {
   /// Index of a cube; adds it, without tets, if it is not in the set yet.
   int insert(const Cube& cube);
   bool contains(const LatticeTet& tet) const;
-  /// Adds tets of cube i.
   void add(std::size_t i, std::uint16_t tets);
   void add(const LatticeTet& tet) { add(insert(tet.cube), static_cast<std::uint16_t>(1u << tet.local)); }
 

@@ -115,7 +115,6 @@ class Cover {
 
   bool full() const { return set_.tetCount() > limit_; }
 
-  /// Sets the number of the following triangles.
   void setTriangle(std::uint32_t triangle) { triangle_ = triangle; }
 
   void addTriangle(const Corners& corners, const LatticeTet& start) {

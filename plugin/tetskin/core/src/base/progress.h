@@ -49,7 +49,6 @@ class TETSKIN_CORE_API Progress {
   bool cancelled_ = false;
 };
 
-/// The status of a cancelled computation.
 inline Status cancelledStatus(const char* what) {
   return {StatusCode::Cancelled, std::string(what) + " was cancelled by its progress function"};
 }

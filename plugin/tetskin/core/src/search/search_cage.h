@@ -48,7 +48,6 @@ class SearchCage {
   TetCorners corners(std::int32_t tet) const { return cornersOf(mesh_, mesh_.tets[static_cast<std::size_t>(tet)]); }
 
   const Box3& box() const { return box_; }
-  /// The largest size of all tets.
   double largestSize() const { return largestSize_; }
   double largestSlack() const { return largestSlack_; }
   /// Median of the longest sides of the tets' boxes; of a sample if there are many.

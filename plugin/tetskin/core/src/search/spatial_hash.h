@@ -48,7 +48,7 @@ class SpatialHash {
   std::size_t tableSize() const { return cellStart_.size() - 1; }
   const Frame& frame() const { return frame_; }
 
-  /// By entry: index of the point, and its coordinates in the frame, correctly rounded but for a double's last bits.
+  /// By entry: index of the point, and its coordinates in the frame, correctly rounded except for a double's last bits.
   const std::uint32_t* ids() const { return ids_.data(); }
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
@@ -68,7 +68,7 @@ class SpatialHash {
     std::uint32_t first;
     std::uint32_t count;
   };
-  /// Cells of a table: so many that most hold one point or none; and the fewest.
+  /// Cells of a table per point, so that most hold one point or none; and the smallest number of cells.
   static constexpr std::size_t kCellsPerPoint = 4, kMinCells = 4096;
 
   void chooseTable(std::size_t maxCells);

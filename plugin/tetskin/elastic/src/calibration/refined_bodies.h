@@ -29,7 +29,6 @@ class RefinedBodies {
 
   bool ok() const { return direct_.ok(); }
   std::size_t levelCount() const { return levels_.size() + 1; }
-  /// The cage itself.
   const Cage& cage() const { return cage_; }
   double poissonRatio() const { return poissonRatio_; }
   const RestBody& coarsest() const { return coarsest_; }

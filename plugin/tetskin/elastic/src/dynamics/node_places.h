@@ -72,7 +72,6 @@ class NodePlaces {
   void visitState(StateStream& stream);
 
  private:
-  /// The frame of a component.
   struct Frame {
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
     Eigen::Vector3d lag = Eigen::Vector3d::Zero();  ///< how far its rotation was behind, for the next step

@@ -117,7 +117,6 @@ TETSKIN_INLINE Lanes<S, W> squareRoots(const Lanes<S, W>& v) {
   }
 }
 
-/// True if any lane is above the limit.
 template <class S, int W>
 TETSKIN_INLINE bool anyAbove(const Lanes<S, W>& v, S limit) {
   if constexpr (W == 1) {

@@ -34,9 +34,9 @@ struct BlockPattern {
   std::vector<std::uint32_t> terms;                          ///< 16 per term
   std::vector<std::uint32_t> quadraticSums, quadraticTerms;  ///< the same of quadratic tets
   std::vector<std::uint32_t>
-      rangeChunks;                    ///< by range, and the end: its first chunk; rows of a range are no neighbours
+      rangeChunks;                    ///< by range, and the end: its first chunk; rows of a range are not neighbours
   std::vector<std::uint32_t> tasks;   ///< by task, and the end: its first range; they are swept in this order
-  std::vector<std::uint32_t> phases;  ///< by phase, and the end: its first task; rows of two tasks are no neighbours
+  std::vector<std::uint32_t> phases;  ///< by phase, and the end: its first task; rows of two tasks are not neighbours
 
   std::size_t chunkCount() const { return starts.size() / 2; }
   std::size_t slotCount() const { return chunkCount() * kernels::kGroup; }
@@ -104,7 +104,6 @@ class TETSKIN_ELASTIC_API BlockMatrix {
 
   /// The inverse of the node's diagonal block, as if it were not fixed: xx xy xz yy yz zz. 0 if it is pinned.
   void freeInverse(std::size_t node, S out[6]) const;
-  /// The node's diagonal block.
   void diagonal(std::size_t node, S out[6]) const;
 
   /// Multiplies A with points, 4 scalars per slot. If A is as it was assembled, a translation meets only its masses, to

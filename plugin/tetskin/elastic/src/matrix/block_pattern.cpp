@@ -27,7 +27,6 @@ struct Term {
   std::uint32_t own = 0, other = 0;
 };
 
-/// The terms of a block.
 struct Terms {
   std::vector<Term> linear, quadratic;
 

@@ -17,8 +17,7 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Most groups: with six motions each, this gives as many unknowns as a dense factorisation can process in a few
-/// seconds.
+/// Most groups: six motions of each give as many unknowns as a dense factorisation can process in a few seconds.
 constexpr int kMaxGroups = 400;
 /// Smallest number of nodes per group.
 constexpr std::size_t kNodesOfGroup = 8;
@@ -120,8 +119,8 @@ TwoLevelSolver::TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eig
   const SparseRows motions = motionsOf(aggregate(stiffness.neighbours(), desired), nodes, free);
   const SparseRows sparse = stiffness.sparse();
 
-  // One Jacobi step: the motions of neighbouring groups blend into each other, which makes them soft. P = (1 - 4/3 D^-1
-  // K / largest) P0
+  // One Jacobi step: the motions of neighbouring groups blend into each other, which makes them soft.
+  // P = (1 - 4/3 D^-1 K / largest) P0
   SparseRows inverse(sparse.rows(), sparse.rows());
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t n = 0; n < nodes.size(); ++n) {

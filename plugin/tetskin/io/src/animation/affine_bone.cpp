@@ -28,7 +28,6 @@ bool orthogonalise(int p, int q, Eigen::Matrix3d& b, Eigen::Matrix3d& v) {
   return true;
 }
 
-/// A unit vector perpendicular to a unit vector.
 Eigen::Vector3d perpendicular(const Eigen::Vector3d& unit) {
   return unit.unitOrthogonal();
 }

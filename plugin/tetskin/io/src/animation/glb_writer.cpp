@@ -23,8 +23,7 @@ using io::GlbNode;
 /// Approximate bytes of the text that describes one moving property, and one node.
 constexpr double kChannelText = 200.0, kNodeText = 110.0;
 
-/// The reference point of positions: the centre of a box that is far from the origin for its size, otherwise the
-/// origin.
+/// Reference point of positions: the centre of a box that is far from the origin for its size, otherwise the origin.
 Eigen::Vector3d originFor(const Box3& box) {
   constexpr double kFarOut = 100.0;
   if (box.isEmpty() || box.center().norm() <= kFarOut * box.sizes().maxCoeff()) return Eigen::Vector3d::Zero();

@@ -13,7 +13,6 @@ namespace tetskin::io {
 
 namespace {
 
-/// An edge that is halved.
 struct HalvedEdge {
   std::array<int, 2> ends;  ///< ascending
   int middle;

@@ -11,7 +11,6 @@
 
 namespace tetskin::io {
 
-/// A tet of second order.
 struct HighOrderTet {
   std::size_t tet = 0;           ///< its index among all tets of the file
   std::array<int, 6> middles{};  ///< the nodes on the edges 01, 02, 03, 12, 13, 23

@@ -48,7 +48,6 @@ struct FrameMotion {
   btVector3 mean{0, 0, 0}, before{0, 0, 0};  ///< mean velocities of the last frame and of the one before
   btScalar seconds = 0, secondsBefore = 0;   ///< of these frames
 
-  /// The curve of the next frame.
   FrameCurve next(const btVector3& way, btScalar duration) {
     assert(duration > 0);
     const btVector3 now = way / duration;

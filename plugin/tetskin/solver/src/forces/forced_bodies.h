@@ -17,7 +17,6 @@ namespace tetskin::bullet_detail {
 
 class WorldStream;
 
-/// The material of a body.
 struct ElasticMaterial {
   double youngsModulus = 0.0;  ///< in pressure units, above 0
   double poissonRatio = 0.3;   ///< 0 to below 0.5

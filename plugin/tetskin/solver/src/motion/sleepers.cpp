@@ -49,7 +49,6 @@ Neighbour neighbourOf(const btCollisionObject& object) {
   return neighbour;
 }
 
-/// True if a neighbour has changed.
 bool wasChanged(const Neighbour& before, const Neighbour& now) {
   if (before.isObstacle != now.isObstacle) return true;
   if (!before.stands || !now.stands) return false;

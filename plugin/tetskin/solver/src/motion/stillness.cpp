@@ -75,7 +75,7 @@ std::vector<btSoftBody*> Stillness::fallAsleep(const std::vector<btDiscreteDynam
   return asleep;
 }
 
-/// The islands are those of the step before. A soft body that has to wait for others must not be put to sleep by Bullet
+/// The islands are those of the last step. A soft body that has to wait for others must not be put to sleep by Bullet
 /// either, should its island differ in this step.
 void Stillness::sleepByIslands(const btCollisionObjectArray& objects, std::vector<btSoftBody*>& asleep) {
   std::unordered_map<int, bool> awake;  // by island with a soft body that has waited long enough

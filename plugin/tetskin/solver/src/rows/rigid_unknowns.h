@@ -26,7 +26,6 @@ class btRigidBody;
 
 namespace tetskin::bullet_detail {
 
-/// A point of a rigid object.
 struct RigidPoint {
   int unknown = -1;   ///< index in RigidUnknowns; below 0: the object's motion is prescribed
   btVector3 arm;      ///< of a rigid body: from its centre of mass

@@ -59,7 +59,6 @@ class BodyContacts {
   /// Forgets an object that is no longer near, or not at present.
   void forget(const btCollisionObject& object);
 
-  /// Forgets all objects.
   void forgetAll();
   /// Call it after the body and all objects have been moved by as much.
   void shift(const btVector3& by);

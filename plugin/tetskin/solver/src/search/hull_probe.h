@@ -15,7 +15,6 @@
 
 namespace tetskin::bullet_detail {
 
-/// The planes of the faces.
 struct FacePlanes {
   std::vector<btScalar> x, y, z, offsets;
 

@@ -47,7 +47,6 @@ inline double tetSize(const TetCorners& p) {
   return std::sqrt(squared);
 }
 
-/// Sum of the lengths of the six edges.
 inline double edgeSum(const TetCorners& p) {
   double sum = 0.0;
   for (int a = 0; a < 3; ++a) {
