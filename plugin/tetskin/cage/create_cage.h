@@ -69,8 +69,8 @@ struct TETSKIN_CAGE_API CageReport {
 /// each region (Molino, Bao, Fedkiw, "A Virtual Node Algorithm for Changing Mesh Topology During Simulation", SIGGRAPH
 /// 2004; see Cage). Regions thicker than an eighth of a tet, and farther apart than that, are never fused, except where
 /// a cleft ends within a tet; what triangles of the mesh connect is never separated. Components of the mesh that lie
-/// inside each other, or nearer than an eighth of a tet, stay together. Without duplicates, and with `duplicateElements
-/// = false`, regions nearer to each other than a tet are fused; the boundary is then a manifold, no two nodes share a
+/// inside each other, or nearer than an eighth of a tet, stay together. Without duplicates, and if `duplicateElements`
+/// is false, regions nearer to each other than a tet are fused; the boundary is then a manifold, no two nodes share a
 /// position, and a triangle between vertices of the mesh lies wholly inside an unfitted cage. It may protrude by a few
 /// hundredths of the spacing from a cage that is fitted or has duplicates.
 ///

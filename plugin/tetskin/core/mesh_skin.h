@@ -186,8 +186,8 @@ class TETSKIN_CORE_API MeshSkin {
   template <class Options, class = std::enable_if_t<std::is_same_v<Options, SkinOptions>>>
   Status bind(Binding binding, PointView<const Scalar> nodes, const Options& options) = delete;
 
-  /// Computes positions, normals and tangents for these node positions, nodeCount x 3, world space. Cost O(vertexCount
-  /// + nodeCount); allocates nothing. On an error the results of the last update stay.
+  /// Computes positions, normals and tangents for these node positions, nodeCount x 3, world space. Allocates nothing;
+  /// cost O(vertexCount + nodeCount). On an error the results of the last update stay.
   /// Errors: NonFinite, see `firstNonFiniteNode`; TopologyChanged for another number of nodes; Unbound.
   StatusCode update(PointView<const Scalar> nodes);
   /// Updates with the nodes between two recorded steps, see StepHistory::nodesAt; errors as for the other `update`.
