@@ -367,7 +367,7 @@ TEST(LoadGltf, NamesWhatIsNoGltf) {
     EXPECT_NE(status.message.find("m.gltf: "), std::string::npos) << status.message;
   }
   for (const char* text : {"", " \n", "solid", "\xef\xbb\xbf[1]", "GLTF"}) {
-    expectError(loadMeshText("m.glb", text), kMalformed, {"m.glb: is no glTF 2.0", "'glTF'", "'{'"});
+    expectError(loadMeshText("m.glb", text), kMalformed, {"m.glb: is not glTF 2.0", "'glTF'", "'{'"});
   }
   const auto glb = [](std::uint32_t scene) { return "glTF" + raw<std::uint32_t>({2, 24, scene}) + "JSON" + "{}  "; };
   expectError(loadMeshText("m.glb", glb(2000000000)), kMalformed,
@@ -376,7 +376,7 @@ TEST(LoadGltf, NamesWhatIsNoGltf) {
   expectError(loadMeshText("m.glb", glb(4)), StatusCode::Empty, {"m.glb: has no triangles"});
   expectError(loadMeshText("m.glb", "glTF"), kMalformed, {"m.glb: ends within the header"});
   expectError(loadMeshText("m.gltf", R"({"asset": {"version": "1.0"}, "meshes": {}})"), kUnsupportedFormat,
-              {"m.gltf: is of glTF 1.0", "save it as glTF 2.0"});
+              {"m.gltf: is glTF 1.0", "save it as glTF 2.0"});
 }
 
 TEST(LoadGltf, SurvivesDamage) {

@@ -38,7 +38,7 @@ TEST(LoadMesh, NamesAMissingFileAndAFolder) {
 
 TEST(LoadMesh, NamesFormatsThatAreNotRead) {
   expectError(loadMeshText("m.xyzzy", "text"), kUnsupportedFormat, {"m.xyzzy", "'.xyzzy'", "convert"});
-  expectError(loadMeshText("m.3mf", "PK"), kUnsupportedFormat, {"m.3mf: packages of 3MF", "save the model as STL"});
+  expectError(loadMeshText("m.3mf", "PK"), kUnsupportedFormat, {"m.3mf: 3MF packages", "save the model as STL"});
   expectError(loadMeshText("mesh", "text"), kUnsupportedFormat, {"mesh: ", "no file name extension"});
 }
 

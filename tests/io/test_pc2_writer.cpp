@@ -84,7 +84,7 @@ TEST(Pc2Writer, RefusesWhatItCannotHold) {
   expectError(writer.finish(), StatusCode::Empty, {"a.pc2", "without frames"});
   EXPECT_EQ(folder.fileCount(), 0u);
 #ifndef _WIN32
-  expectError(Pc2Writer::create("/dev/null", 2), StatusCode::FileNotWritable, {"no regular file"});
+  expectError(Pc2Writer::create("/dev/null", 2), StatusCode::FileNotWritable, {"not a regular file"});
 #endif
   expectError(Pc2Writer::create(folder.path("no/a.pc2"), 2), StatusCode::FileNotWritable, {"no/a.pc2"});
 }

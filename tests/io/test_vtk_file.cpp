@@ -75,7 +75,7 @@ TEST(LoadVtk, SkipsAndCountsWhatIsNoTet) {
       loadVtk(kVtkHead + kPoints + "CELLS 3 14\n3 0 1 2\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5\n10\n10\n", &report));
   EXPECT_EQ(report.skippedCells, 1u);
   EXPECT_EQ(report.quadraticTets, 0u);
-  EXPECT_EQ(report.describe(), "1 cells that are no tets were skipped");
+  EXPECT_EQ(report.describe(), "1 cells that are not tets were skipped");
 }
 
 /// A tet and the middles of its edges, between them, and a node that no cell names.

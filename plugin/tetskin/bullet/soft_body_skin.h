@@ -15,7 +15,7 @@ namespace bullet_detail {
 struct NodeMoves;
 }
 
-/// Data that skins of several bodies with one cage can share: see `SoftBodySkin::binding`.
+/// Data that skins of several bodies with the same cage can share: see `SoftBodySkin::binding`.
 using SoftBodyBinding = SkinBinding<btScalar>;
 
 /// A render mesh carried by a soft body: bind once at rest, update after each step.
@@ -26,13 +26,13 @@ using SoftBodyBinding = SkinBinding<btScalar>;
 ///     if (world->stepSimulation(dt, 4, dt / 4) > 0) status = skin.update();
 ///
 /// Works in every Bullet world and for a body in none; a skin only reads its body. Update after stepSimulation, not in
-/// a tick callback: at no callback are the positions final in all worlds. A body that was moved, scaled or teleported
-/// by hand needs only the next update. Several skins may share a body, and several bodies a binding. The body must
-/// outlive the skin's last update: once it is destroyed, `update`, `recordStep`, `markTeleported` and
-/// `setVisible(true)` read freed memory, unless `createSoftBody` or `DeformableBody` made it, which skins notice. All
-/// other functions may be called, including `bind` to another body. A skin can be moved, not copied.
+/// a tick callback: no callback sees final positions in all worlds. A body that was moved, scaled or teleported by hand
+/// needs only the next update. Several skins may share a body, and several bodies a binding. The body must outlive the
+/// skin's last update: once it is destroyed, `update`, `recordStep`, `markTeleported` and `setVisible(true)` read freed
+/// memory, unless the body was made by `createSoftBody` or `DeformableBody`, which skins notice. All other functions
+/// may still be called, including `bind` to another body. A skin can be moved, not copied.
 ///
-/// An application that draws at another rate than it steps records each step, and draws between the last two; it
+/// An application whose frame rate differs from its step rate records each step, and draws between the last two; it
 /// manages the time itself, and the surface is then one step behind:
 ///
 ///     if (world->stepSimulation(step, 4, step / 4) > 0) skin.recordStep();  // as often as the time requires
@@ -44,7 +44,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   SoftBodySkin(SoftBodySkin&&) = default;
   SoftBodySkin& operator=(SoftBodySkin&&) = default;
 
-  /// Embeds the mesh in the rest cage and updates once.
+  /// Embeds the mesh in the rest cage, and updates once.
   ///
   /// body      has the cage's nodes, in the cage's order, at any positions; not owned
   /// restCage  rest space, preferably near the origin; its tets are used, not the body's; not kept
@@ -57,61 +57,61 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// Overload for vertices alone, vertexCount x 3, rest space: no triangles, hence no recomputed normals.
   Result<EmbedReport> bind(const btSoftBody& body, const Cage& restCage, PointView<const double> vertices,
                            const SkinOptions& options = {});
-  /// Overload that uses the body's current nodes as rest shape: the mesh must fit the body in world space. Refused with
-  /// IndexOutOfRange if Bullet's tets have dangling pointers, as after nodes were appended.
+  /// Overload that uses the body's current nodes as rest shape: the mesh must fit the body in world space. Error:
+  /// IndexOutOfRange if Bullet's tets have dangling pointers, as they do after nodes were appended.
   Result<EmbedReport> bind(const btSoftBody& body, const TriangleMesh& mesh, const SkinOptions& options = {});
   /// Shares an existing binding, such as another skin's. Errors: those of `MeshSkin::bind` for a binding.
   Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding,
               const InstanceOptions& options = {});
-  /// Deleted: the options of the surface were given when the binding was created; pass InstanceOptions.
+  /// Deleted: the options of the surface were fixed when the binding was created; pass InstanceOptions.
   template <class Options, class = std::enable_if_t<std::is_same_v<Options, SkinOptions>>>
   Status bind(const btSoftBody& body, std::shared_ptr<const SoftBodyBinding> binding, const Options& options) = delete;
 
-  /// Computes the current positions, and normals if requested. Cost O(vertexCount + nodeCount); allocates nothing. For
-  /// a sleeping body in a world of `DeformableSolver` only a few nodes are read; in other worlds, and in none, all, and
-  /// one that has fallen asleep is updated once more. For a hidden skin nothing is read.
+  /// Computes the current positions, and normals if requested. Cost O(vertexCount + nodeCount); allocates nothing. A
+  /// sleeping body costs only a few nodes in a world of `DeformableSolver`; in other worlds, and in none, all nodes are
+  /// read, and a body that has fallen asleep is updated once more. A hidden skin reads nothing.
   /// alpha    interpolation between the last two recorded steps: 0 is the previous one, 1 the body's current nodes;
-  ///          clamped to this range. NaN counts as 1, and so does any value if there is nothing to interpolate: see
+  ///          clamped to this range. NaN counts as 1, as does any value if there is nothing to interpolate: see
   ///          `recordStep`
-  /// Returns  Ok, Asleep, Hidden; or, without any change, Unbound, BodyDeleted (told for bodies of `createSoftBody` and
+  /// Returns  Ok, Asleep, Hidden; or, without any change, Unbound, BodyDeleted (only for bodies of `createSoftBody` and
   ///          `DeformableBody`), TopologyChanged, NonFinite
   StatusCode update(btScalar alpha = 1);
 
-  /// Updates several skins, and prefetches the data of the next ones: with many sleeping bodies, waiting for
-  /// memory is most of the cost. Returns how many were updated.
+  /// Updates several skins, prefetching the data of the next ones: with many sleeping bodies, waiting for memory is
+  /// most of the cost. Returns how many were updated.
   /// skins     `count` skins, not null, of any bodies
   /// statuses  `count` results of `update`; or null
   /// alpha     as for `update`
-  /// threads   divide the skins among themselves; then no skin may have been bound with the same `threads`, as these
-  ///           would divide one skin from within a task. Results are the same with any number; or null
+  /// threads   divide the skins among themselves; or null. No skin may then have been bound with the same `threads`, as
+  ///           they would divide one skin from within a task. Results are the same with any number of threads
   static std::size_t updateAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses = nullptr,
                                btScalar alpha = 1, ParallelFor* threads = nullptr);
 
-  /// Records the nodes, for updates between this step and the next: call it once after each stepSimulation that
+  /// Records the nodes, for updates between this step and the next. Call it once after each stepSimulation that
   /// returned above 0, before any update. Any number of updates may follow, with alphas in any order.
   ///
   /// In these cases updates show the body's current state, whatever alpha is: after the first recorded step; after
   /// `bind`, `markTeleported` and `setVisible(true)`, until the next recorded step; after the recorded step that finds
   /// a sleeping body awake, as its motion in between was not observed; after an update has returned TopologyChanged,
-  /// until two more steps are recorded; and where the nodes of this step, or of the previous one, are not finite. A
-  /// body that falls asleep is drawn in between until the next step is recorded, and is skipped as soon as an update
-  /// has shown it at its final position.
+  /// until two more steps are recorded; and if the nodes of this step, or of the previous one, are not finite. A body
+  /// that falls asleep is drawn interpolated until the next step is recorded, and is skipped as soon as an update has
+  /// shown it at its final position.
   ///
   /// Cost  O(nodeCount), and two copies of the nodes from the first call on; nothing for a body that stays asleep, nor
   ///       for a hidden skin. Without calls nothing is stored, and alpha has no effect
   void recordStep();
 
-  /// The next update will not skip a sleeping body. Needed only where the application has written the m_x of single
-  /// nodes of a body in a world of `DeformableSolver`, and wants to see it before the next step, which finds it out and
-  /// wakes the body. There, steps, `translate`, `rotate`, `transform`, `scale` and snapshots are counted; for the rest,
-  /// four nodes that are not in one plane are compared: every affine motion of the whole body moves one of them.
+  /// The next update will not skip a sleeping body. Needed only if the application has written the m_x of single nodes
+  /// of a body in a world of `DeformableSolver`, and wants to see it before the next step, which would notice it and
+  /// wake the body. In such a world, steps, `translate`, `rotate`, `transform`, `scale` and snapshots are counted; to
+  /// detect anything else, four nodes that are not in one plane are compared: every affine motion of the whole body
+  /// moves one of them.
   void markMoved() { moved_ = true; }
-  /// Call this after moving a body by hand, asleep or awake, to a position where it shall appear at once: updates do
-  /// not show it in between, and the next one has no motion (see `previousPositions`). Without it, the next recorded
+  /// Call this after moving a body by hand, asleep or awake, to a position where it should appear at once: updates then
+  /// do not interpolate to it, and the next one has no motion (see `previousPositions`). Without it, the next recorded
   /// step is drawn as if the body had moved there in that step. Cost O(nodeCount).
   void markTeleported();
-  /// Shows or hides the skin. A hidden skin is not updated; when shown again, it is updated at once. Visible by
-  /// default.
+  /// Shows or hides the skin. A hidden skin is not updated; showing it again updates it at once. Visible by default.
   void setVisible(bool visible);
   /// True if the skin is visible, see `setVisible`.
   bool visible() const { return visible_; }
@@ -119,9 +119,9 @@ class TETSKIN_BULLET_API SoftBodySkin {
   /// vertexCount current positions, world space minus the origin, in the binding's order. Owned by the skin; empty if
   /// `InstanceOptions::target` is set.
   PointView<const btScalar> positions() const { return skin_.positions(); }
-  /// vertexCount positions of the previous update, whatever its alpha; empty if not requested: see MeshSkin. Equal to
-  /// the current ones after `bind`, after any update that was skipped (a sleeping body has no motion), after the one
-  /// that follows a teleport, and when shown again. In frames without a call of `update` there is no motion either.
+  /// vertexCount positions of the previous update, whatever its alpha; empty if not requested: see MeshSkin. They equal
+  /// the current ones after `bind`, after any update that was skipped (a sleeping body has no motion), after the update
+  /// that follows a teleport, and when shown again. Frames without a call of `update` have no motion either.
   PointView<const btScalar> previousPositions() const { return skin_.previousPositions(); }
   /// vertexCount current unit normals in the binding's order; empty if not requested, or if `normalTarget` is set.
   PointView<const float> normals() const { return skin_.normals(); }
@@ -129,13 +129,13 @@ class TETSKIN_BULLET_API SoftBodySkin {
   PointView<const float> tangents() const { return skin_.tangents(); }
   /// Bounding box of the positions, for culling. An extrapolated vertex may lie outside the soft body's own box.
   const Box3& bounds() const { return skin_.bounds(); }
-  /// The binding, to be shared; null before a successful bind.
+  /// The binding, for sharing; null before a successful bind.
   std::shared_ptr<const SoftBodyBinding> binding() const { return skin_.binding(); }
   /// The body that carries the skin; null before a successful bind.
   const btSoftBody* body() const { return body_; }
   /// The interpolation in use: Linear also if `disableQuadratic` was set, and before a successful bind.
   Interpolation interpolation() const { return skin_.interpolation(); }
-  /// Position of a node as used by `update(alpha)`, world space. The body must exist, with the nodes it had.
+  /// Position of a node as used by `update(alpha)`, world space. The body must exist, with the same nodes.
   btVector3 nodeAt(int node, btScalar alpha = 1) const;
   /// Index of the first node that was not finite, or beyond Limits::kMaxCoordinate, in the last update that returned
   /// NonFinite.
@@ -145,7 +145,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   Status setOrigin(const btVector3& origin);
 
  private:
-  /// A node position at the last update, of a body whose moves are counted.
+  /// A node's position at the last update, for a body whose moves are counted.
   struct Sample {
     int node = 0;
     btScalar position[3] = {};
@@ -166,7 +166,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   void fetchBody() const;
   void fetchNodes() const;
 
-  // What a sleeping or hidden body needs comes first and side by side: its cost is that of fetching it from memory.
+  // The data of a sleeping or hidden body comes first and side by side: its cost is that of fetching it from memory.
   const btSoftBody* body_ = nullptr;
   int nodeCount_ = 0;
   int tetCount_ = 0;
@@ -176,7 +176,7 @@ class TETSKIN_BULLET_API SoftBodySkin {
   bool between_ = false;                             ///< there are two recorded steps to interpolate between
   bool sleeps_ = false;                              ///< the body slept when the last step was recorded
   bool teleported_ = false;                          ///< the next update counts as no motion
-  const bullet_detail::NodeMoves* moves_ = nullptr;  ///< null if nothing tells whether the body still exists
+  const bullet_detail::NodeMoves* moves_ = nullptr;  ///< null if the body's destruction cannot be noticed
   std::weak_ptr<const bullet_detail::NodeMoves> life_;  ///< of `moves_`
   std::uint64_t seen_ = 0;                              ///< at the last update: number of moves, or hash of all nodes
   std::array<Sample, 4> samples_;

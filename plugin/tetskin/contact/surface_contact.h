@@ -19,53 +19,53 @@ struct SurfaceContactOptions {
   /// Distance kept between the surface and rigid bodies, world length, 0 or more; not given: 0.2 % of the body's size
   /// (largest side of its box).
   std::optional<double> margin;
-  /// A `sampleSpacing`: vertices alone collide, so that what is thinner than triangles are large may pass between them.
+  /// A `sampleSpacing`: only vertices collide, so objects smaller than the triangles may pass between them.
   static constexpr double kNoSamples = std::numeric_limits<double>::infinity();
-  /// Spacing of samples, in rest units, above 0: triangles with longer edges get samples no farther from each other,
-  /// which collide as vertices do. At most 10,000,000 samples. Not given: triangles with edges longer than a quarter of
-  /// the mean edge of the tets that carry their corners get samples an eighth of it apart, or nearer, so that nothing
-  /// half as large as such a tet passes through the surface.
+  /// Spacing of samples, in rest units, above 0: triangles with longer edges get samples at most this far apart, which
+  /// collide like vertices. At most 10,000,000 samples. Not given: triangles with edges longer than a quarter of the
+  /// mean edge of the tets that carry their corners get samples at most an eighth of it apart, so that nothing half as
+  /// large as such a tet passes through the surface.
   std::optional<double> sampleSpacing;
 };
 
-/// A surface point in contact with a rigid body, or so near that contact may arise within the substep.
+/// A surface point in contact with a rigid body, or so near that it may come into contact within the substep.
 struct SurfaceContactPoint {
   btVector3 point;   ///< on the surface, world space, at the last collision detection
   btVector3 normal;  ///< unit length, world space, away from the rigid body
   btScalar distance =
       0;  ///< world length at the beginning of the substep, minus the margin; negative: closer than the margin
   const btCollisionObject* object = nullptr;  ///< the rigid body, or the link of a multibody
-  /// Impulse on the soft body in that substep (force times seconds, world space); the object gets the opposite. 0
-  /// without a contact force.
+  /// Impulse on the soft body in that substep (force times seconds, world space); the object gets the opposite. 0 if
+  /// there was no contact force.
   btVector3 impulse;
 };
 
 /// Contact of a soft body with rigid ones at its visual surface, instead of at the nodes of its cage, which lie outside
 /// of it. The constrained points are points of the surface: the `DeformableSolver` solves normal and friction forces
-/// simultaneously with the rigid bodies, so that force and counterforce act at one point.
+/// simultaneously with the rigid bodies, so that action and reaction have the same point of application.
 ///
-/// Needs a deformable world with a `DeformableSolver`, and nothing else: the body collides with static, kinematic and
-/// dynamic bodies and links of multibodies, in whatever order they were added, as groups, masks, the world's overlap
-/// filter callback, setIgnoreCollisionCheck, CF_NO_CONTACT_RESPONSE of either and the body's `m_cfg.collisions` (any of
-/// RVSmask) allow, evaluated in each step. If they forbid a pair at the time its boxes begin to overlap, Bullet does
-/// not see it until the world's refreshBroadphaseProxy. A world's contactTest reports nothing for the body, and leaves
-/// its contacts unchanged.
+/// Needs only a deformable world with a `DeformableSolver`: the body collides with static, kinematic and dynamic bodies
+/// and links of multibodies, in whatever order they were added, as groups, masks, the world's overlap filter callback,
+/// setIgnoreCollisionCheck, CF_NO_CONTACT_RESPONSE of either and the body's `m_cfg.collisions` (any of RVSmask) allow,
+/// evaluated in each step. If they forbid a pair at the time its boxes begin to overlap, Bullet does not see it until
+/// the world's refreshBroadphaseProxy. A world's contactTest reports nothing for the body, and leaves its contacts
+/// unchanged.
 ///
-/// Planes, boxes, spheres, capsules and cylinders are exact; convex hulls by their faces as drawn, that is without
-/// their margin; other convex shapes by Bullet's GJK; meshes and other concave shapes by their triangles, on the side
-/// from which these look counter-clockwise, mirrored with the shape where its scaling is negative; height fields on the
-/// side of their up axis, whatever their winding; compounds by their children. Friction is Bullet's. Contact uses the
+/// Planes, boxes, spheres, capsules and cylinders are exact. Convex hulls collide with their faces as drawn, without
+/// their margin; other convex shapes by Bullet's GJK. Meshes and other concave shapes collide on the side from which
+/// their triangles are counter-clockwise; a negative scaling mirrors that side. Height fields collide on the side of
+/// their up axis, whatever their winding; compounds through their children. Friction is Bullet's. Contact uses the
 /// surface of linear skinning: a quadratic skin is drawn up to some thousandths of the body's size away from it, more
 /// with few tets and under loads.
 ///
-/// Lifetime  Contact ends with this object: the body then collides with rigid ones at its nodes again, as it does in a
-///           world with another dispatcher. This object, the body, the world, rigid bodies and their shapes may be
-///           destroyed in any order, each as Bullet allows it, also at the end of the program, by destructors of
+/// Lifetime  Contact ends when this object is destroyed: the body then collides with rigid bodies at its nodes again,
+///           as it does in a world with another dispatcher. This object, the body, the world, rigid bodies and their
+///           shapes may be destroyed in any order that Bullet allows, also at the end of the program, by destructors of
 ///           globals.
-/// Cost      per substep: O(nodes) for all obstacles whose boxes overlap the body's; for each that is near, O(vertices
-///           near it), and of the samples those where it is both near and curved: over something flat, a triangle's
-///           corners are enough. Children of a compound are found by its tree. Of the points of a tet, or the samples
-///           of a triangle, that touch a shape four are solved for, and as many more as are 2 % of the body's size
+/// Cost      per substep: O(nodes) for all obstacles whose boxes overlap the body's; for each obstacle nearby,
+///           O(vertices near it), plus the samples where it is both near and curved (over something flat, a triangle's
+///           corners are enough). Children of a compound are found by its tree. If more than four points of a tet, or
+///           samples of a triangle, touch a shape, four are solved for, plus those that are 2 % of the body's size
 ///           apart, up to 64 and 6. Samples are not stored
 class TETSKIN_CONTACT_API SurfaceContact {
  public:
@@ -76,9 +76,9 @@ class TETSKIN_CONTACT_API SurfaceContact {
   /// body     from `createSoftBody` or of a `DeformableBody`, without another SurfaceContact
   /// binding  of the mesh in the body's cage, such as a skin's; not kept
   /// mesh     the mesh of the binding; not kept
-  /// Errors   InvalidOption: options out of range, a world with another solver, a body that is not in the world, has a
-  ///          contact already, or was not created as required above; Empty: no vertices; SizeMismatch: binding, mesh
-  ///          and body do not belong together
+  /// Errors   InvalidOption: options out of range; a world with another solver; a body that is not in the world,
+  ///          already has a SurfaceContact, or was not created as required above; Empty: no vertices; SizeMismatch:
+  ///          binding, mesh and body do not belong together
   static Result<std::unique_ptr<SurfaceContact>> add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                                                      const SoftBodyBinding& binding, const TriangleMesh& mesh,
                                                      const SurfaceContactOptions& options = {});
@@ -87,11 +87,11 @@ class TETSKIN_CONTACT_API SurfaceContact {
   SurfaceContact& operator=(const SurfaceContact&) = delete;
 
   /// Contact points of the last substep in which the body was awake, each once, sorted by obstacle; without obstacles
-  /// that have left the world since. Owned by this object, valid until the next call; allocates only if there are more
-  /// than ever before.
+  /// that have since left the world. Owned by this object, valid until the next call; allocates only if there are more
+  /// points than ever before.
   const std::vector<SurfaceContactPoint>& contacts() const;
 
-  /// Number of vertices and samples that can collide: vertices that no triangle uses do not, unless there are no
+  /// Number of vertices and samples that can collide. Vertices that no triangle uses cannot, unless there are no
   /// triangles.
   std::size_t sampleCount() const;
 

@@ -17,46 +17,45 @@ namespace tetskin {
 /// Number of small tets per tet in `Cage::fineVolumeFraction`: those of two uniform refinements, 8 x 8.
 constexpr std::size_t kFineTets = 64;
 
-/// A cage at rest, with what is known about the mesh embedded in it. Where regions of the mesh are nearer to each other
+/// A cage at rest, and what is known about the mesh embedded in it. Where regions of the mesh are nearer to each other
 /// than the size of a tet, the cage has duplicate elements: several copies of a tet at the same position, one for each
-/// region (the virtual-node method). Which copy carries a vertex cannot be found from the vertex's position;
-/// `vertexTets` stores it. Every array may be empty, which means that the property is unknown. A plain TetMesh converts
-/// to such a cage.
+/// region (the virtual-node method). A vertex's position does not tell which copy carries it; `vertexTets` stores it.
+/// Every array may be empty, which means that the property is unknown. A plain TetMesh converts to such a cage.
 ///
-/// To translate or rotate a cage, change `mesh.nodes`; to scale it, use `scaleBy`, since masses are proportional to
+/// To translate or rotate a cage, change `mesh.nodes`; to scale it, use `scaleBy`, because masses are proportional to
 /// volumes.
 struct TETSKIN_CORE_API Cage {
   /// An empty cage, without tets.
   Cage() = default;
-  /// A cage of tets alone: nothing is known about a mesh in them.
+  /// A cage that consists of tets only: nothing is known about a mesh in them.
   Cage(TetMesh tetMesh) : mesh(std::move(tetMesh)) {}  // NOLINT(google-explicit-constructor): nothing is lost
 
   TetMesh mesh;                        ///< nodes and tets, rest space
   std::vector<int> vertexTets;         ///< vertexCount of the mesh: index of the tet that carries each vertex
   std::vector<double> volumeFraction;  ///< tetCount, 0 to 1: fraction of the tet's volume inside the mesh
-  /// tetCount, above 0: multiplies the stiffness, beside volumeFraction; see `calibrate`
+  /// tetCount, above 0: multiplies the stiffness, in addition to volumeFraction; see `calibrate`
   std::vector<double> stiffnessFactor;
   std::vector<double> masses;  ///< nodeCount, above 0, for a density of 1: their sum is the mesh's volume
   std::vector<int> component;  ///< tetCount, from 0: component of the cage, connected through shared nodes
   std::vector<int> sourceTet;  ///< tetCount, from 0: equal for all duplicates of one tet
-  /// tetCount, from -1: number of the quadratic tet that the tet is an eighth of; -1: it is linear. See
+  /// tetCount, from -1: number of the quadratic tet of which the tet is an eighth; -1: the tet is linear. See
   /// `quadraticTets`.
   std::vector<int> quadraticTet;
   /// tetCount x kFineTets, in 255ths: volume fractions after two refinements.
   std::vector<std::uint8_t> fineVolumeFraction;
-  /// `positionsHash` of the mesh that the cage was built for, where it is known.
+  /// `positionsHash` of the mesh for which the cage was built, if known.
   std::optional<std::uint64_t> meshHash;
 
   /// tetCount scale factors of the material's stiffness, from `volumeFraction` (at least Limits::kMinVolumeFraction)
-  /// and `stiffnessFactor`. Empty if they are 1 for all tets.
+  /// and `stiffnessFactor`. Empty if all are 1.
   std::vector<double> stiffnessScale() const;
   /// Multiplies the node positions by the scale, which is above 0, and the masses by its cube.
   void scaleBy(double scale);
   /// True if the cage has duplicate elements.
   bool hasDuplicates() const;
-  /// Checks that this is the mesh that the cage was built for, by vertexCount and `meshHash`, where these are known.
-  /// Pass the mesh as it was loaded: one that was moved together with its cage has another hash. Cost O(vertexCount).
-  /// Error: CageMismatch.
+  /// Checks that this is the mesh for which the cage was built, by vertexCount and `meshHash`, if these are known. Pass
+  /// the mesh as it was loaded: if it was moved together with its cage, its hash differs. Cost O(vertexCount). Error:
+  /// CageMismatch.
   Status checkMesh(const TriangleMesh& surface) const;
 
   /// Index of the tet that holds a point in rest space; parameters and result as for `CageLocator::locate`. Cost O(T
@@ -69,7 +68,7 @@ struct TETSKIN_CORE_API Cage {
 /// Errors: those of `validate(const TetMesh&)`; SizeMismatch, InvalidOption, IndexOutOfRange.
 TETSKIN_CORE_API Status validate(const Cage& cage);
 
-/// Hash of the bits of the positions; triangles do not enter. Cost O(vertexCount).
+/// Hash of the bits of the positions, without the triangles. Cost O(vertexCount).
 TETSKIN_CORE_API std::uint64_t positionsHash(const std::vector<Eigen::Vector3d>& positions);
 
 /// Finds which of several duplicate tets holds a point on or near the mesh's surface, such as a sample on a triangle or
@@ -83,8 +82,8 @@ class TETSKIN_CORE_API CageLocator {
   CageLocator& operator=(CageLocator&&) noexcept = default;  ///< the other one may only be assigned to, or destroyed
 
   /// Index of the tet that holds the point, among those reached through shared faces from the tets of the given
-  /// vertices. If none of them holds it, the tet with the smallest barycentric distance among those visited. For a cage
-  /// without `vertexTets`, the search uses the point's position alone.
+  /// vertices. If none of them holds it, the visited tet with the smallest barycentric distance. For a cage without
+  /// `vertexTets`, the search uses only the point's position.
   /// point         rest space
   /// nearVertices  vertices of the triangle that the point lies on or near; in range
   /// Returns       -1 for a locator that was moved from
@@ -96,13 +95,13 @@ class TETSKIN_CORE_API CageLocator {
   std::shared_ptr<const Impl> impl_;  ///< null: moved from; never shared
 };
 
-// Quadratic tets: ten nodes, whose displacement is a quadratic function between them. They bend as linear tets, which
-// are too stiff, cannot. A cage holds each as the eight linear tets of its uniform refinement, so that whatever reads
-// tets (embedding, contact, picking, Bullet itself) goes on as it does.
+// Quadratic tets: ten nodes, whose displacement is interpolated quadratically. They can bend, where linear tets are too
+// stiff. A cage holds each as the eight linear tets of its uniform refinement, so that everything that reads tets
+// (embedding, contact, picking, Bullet itself) works unchanged.
 
 /// Number of nodes of a quadratic tet.
 constexpr std::size_t kQuadraticNodes = 10;
-/// Number of the linear tets that a quadratic one is made of.
+/// Number of linear tets that make up a quadratic one.
 constexpr std::size_t kSubTets = 8;
 
 /// A quadratic tet of a cage, with straight edges.
@@ -113,18 +112,18 @@ struct QuadraticTet {
 };
 
 /// The quadratic tets that `Cage::quadraticTet` names, by their number; none if it is empty. Cost O(T) for T tets.
-/// cage    its indices are in range
-/// Errors  SizeMismatch: another number of values than tets; InvalidOption: a number below -1, or that leaves one out;
-///         the tets of one number are not eight, or not the uniform refinement of a tet
+/// cage    its indices must be in range
+/// Errors  SizeMismatch: the number of values differs from that of tets; InvalidOption: a number is below -1, or one is
+///         left out, or the tets with one number are not eight, or not the uniform refinement of a tet
 TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cage);
 
-/// Makes a cage of quadratic tets: each tet becomes one, with nodes at the middles of its edges. For meshes that are
-/// filled by their body; a mesh of an eighth of the tets then serves as well as a linear one, and better.
+/// Makes a cage of quadratic tets: each tet becomes one, with nodes at the middles of its edges. For tet meshes that
+/// the body fills completely; one with an eighth of the tets then serves as well as a linear one, or better.
 /// cage      valid (see `validate`), without flat tets and duplicate elements; rest space, any unit.
 ///           Pass a cage and not its `mesh`, which has no fractions: a body of it would have the mass of full
 ///           tets
 /// Returns   a cage of 8 T tets for T tets, of the same mass; the cage's nodes come first, in their order. Volume
-///           fractions are those of the smaller tets, stiffness factors are left out
+///           fractions are those of the smaller tets; stiffness factors are left out
 /// Cost      O(T log T)
 /// Errors    those of `validate(const Cage&)`; InvalidOption: duplicate elements; Degenerate: flat tets; TooLarge: 8 T
 ///           tets are too many

@@ -19,21 +19,21 @@ namespace tetskin {
 /// A point of a cage, given by barycentric weights of its tet's nodes. A value of some 60 bytes (90 in double) that
 /// owns nothing; returned by `Embedding::at`.
 ///
-/// The functions get node data through a callable, so that nodes may be stored in any way: it takes a node index (int)
+/// The functions read node data through a callable, so that nodes may be stored in any way: it takes a node index (int)
 /// and returns a vector (an `Eigen::Matrix<Scalar, 3, 1>` or a `btVector3`, by value or by reference) or a scalar. Node
-/// data and results are in world space, in the units of the data. No function allocates, each calls the callable a few
-/// times per node at most, and none can fail: values that are not finite propagate.
+/// data and results are in world space, in the units of the data. No function allocates, each calls the callable at
+/// most a few times per node, and none can fail: values that are not finite propagate.
 template <class Scalar>
 struct EmbeddedPoint {
   Tet nodes{};                      ///< the tet's nodes, in its order
   std::array<Scalar, 4> weights{};  ///< sum to 1, the fourth being 1 minus the others; outside the tet they extrapolate
-  /// Weights at which forces act: those of the tet's point that is closest at rest; none is below 0, and their sum is 1
-  /// within rounding. With extrapolating weights, a force could accelerate single nodes excessively.
+  /// Weights at which forces act: those of the tet's point that is closest at rest. None is below 0, and their sum is 1
+  /// within rounding. Extrapolating weights could accelerate single nodes excessively.
   std::array<Scalar, 4> clampedWeights{};
   int tet = -1;         ///< index of the tet in the cage
-  bool inside = false;  ///< the point lies in the tet; if not, `clampedWeights` describes another point than `weights`
+  bool inside = false;  ///< the point lies in the tet; if not, `clampedWeights` and `weights` describe different points
 
-  /// Current position of the point: what linear skinning draws. Computed relative to the last node, so that the
+  /// Current position of the point, as linear skinning draws it. Computed relative to the last node, so that the
   /// rounding of weights costs no accuracy far from the origin.
   template <class PositionOf>
   auto position(const PositionOf& positionOf) const {
@@ -50,7 +50,7 @@ struct EmbeddedPoint {
     return weightedSum(weights, velocityOf);
   }
 
-  /// Velocity of the point at `clampedWeights`, where forces act. An impulse does work on this velocity.
+  /// Velocity of the point at `clampedWeights`, where forces act: the velocity on which an impulse does work.
   template <class VelocityOf>
   auto clampedVelocity(const VelocityOf& velocityOf) const {
     return weightedSum(clampedWeights, velocityOf);
@@ -67,7 +67,7 @@ struct EmbeddedPoint {
   }
 
   /// Distributes an impulse to the nodes by the clamped weights. The nodes' linear momentum grows by the impulse and
-  /// their angular momentum by its moment about the point of application, except for what pinned nodes take.
+  /// their angular momentum by its moment about the point of application, except for the part that pinned nodes absorb.
   /// impulse        mass times velocity, world space
   /// inverseMassOf  callable: node index to inverse mass, 0 for a pinned node
   /// change         called as change(node, velocityChange) for each of the 4 nodes
@@ -91,29 +91,29 @@ struct EmbeddedPoint {
 /// How vertices outside the cage are treated.
 struct EmbedOptions {
   OutsideRule outside = OutsideRule::Nearest;  ///< which tet carries them
-  /// Rest units, 0 or more. If a vertex is farther than this from every tet (under Barycentric, from its own tet), the
+  /// Rest units, 0 or more. If a vertex is farther than this from every tet (with Barycentric: from its own tet), the
   /// mesh is refused with OutsideCage and a message, and nothing is embedded.
   double maxDistance = std::numeric_limits<double>::infinity();
 };
 
-/// How well a mesh fits its cage. For a mesh that was refused, it holds what was known up to then. All lengths and
+/// How well a mesh fits its cage. For a mesh that was refused, it holds what was known until then. All lengths and
 /// boxes are in rest space.
 struct TETSKIN_CORE_API EmbedReport {
   std::size_t vertexCount = 0;  ///< inside + outside + unbound
   std::size_t inside = 0;       ///< vertices in some tet
-  std::size_t outside = 0;      ///< vertices in no tet, bound to one nevertheless
+  std::size_t outside = 0;      ///< vertices in no tet, but still bound to one
   std::size_t unbound = 0;      ///< vertices without a tet: all if there is no embedding, otherwise none
   std::size_t mapped = 0;       ///< vertices whose tet was given by `Cage::vertexTets`: all or none
   std::size_t overlapping = 0;  ///< vertices with weights above 1e-6 in two tets or more, without `vertexTets`: the
                                 ///< cage overlaps itself, and the choice of the tet is ambiguous
   std::size_t coincident = 0;   ///< vertices at the position of an earlier one: embedded once, weights copied
   std::size_t flatTets = 0;     ///< tets without volume; never used
-  /// Longest distance from a vertex to the nearest tet; under Barycentric, to its own. By `Cage::vertexTets`, only of
-  /// vertices that triangles use.
+  /// Longest distance from a vertex to the nearest tet; with Barycentric, to its own. With `Cage::vertexTets`, only
+  /// over vertices that triangles use.
   double maxDistance = 0.0;
   std::size_t maxDistanceVertex = 0;                              ///< index of that vertex
   Eigen::Vector3d maxDistancePosition = Eigen::Vector3d::Zero();  ///< rest position of that vertex
-  /// Outside vertices kept on the component of their mesh neighbours, not the nearest one.
+  /// Outside vertices bound to the component of their mesh neighbours instead of the nearest one.
   std::size_t reassignedByConnectivity = 0;
   std::size_t reassignedByWeight = 0;  ///< distinct outside positions whose nearest tet would extrapolate too far
   double maxWeight = 1.0;  ///< largest absolute weight of a vertex, at least 1: amplification of a node's motion
@@ -125,8 +125,8 @@ struct TETSKIN_CORE_API EmbedReport {
   std::size_t candidates = 0;  ///< pairs of a vertex and a tet that were tested
   double milliseconds = 0.0;   ///< wall time of the whole embedding
 
-  /// True if mesh and cage are disjoint, or one is more than Limits::kMaxUnitRatio times the size of the other: they
-  /// are most likely in different units. Known before any search; the embedding is made nevertheless.
+  /// True if mesh and cage are disjoint, or one is more than Limits::kMaxUnitRatio times the size of the other: most
+  /// likely they are in different units. Known before any search; the embedding is still made.
   bool unitsDiffer() const;
   /// The result of `unitsDiffer` as the second half of a sentence; empty if the units do not differ.
   std::string unitsMessage() const;
@@ -149,9 +149,9 @@ enum class VertexOrder {
 
 struct EmbeddingData;
 
-/// A tet and weights for every vertex. Immutable; copies share the data and cost nothing, so that any number of bodies
-/// with the same cage can use it. Vertices are stored grouped by tet, so that a tet's nodes are read once. A *slot* is
-/// an index in that order: first the vertices inside the cage, then those outside.
+/// A tet and weights for every vertex. Immutable; copies share the data and cost nothing, so any number of bodies with
+/// the same cage can use it. Vertices are stored grouped by tet, so that a tet's nodes are read once. A *slot* is an
+/// index in that order: first the vertices inside the cage, then those outside.
 /// Memory: 20 bytes per vertex, 12 more per outside vertex, 24 bytes per occupied tet.
 class TETSKIN_CORE_API Embedding {
  public:
@@ -185,8 +185,8 @@ class TETSKIN_CORE_API Embedding {
   /// cage  the cage that it was made with: a hash of its rest nodes and tets is stored
   /// Cost  O(vertexCount + nodeCount + tetCount)
   std::vector<unsigned char> save(const TetMesh& cage) const;
-  /// Reads back what `save` wrote, bit-identical. Safe for arbitrary bytes. The embedding does not record which mesh it
-  /// was made for: compare vertexCount() with the mesh's, and store the two together.
+  /// Reads what `save` wrote, bit-identical. Safe for arbitrary bytes. The embedding does not record its mesh: compare
+  /// vertexCount() with the mesh's, and store the two together.
   /// bytes   `count` bytes; not kept
   /// cage    the cage that it was saved with, every node bit-identical
   /// Cost    O(vertexCount + nodeCount + tetCount)
@@ -202,21 +202,21 @@ class TETSKIN_CORE_API Embedding {
 
 /// Finds the tet and the weights of every vertex, exactly as testing all pairs would:
 /// - A vertex in one or more tets is bound to the one with the lowest index.
-/// - Any other vertex is bound to a tet chosen by `options.outside`, and its weights extrapolate, so that the rest
-///   shape is reproduced. `Nearest`: among the tets whose distance is within 1e-6 of their size of the shortest, the
-///   one with the smallest barycentric distance, then the lowest index. `Barycentric`: the one with the smallest
-///   barycentric distance, then the lowest index. A vertex within 2^-49 of the cage's largest coordinate counts as
-///   inside.
-/// - Under `Nearest`, an outside vertex with an absolute weight above 4 is reassigned: among the tets no farther than
+/// - Any other vertex is bound to a tet chosen by `options.outside`; its weights extrapolate, so that the rest shape is
+///   reproduced. `Nearest`: among the tets whose distance is within 1e-6 of their size of the shortest, the one with
+///   the smallest barycentric distance, then the lowest index. `Barycentric`: the one with the smallest barycentric
+///   distance, then the lowest index. A vertex within 2^-49 of the cage's largest coordinate counts as inside.
+/// - With `Nearest`, an outside vertex with an absolute weight above 4 is reassigned: among the tets no farther than
 ///   the shortest distance plus one mean edge of the cage, it takes the one whose largest absolute weight is smallest,
-///   then the lowest index. So slivers carry no vertex that a tet nearby carries well.
+///   then the lowest index. So slivers carry no vertex that a nearby tet carries well.
 ///
 /// Vertices at the same position get identical weights. Decisions are made in double; nothing depends on the unit.
 ///
 /// cage      valid (see `validate`), rest space; either orientation
 /// vertices  vertexCount x 3, rest space; float or double
 /// report    written if not null, also on failure
-/// Cost      about proportional to vertexCount + tetCount; some tens of tested pairs per vertex, most of them in float
+/// Cost      about proportional to vertexCount + tetCount; some tens of pairs are tested per vertex, most of them in
+///           float
 /// Memory    at most 64 bytes per vertex beyond the input while it works, including the result, and about 40 per tet
 /// Errors    those of `validate(const TetMesh&)`; Empty: no vertices; NonFinite: a coordinate that is not finite or
 ///           beyond Limits::kMaxCoordinate; InvalidOption: a maxDistance below 0 or NaN; SizeMismatch: more than 2^32 -
@@ -227,17 +227,18 @@ TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const do
 /// Overload for vertices in float; otherwise as `embed(const TetMesh&, PointView<const double>, ...)`.
 TETSKIN_CORE_API Result<Embedding> embed(const TetMesh& cage, PointView<const float> vertices,
                                          const EmbedOptions& options = {}, EmbedReport* report = nullptr);
-/// Embeds a mesh in a cage: as the overload for vertices alone, and uses the mesh's triangles and what the cage stores.
+/// Embeds a mesh in a cage like the overload for vertices alone, but also uses the mesh's triangles and the cage's
+/// data.
 ///
-/// Under `OutsideRule::Nearest`, an outside vertex whose neighbours in the mesh belong to another component of the cage
-/// stays with them, unless that component is farther away by more than an edge of its tet, so that legs are not joined
-/// to each other. It does not stay where all tets of that component would extrapolate it too far: its largest weight
-/// may be at most 4 times the larger of 1 and what it is otherwise. This takes some 150 bytes more per outside vertex
-/// while it works.
+/// With `OutsideRule::Nearest`, an outside vertex whose neighbours in the mesh belong to another component of the cage
+/// is bound to that component, unless it is farther away by more than an edge of its tet; so legs are not joined to
+/// each other. Exception: all tets of that component would extrapolate the vertex too far. Its largest weight may be at
+/// most 4 times the larger of 1 and what it would be otherwise. This takes some 150 bytes more per outside vertex while
+/// it works.
 ///
-/// If the cage has `vertexTets`, every vertex is bound to the tet named there, and nothing is searched. Further errors:
-/// those of `validate(const TriangleMesh&)`; CageMismatch if the vertices are others, or not in their tets. Vertices
-/// that no triangle uses need not be in theirs: they count as outside, whatever `maxDistance` is.
+/// If the cage has `vertexTets`, every vertex is bound to the tet named there, without a search. Further errors: those
+/// of `validate(const TriangleMesh&)`; CageMismatch if these are other vertices, or they are not in their tets.
+/// Vertices that no triangle uses need not be in theirs: they count as outside, whatever `maxDistance` is.
 TETSKIN_CORE_API Result<Embedding> embed(const Cage& cage, const TriangleMesh& mesh, const EmbedOptions& options = {},
                                          EmbedReport* report = nullptr);
 

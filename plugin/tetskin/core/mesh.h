@@ -15,7 +15,7 @@ namespace tetskin {
 
 /// Which tet carries a vertex that lies in no tet. The rule does not affect vertices inside the cage.
 enum class OutsideRule {
-  Nearest,  ///< the tet closest in distance, slivers excepted: a thin layer of tets keeps the vertices just above it
+  Nearest,      ///< the closest tet, except slivers: a thin layer of tets keeps the vertices just above it
   Barycentric,  ///< the tet of smallest barycentric distance, as in the "Ten Minute Physics" tutorial and in Bullet
 };
 
@@ -33,9 +33,9 @@ struct TetMesh {
   std::size_t tetCount() const { return tets.size(); }    ///< number of tets
 };
 
-/// The faults of a tet mesh: how many there are of each kind, and where the first one is (undefined where the count is
-/// 0). The first two kinds make a mesh unusable. The others are tolerated, as long as not every tet repeats a node or
-/// has no volume.
+/// The faults of a tet mesh: how many there are of each kind, and where the first one is (undefined if the count is 0).
+/// The first two kinds make a mesh unusable. The others are tolerated, unless every tet repeats a node or has no
+/// volume.
 struct TETSKIN_CORE_API TetMeshReport {
   /// One kind of fault.
   struct Fault {
@@ -60,7 +60,7 @@ struct TETSKIN_CORE_API TetMeshReport {
 TETSKIN_CORE_API TetMeshReport checkTetMesh(const TetMesh& mesh);
 
 /// Checks that a mesh can be used: it has tets, not too many, all indices exist, all coordinates are finite, and at
-/// least one tet has a volume. Cost O(N + T) for N nodes and T tets; allocates nothing.
+/// least one tet has volume. Cost O(N + T) for N nodes and T tets; allocates nothing.
 /// Errors: Empty, TooLarge, IndexOutOfRange, NonFinite, Degenerate.
 TETSKIN_CORE_API Status validate(const TetMesh& mesh);
 
@@ -112,9 +112,9 @@ struct TriangleMesh {
 /// Errors: Empty, TooLarge, NonFinite, IndexOutOfRange.
 TETSKIN_CORE_API Status validate(const TriangleMesh& mesh);
 
-/// vertexCount unit normals in rest space: the mesh's authored normals; where there are none, or one is not of unit
-/// length, those of its triangles, weighted by area and smooth across coincident vertices. Vertices without triangles
-/// get (0, 1, 0).
+/// vertexCount unit normals in rest space: the mesh's authored normals. If there are none, or one is not of unit
+/// length, the normals of its triangles, weighted by area and smooth across coincident vertices. Vertices without
+/// triangles get (0, 1, 0).
 TETSKIN_CORE_API std::vector<Eigen::Vector3d> restNormals(const TriangleMesh& mesh);
 
 }  // namespace tetskin

@@ -25,15 +25,15 @@ enum class Interpolation {
 enum class Normals {
   None,         ///< no normals: no memory, no time
   Transformed,  ///< rest normals transformed by the deformation gradient: keeps all detail of authored normals
-  Recomputed,   ///< from the deformed triangles, weighted by area: also right where the surface folds within a tet
+  Recomputed,   ///< from the deformed triangles, weighted by area: also correct where the surface folds within a tet
 };
 
-/// Default of `BindingOptions::hardEdgeDegrees`. Smaller differences between normals at one position come from
-/// rounding, in the file or of a smooth normal; between facets of a smooth surface the angle is larger.
+/// Default of `BindingOptions::hardEdgeDegrees`. Smaller angles between normals at one position come from rounding, in
+/// the file or of a smooth normal; between facets of a smooth surface the angle is larger.
 constexpr double kHardEdgeDegrees = 5.0;
 
-/// Options that determine the surface, fixed when the binding is created. What is not requested is neither allocated
-/// nor computed.
+/// Options that determine the surface, fixed when the binding is created. Data that is not requested is neither
+/// allocated nor computed.
 struct BindingOptions {
   Interpolation interpolation = Interpolation::Linear;  ///< how the surface follows the nodes
   Normals normals = Normals::None;                      ///< how normals are computed
@@ -47,11 +47,11 @@ struct BindingOptions {
   double hardEdgeDegrees = kHardEdgeDegrees;
 };
 
-/// Where the positions are written: only to the skin's own array (the default), or to the caller's buffer of float or
+/// Where positions are written: only to the skin's own array (the default), or to the caller's buffer of float or
 /// double points, which must have vertexCount points and outlive the skin's last update.
 using SkinTarget = std::variant<std::monostate, PointView<float>, PointView<double>>;
 
-/// Options of one skin. They can leave out what the binding has, but not add to it.
+/// Options of one skin. They can leave out parts of the binding, but not add to it.
 struct InstanceOptions {
   bool disableQuadratic = false;  ///< use linear skinning with a quadratic binding
   bool disableNormals = false;    ///< compute neither normals nor tangents
@@ -62,11 +62,11 @@ struct InstanceOptions {
   bool previousPositions = false;
   /// Destination of the positions; by default the skin's own array.
   SkinTarget target;
-  /// Destination of the normals, instead of the skin's own array; vertexCount points of the caller's. The skin never
-  /// reads a target. `bind` fills it with unit vectors; where a direction collapses to zero length, an update may leave
-  /// the value written last. A target is left untouched if the binding has no such data.
+  /// Destination of the normals, instead of the skin's own array: vertexCount points, owned by the caller. The skin
+  /// never reads a target. `bind` fills it with unit vectors; if a direction collapses to zero length, an update may
+  /// leave the value written last. If the binding has no such data, a target is left untouched.
   PointView<float> normalTarget;
-  PointView<float> tangentTarget;  ///< destination of the tangents, under the same rules: three floats per vertex; the
+  PointView<float> tangentTarget;  ///< destination of the tangents, with the same rules: three floats per vertex; the
                                    ///< sign in TriangleMesh::tangents does not change
   /// World space, within Limits::kMaxCoordinate; subtracted from every position. An origin near the body keeps float
   /// positions accurate far from the world's origin.
@@ -78,7 +78,7 @@ struct InstanceOptions {
 /// Options of a binding and a skin, to create both in one call.
 struct SkinOptions : BindingOptions, InstanceOptions {};
 
-/// How well the cage supports a quadratic surface. Where the neighbourhood of a node does not determine some second
+/// How well the cage supports a quadratic surface. If the neighbourhood of a node does not determine some second
 /// derivatives (a cage one cell thick, a fin, a single tet), the surface is linear in those directions.
 struct TETSKIN_CORE_API QuadraticReport {
   std::size_t nodes = 0;                 ///< nodes of tets that carry vertices: each needs a gradient
@@ -96,28 +96,30 @@ struct TETSKIN_CORE_API QuadraticReport {
 template <class Scalar>
 struct SkinData;
 
-/// What all skins of one mesh in one cage have in common, whichever body carries them: created once, immutable, shared.
+/// The common data of all skins of one mesh in one cage, whichever body carries them: created once, immutable, shared.
 template <class Scalar>
 class TETSKIN_CORE_API SkinBinding {
  public:
   using Pointer = std::shared_ptr<const SkinBinding>;  ///< shared ownership by all skins that use the binding
 
-  /// Embeds the mesh in the cage at rest, and precomputes what the options need; keeps only the rest nodes.
+  /// Embeds the mesh in the cage at rest, and precomputes what the options need; of the cage it keeps only the rest
+  /// nodes.
   /// report  of the fit, written if not null, also on failure
   /// Errors  those of `embed`; before anything is embedded, SizeMismatch if the mesh's normals or tangents are not one
   ///         per vertex, and InvalidOption for a hardEdgeDegrees below 0 or NaN
   static Result<Pointer> create(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options = {},
                                 EmbedReport* report = nullptr);
   /// Uses an existing embedding, such as a loaded one; `options.outside` and `options.maxDistance` have no effect,
-  /// since they were applied when the embedding was made.
-  /// Errors  SizeMismatch if mesh or cage differ in count from what was embedded; those of `validate(const TetMesh&)`,
-  ///         and of `quadraticTets` for a quadratic surface; for mesh and options, those of the other overload
+  /// because they were applied when the embedding was made.
+  /// Errors  SizeMismatch if mesh or cage differ in count from those of the embedding; those of `validate(const
+  ///         TetMesh&)`, and of `quadraticTets` for a quadratic surface; for mesh and options, those of the other
+  ///         overload
   static Result<Pointer> create(const Cage& cage, const TriangleMesh& mesh, const BindingOptions& options,
                                 const Embedding& embedding);
   ~SkinBinding();
 
-  /// The options given to `create`. For a binding of an existing embedding, `outside` and `maxDistance` need not be
-  /// those that the embedding was made with.
+  /// The options given to `create`. For a binding of an existing embedding, `outside` and `maxDistance` may differ from
+  /// those with which the embedding was made.
   const BindingOptions& options() const;
   const Embedding& embedding() const;  ///< which tet carries which vertex, with its weights
   /// How well the cage supports a quadratic surface; all 0 for a linear one.
@@ -130,16 +132,16 @@ class TETSKIN_CORE_API SkinBinding {
 };
 
 /// The nodes of a body after its last two steps, for an application that draws frames between steps. Takes no memory
-/// until a step is recorded, then six scalars per node; each skin has its own.
+/// until a step is recorded, then six scalars per node; each skin has its own history.
 template <class Scalar>
 class TETSKIN_CORE_API StepHistory {
  public:
   /// Records the nodes after a step (nodeCount x 3, world space); those recorded before become the previous step.
-  /// Returns true if there are two steps to interpolate between: not at the first call, nor after `clear`, nor while a
-  /// node of either step is not finite or beyond Limits::kMaxCoordinate. Allocates at the first call, and for another
-  /// number of nodes, which starts anew. Cost O(nodes).
+  /// Returns true if there are two steps to interpolate between: not at the first call, nor after `clear`, nor if a
+  /// node of either step is not finite or beyond Limits::kMaxCoordinate. Allocates at the first call, and when the
+  /// number of nodes changes, which starts a new history. Cost O(nodes).
   bool record(PointView<const Scalar> nodes);
-  /// Starts anew: the next recorded step does not continue the last one, for instance after a teleport.
+  /// Starts a new history: the next recorded step does not continue the last one, for instance after a teleport.
   void clear() { usable_ = between_ = false; }
 
   std::size_t size() const { return last_.size(); }  ///< number of nodes recorded
@@ -154,13 +156,12 @@ class TETSKIN_CORE_API StepHistory {
 
  private:
   std::vector<Eigen::Matrix<Scalar, 3, 1>> before_, last_;
-  bool usable_ = false;   ///< last_ is where the next step begins
-  bool between_ = false;  ///< so was before_ for last_
+  bool usable_ = false;   ///< the next step can continue from last_
+  bool between_ = false;  ///< last_ has continued from before_
 };
 
 /// A render mesh carried by the nodes of a cage, however they are moved: bind once at rest, update with the node
-/// positions. For Bullet's soft bodies there is `SoftBodySkin`, which does this with their nodes. Can be moved, not
-/// copied.
+/// positions. For Bullet's soft bodies use `SoftBodySkin`. Can be moved, not copied.
 template <class Scalar>
 class TETSKIN_CORE_API MeshSkin {
  public:
@@ -171,22 +172,22 @@ class TETSKIN_CORE_API MeshSkin {
   MeshSkin(MeshSkin&& other) noexcept = default;             ///< the other one is unbound afterwards
   MeshSkin& operator=(MeshSkin&& other) noexcept = default;  ///< the other one is unbound afterwards
 
-  /// Creates a binding, and updates once with the cage's rest nodes. Returns the fit. On an error, this skin is left
-  /// unchanged; for a report of a failed fit, call `SkinBinding::create`.
+  /// Creates a binding, and updates once with the cage's rest nodes. Returns the fit. This skin is left unchanged on an
+  /// error; for a report of a failed fit, call `SkinBinding::create`.
   /// Errors: those of `SkinBinding::create`; before anything is embedded, those that the other `bind` reports for
   /// options.
   Result<EmbedReport> bind(const Cage& cage, const TriangleMesh& mesh, const SkinOptions& options = {});
-  /// Shares an existing binding; `nodes` are the current ones, nodeCount x 3, world space. On an error, this skin is
-  /// left unchanged.
+  /// Shares an existing binding; `nodes` are the current ones, nodeCount x 3, world space. This skin is left unchanged
+  /// on an error.
   /// Errors: Empty without a binding; InvalidOption for options out of range or in conflict; SizeMismatch for a target,
-  /// or nodes, of another size; NonFinite for a node that is not finite or beyond Limits::kMaxCoordinate.
+  /// or nodes, of the wrong size; NonFinite for a node that is not finite or beyond Limits::kMaxCoordinate.
   Status bind(Binding binding, PointView<const Scalar> nodes, const InstanceOptions& options = {});
-  /// Deleted: the options of the surface were given when the binding was created; pass InstanceOptions.
+  /// Deleted: the options of the surface were fixed when the binding was created; pass InstanceOptions.
   template <class Options, class = std::enable_if_t<std::is_same_v<Options, SkinOptions>>>
   Status bind(Binding binding, PointView<const Scalar> nodes, const Options& options) = delete;
 
-  /// Computes positions, normals and tangents for these node positions, nodeCount x 3, world space. Cost O(vertexCount
-  /// + nodeCount); allocates nothing. On an error, the results of the last update stay.
+  /// Computes positions, normals and tangents for these node positions, nodeCount x 3, world space. Allocates nothing;
+  /// cost O(vertexCount + nodeCount). On an error the results of the last update stay.
   /// Errors: NonFinite, see `firstNonFiniteNode`; TopologyChanged for another number of nodes; Unbound.
   StatusCode update(PointView<const Scalar> nodes);
   /// Updates with the nodes between two recorded steps, see StepHistory::nodesAt; errors as for the other `update`.
@@ -203,12 +204,12 @@ class TETSKIN_CORE_API MeshSkin {
   /// `InstanceOptions::target` is set.
   PointView<const Scalar> positions() const;
   /// vertexCount positions of the previous update, world space minus the origin at that time, in the binding's order;
-  /// empty if not requested. Equal to the current ones after `bind`, after `clearMotion`, and where an update failed.
+  /// empty if not requested. They equal the current ones after `bind`, after `clearMotion`, and after a failed update.
   /// With this option the two arrays are exchanged at every update, so get both views again after it. Costs 3 scalars
   /// per vertex, and no time.
   PointView<const Scalar> previousPositions() const;
-  /// Declares that there was no motion since the last update: the previous positions are the current ones until the
-  /// next update. Cost O(1).
+  /// Declares that there was no motion since the last update: until the next update, the previous positions equal the
+  /// current ones. Cost O(1).
   void clearMotion() { motionCleared_ = true; }
   /// vertexCount current unit normals in the binding's order; empty if not requested, or if `normalTarget` is set.
   PointView<const float> normals() const;
@@ -216,7 +217,7 @@ class TETSKIN_CORE_API MeshSkin {
   PointView<const float> tangents() const;
   /// Bounding box of the positions, for culling. An extrapolated vertex may lie outside the cage's own box.
   const Box3& bounds() const;
-  /// The binding, to be shared; null before a successful bind.
+  /// The binding, for sharing; null before a successful bind.
   Binding binding() const;
   /// Sets the origin, world space, for later updates. Error: InvalidOption if it is not finite or beyond
   /// Limits::kMaxCoordinate; the origin is then unchanged.
@@ -225,7 +226,7 @@ class TETSKIN_CORE_API MeshSkin {
  private:
   struct Impl;
   std::shared_ptr<Impl> impl_;  ///< null: not bound; never shared
-  bool motionCleared_ = true;   ///< the previous positions are not to be shown
+  bool motionCleared_ = true;   ///< hides the previous positions
 };
 
 }  // namespace tetskin

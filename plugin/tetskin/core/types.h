@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-/// The public API. The folder of a header has the name of the library that it belongs to.
+/// The public API. A header's folder has the name of its library.
 namespace tetskin {
 
 /// Axis-aligned box, empty until extended. Units and space are those of the points it was made from.
@@ -39,32 +39,32 @@ enum class [[nodiscard]] StatusCode{
     CageMismatch,       ///< the data belongs to another cage
     TooLarge,           ///< more items than 32-bit indices can number
 
-    // Of an update, a point of a surface, a ray or a body: nothing is wrong with the data.
+    // Results of an update, or about a point of a surface, a ray or a body; the data is not at fault.
     Asleep,           ///< skipped: the body sleeps and has not been moved since the last update
     Hidden,           ///< skipped: the skin is not visible
     Unbound,          ///< the skin has not been bound successfully yet
-    TopologyChanged,  ///< the body has gained or lost nodes or tets since; bind, or add it, again
-    NoHit,            ///< the ray meets nothing, or nothing of the surface is in the radius
+    TopologyChanged,  ///< the body has since gained or lost nodes or tets; bind, or add it, again
+    NoHit,            ///< the ray hits nothing, or no part of the surface is in the radius
     BodyDeleted,      ///< the body no longer exists
     Released,         ///< `release` was called, or there never was a body
     OtherBody,        ///< the skin, or the tree, belongs to another body or binding
     NotInWorld,       ///< the body is in no world, or not in this one
     NotAdded,         ///< the body was never added
-    Enclosed,         ///< the body lies wholly within another one, and is not pushed out of it
+    Enclosed,         ///< the body lies wholly inside another one, and is not pushed out of it
 
-    // Of snapshots.
+    // About snapshots.
     NotSaved,          ///< the world has something that cannot be saved
     SnapshotMismatch,  ///< the snapshot is of a world with other bodies, objects or joints
 
-    // Of what takes long.
-    Cancelled,  ///< the application's `progress` has said so
+    // About long computations.
+    Cancelled,  ///< the application's `progress` callback asked to stop
 };
 
 /// Name of a status code, for messages and logs: a few words in lower case. Never null; a static string.
 TETSKIN_CORE_API const char* toString(StatusCode code);
 
-/// Outcome of an operation on data that may be bad. The message says what is wrong, where, and what to do about it; it
-/// is empty on success.
+/// Outcome of an operation on data that may be bad. The message says what is wrong, where, and how to fix it; it is
+/// empty on success.
 struct [[nodiscard]] Status {
   StatusCode code = StatusCode::Ok;  ///< for programs
   std::string message;               ///< for people; empty on success
@@ -72,36 +72,36 @@ struct [[nodiscard]] Status {
   bool ok() const { return code == StatusCode::Ok; }  ///< success
 };
 
-/// Stops the program, in every build, because a `Result` was used in a way that it does not allow: throws
-/// `std::logic_error` with this message, or, where the library was compiled without exceptions, prints it and calls
+/// Stops the program, in every build, because a `Result` was used in a way that it does not allow. Throws
+/// `std::logic_error` with this message or, if the library was compiled without exceptions, prints it and calls
 /// `std::terminate`.
 [[noreturn]] TETSKIN_CORE_API void failResult(const std::string& message);
 
-/// A value, or the status that says why there is none. Ask `ok()` before taking the value: that of a failure stops the
-/// program with the status' message (see `failResult`).
+/// A value, or the status that says why there is none. Check `ok()` before taking the value: taking that of a failure
+/// stops the program with the status' message (see `failResult`).
 template <class T>
 class [[nodiscard]] Result {
  public:
   /// Success.
   Result(T value) : value_(std::move(value)) {}  // NOLINT: implicit by design
-  /// Failure. A status that is Ok has no value to go with it, and stops the program.
+  /// Failure. A status that is Ok is an error, and stops the program.
   Result(Status status) : status_(std::move(status)) {  // NOLINT: implicit by design
-    if (status_.ok()) failResult("a tetskin::Result was made of a status that is Ok, and has no value");
+    if (status_.ok()) failResult("a tetskin::Result was made from an Ok status, which has no value");
   }
 
   bool ok() const { return value_.has_value(); }    ///< there is a value
   const Status& status() const { return status_; }  ///< Ok, or why there is no value
-  /// The value, to be read. Stops the program if there is none.
+  /// The value, read-only. Stops the program if there is none.
   const T& value() const& {
     if (!value_) failResult(status_.message);
     return *value_;
   }
-  /// The value, to be changed in place. Stops the program if there is none.
+  /// The value, writable. Stops the program if there is none.
   T& value() & {
     if (!value_) failResult(status_.message);
     return *value_;
   }
-  /// The value, to be moved out of a temporary result. Stops the program if there is none.
+  /// The value, moved out of a temporary result. Stops the program if there is none.
   T&& value() && {
     if (!value_) failResult(status_.message);
     return *std::move(value_);
@@ -127,7 +127,7 @@ class PointView {
 
   /// An empty view.
   PointView() = default;
-  /// Views points that outlive it.
+  /// Views points that must outlive it.
   /// data         first scalar of the first point; may be null when count is 0
   /// strideBytes  from one point to the next; at least 3 scalars, a multiple of the scalar's size
   PointView(Scalar* data, std::size_t count, std::size_t strideBytes = 3 * sizeof(Scalar))
@@ -179,32 +179,31 @@ inline Box3 boundingBox(const std::vector<Eigen::Vector3d>& points) {
   return boundingBox(viewOf(points));
 }
 
-/// Limits of what the library supports. Constants only.
+/// Limits of what the library supports.
 struct Limits {
   /// Largest absolute coordinate of a node that a surface can follow, in any unit: beyond it, squares and weighted sums
-  /// leave the range of float. Meshes and cages that start there are refused; bodies that get there have become
-  /// unstable.
+  /// exceed the range of float. Meshes and cages beyond it are refused; bodies that get there have become unstable.
   static constexpr double kMaxCoordinate = 1e18;
   /// Largest number of nodes, and of tets: the neighbours of all of them, up to 32 each, are counted in 32 bits.
   static constexpr std::size_t kMaxTets = 0xFFFFFFFFu / 32;
   /// Largest number of vertices: their indices are ints.
   static constexpr std::size_t kMaxVertices = 0x7FFFFFFF;
-  /// Largest number of triangles: the paths around vertices along which normals are computed take up to nine numbers
-  /// per triangle, which are counted in 32 bits.
+  /// Largest number of triangles: normals are computed along paths around vertices, which take up to nine numbers per
+  /// triangle, counted in 32 bits.
   static constexpr std::size_t kMaxTriangles = 0xFFFFFFFFu / 9;
-  /// Ratio of the diagonals of mesh and cage above which different units are presumed: inches against metres are 39,
-  /// and a cage 30 times as large as its mesh would leave the mesh in a handful of tets anyway.
+  /// Ratio of the diagonals of mesh and cage above which different units are presumed: inches and metres differ by 39,
+  /// and a cage 30 times as large as its mesh would hold the mesh in a handful of tets anyway.
   static constexpr double kMaxUnitRatio = 30.0;
   /// Barycentric distance beyond which a mesh is refused: multiplied by nodes at kMaxCoordinate, larger weights would
-  /// leave the range of float; at rest they would lose all digits long before.
+  /// exceed the range of float; at rest they would lose all digits long before.
   static constexpr double kMaxBarycentric = 1e15;
   /// Largest `CageOptions::targetTets` for `createCage`; such a cage takes some 6 GB and four minutes.
   static constexpr std::size_t kMaxTargetTets = 20'000'000;
   /// Largest number of tets to which `calibrate` refines a cage: it makes two refinements (64 tets from each), one (8
-  /// tets from each) or none, as far as the result stays within this.
+  /// tets from each) or none, so that the result stays within this.
   static constexpr std::size_t kMaxRefinedTets = 300'000;
-  /// Smallest fraction of its stiffness that a tet keeps, however small its volume fraction: less would make light tets
-  /// so soft that the time step or the solver suffers.
+  /// Smallest fraction of its stiffness that a tet keeps, however small its volume fraction: with less, light tets
+  /// would be so soft that the time step or the solver suffers.
   static constexpr double kMinVolumeFraction = 0.1;
   /// Largest angular frequency times time step of a mode of a `ReducedBody`. A mode is stable up to 2; up to this
   /// limit, its frequency is off by a fifth at most.
@@ -214,7 +213,7 @@ struct Limits {
 /// Largest absolute coordinate of the points in a box, which must not be empty; in the box's units.
 inline double maxCoordinate(const Box3& box) {
   assert(!box.isEmpty());
-  // In brackets, as Windows' header defines macros of these names.
+  // In parentheses, because a Windows header defines macros of these names.
   return (std::max)((box.max)().maxCoeff(), -(box.min)().minCoeff());
 }
 
@@ -234,21 +233,21 @@ template <class Scalar>
 std::size_t firstNonFinite(PointView<const Scalar> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Scalar* p = points[i];
-    // x * 0 is 0 for every finite x and NaN for the rest, so one comparison serves three coordinates.
+    // x * 0 is 0 for every finite x and NaN otherwise, so one comparison serves three coordinates.
     if (!(p[0] * 0 + p[1] * 0 + p[2] * 0 == 0)) return i;
   }
   return points.size();
 }
 
 /// Interface through which an application provides threads: the library has none of its own. Derive from it, or use the
-/// adapters `BulletParallelFor` (tetskin/bullet/soft_body.h) and `ThreadPool` (tetskin/threads/thread_pool.h).
-/// Results are bit-identical for any number of threads, as the work is divided in the same way.
+/// adapters `BulletParallelFor` (tetskin/bullet/soft_body.h) and `ThreadPool` (tetskin/threads/thread_pool.h). Results
+/// are bit-identical for any number of threads, because the work is always divided in the same way.
 class TETSKIN_CORE_API ParallelFor {
  public:
   /// A reference to a callable void(std::size_t), valid as long as the callable is. Never allocates.
   class Task {
    public:
-    /// Wraps a callable; a Task itself is copied instead.
+    /// Wraps a callable. A Task is copied, not wrapped.
     template <class Callable, class = std::enable_if_t<!std::is_same_v<std::remove_cv_t<Callable>, Task>>>
     explicit Task(Callable& callable)
         : callable_(&callable), call_([](void* c, std::size_t k) { (*static_cast<Callable*>(c))(k); }) {}
@@ -262,8 +261,8 @@ class TETSKIN_CORE_API ParallelFor {
 
   virtual ~ParallelFor() = default;
 
-  /// Calls task(k) once for every k in [0, count), in any order and on any threads, and returns when all have returned.
-  /// Tasks do not throw, and do not call `run` again.
+  /// Calls task(k) once for every k in [0, count), in any order and on any threads, and returns when all calls have
+  /// returned. Tasks do not throw, and do not call `run` again.
   virtual void run(std::size_t count, Task task) = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A body of elastic tets by itself, in an engine of any kind. With Bullet, take `DeformableBody` (tetskin/solver).
+// A body of elastic tets on its own, for any engine. With Bullet, use `DeformableBody` (tetskin/solver).
 #pragma once
 
 #include <tetskin/core/cage.h>
@@ -35,26 +35,26 @@ struct ElasticOptions {
   double density = 1.0;  ///< mass per volume, above 0
   /// tetCount, above 0: factors of the stiffness. Empty: the cage's `stiffnessScale()`, or 1
   std::vector<double> stiffnessScale;
-  /// nodeCount, above 0. Empty: the cage's `masses` times the density, or, where it has none, a quarter of each tet's
-  /// mass to each node
+  /// nodeCount, above 0. Empty: the cage's `masses` times the density or, if it has none, a quarter of each tet's mass
+  /// to each node
   std::vector<double> nodeMasses;
-  double tolerance = 5e-3;  ///< forces that a step leaves, relative to those that act; 0 to below 1
+  double tolerance = 5e-3;  ///< remaining forces of a step, relative to acting ones; 0 to below 1
   int maxIterations = 200;  ///< limit of the conjugate gradient per step; at least 1
-  /// Whether all is computed in the same order of operations on every processor, without fused multiply-adds, see
-  /// `DeformableSolver::setDeterministic`.
+  /// Whether everything is computed in the same order of operations on every processor, without fused multiply-adds,
+  /// see `DeformableSolver::setDeterministic`.
   bool deterministic = false;
 };
 
 /// Corotated linear elasticity of a cage, in implicit steps: stable, of second order in the step, and conserving linear
-/// and angular momentum. Vibrations decay as `stiffnessDamping` says, and no faster than that unless they are too fast
-/// for the step. Positions are those at the end of the last step, velocities those at its middle; for an energy, take
-/// the mean of the velocities of two steps. The first step takes the velocities as those at its beginning. Components
-/// that are not deformed move as rigid bodies, at any stiffness and any spin below one radian per step: only the
-/// deviation from rigid motion is solved for. Tets recover from being flat or inverted, and find their rotation from
-/// any other.
+/// and angular momentum. Vibrations decay as given by `stiffnessDamping`, and no faster unless they are too fast for
+/// the step. Positions are those at the end of the last step, velocities those at its middle; for an energy, average
+/// the velocities of two steps. The first step takes the velocities as those at its beginning. Undeformed components
+/// move as rigid bodies, at any stiffness and any spin below one radian per step: only the deviation from rigid motion
+/// is solved for. Tets recover from being flat or inverted, and find their rotation from any start.
 ///
 /// The quadratic tets of a cage (`Cage::quadraticTet`, `refineQuadratic`) are simulated as such, with a rotation at
-/// each of four points, beside linear ones in one body. At equal error in bending they need a thirtieth of the nodes.
+/// each of four points; a body may mix them with linear ones. At equal error in bending they need a thirtieth of the
+/// nodes.
 ///
 /// This work is based on:
 ///     Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004
@@ -64,19 +64,19 @@ struct ElasticOptions {
 template <class Scalar>
 class TETSKIN_ELASTIC_API ElasticBody {
  public:
-  /// An empty body, equal to one that was moved from: it has no nodes, and its step does nothing. Use `create`.
+  /// An empty body, as after a move: it has no nodes, and its step does nothing. Use `create`.
   ElasticBody() = default;
   ElasticBody(ElasticBody&&) noexcept = default;             ///< the other one has no nodes afterwards
   ElasticBody& operator=(ElasticBody&&) noexcept = default;  ///< the other one has no nodes afterwards
 
   /// Creates a body at rest, at the position of the cage.
   /// cage    valid (see `validate`), without flat tets; any unit; not kept. A plain TetMesh converts to one. Its volume
-  ///         fractions, stiffness factors and masses are used where the options give none
+  ///         fractions, stiffness factors and masses are used unless the options give their own
   /// Cost    O(T log T) for T tets; memory about 700 bytes per tet in float, alone or as an eighth of a quadratic one
   /// Errors  those of `validate(const Cage&)`; NonFinite: a node that is not finite or beyond Limits::kMaxCoordinate;
-  ///         Degenerate: flat tets; SizeMismatch: an array of another length; InvalidOption: options out of range, also
-  ///         if stiffness over density and squared size (the cube root of the volume) is above 1e12 in float or 1e16 in
-  ///         double, in 1 / s^2
+  ///         Degenerate: flat tets; SizeMismatch: an array of the wrong length; InvalidOption: options out of range,
+  ///         also if stiffness over density and squared size (the cube root of the volume) is above 1e12 in float or
+  ///         1e16 in double, in 1 / s^2
   static Result<ElasticBody> create(const Cage& cage, const ElasticOptions& options);
 
   std::size_t nodeCount() const;  ///< number of nodes of the cage; 0 if empty
@@ -86,13 +86,12 @@ class TETSKIN_ELASTIC_API ElasticBody {
   PointView<Scalar>
   velocities();  ///< nodeCount velocities, world length per second; may be read and written between steps
 
-  /// Pins a node, which then moves with its velocity and is not affected by forces, or releases it. The node must
-  /// exist.
+  /// Pins a node, which then moves with its velocity and ignores forces, or releases it. The node must exist.
   void setPinned(std::size_t node, bool pinned = true);
 
   /// Advances by one step; returns the number of iterations. Cost O(T) for T tets per iteration.
   /// seconds       above 0 and finite, otherwise nothing moves
-  /// acceleration  of all nodes that are not pinned, such as gravity, world length / s^2; finite, otherwise nothing
+  /// acceleration  for all nodes that are not pinned, such as gravity, world length / s^2; finite, otherwise nothing
   ///               moves
   /// threads       see `ParallelFor`; bit-identical with any number; null: none
   int step(double seconds, const std::array<double, 3>& acceleration = {}, ParallelFor* threads = nullptr);

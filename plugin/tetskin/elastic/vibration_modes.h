@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// How a body vibrates: what model reduction steps instead of its tets. With Bullet, see `ReducedBody`
+// The vibrations of a body: model reduction steps these instead of its tets. With Bullet, see `ReducedBody`
 // (tetskin/reduced).
 #pragma once
 
@@ -18,10 +18,10 @@ struct VibrationOptions {
   int modeCount = 20;                  ///< number of modes, at least 1
   double poissonRatio = 0.3;           ///< 0 to below 0.5
   std::vector<double> stiffnessScale;  ///< tetCount, above 0: factors of the stiffness; empty: those of the cage
-  /// nodeCount, above 0, for a density of 1; empty: the cage's, or, if it has none, a quarter of each tet's volume
+  /// nodeCount, above 0, for a density of 1; empty: the cage's or, if it has none, a quarter of each tet's volume
   std::vector<double> nodeMasses;
   std::vector<int> pinned;  ///< indices of pinned nodes; empty: the body is free
-  /// Called now and then with the fraction done, from 0 to 1, ascending. May be empty.
+  /// Called now and then with the fraction done, from 0 to 1, never decreasing. May be empty.
   std::function<void(double fraction)> progress;
 };
 
@@ -44,18 +44,18 @@ struct TETSKIN_ELASTIC_API VibrationModes {
   std::vector<double> frequencies(double youngsModulus, double density) const;
 
   /// Serialises the modes to bytes, identical on every machine: 24 bytes per node and mode, and 8 per node.
-  /// cage  the one that the modes were computed for: a hash of its tets, and of the set of quadratic ones, is stored
+  /// cage  for which the modes were computed: a hash of its tets, and of the set of quadratic ones, is stored
   std::vector<unsigned char> save(const Cage& cage) const;
-  /// Reads back what `save` wrote, bit-identical; iterations and time are 0. Safe for arbitrary bytes.
+  /// Reads what `save` wrote, bit-identical; iterations and time are 0. Safe for arbitrary bytes.
   /// bytes   `count` bytes; not kept
-  /// cage    the one that the modes were saved with
+  /// cage    with which the modes were saved
   /// Errors  UnsupportedFormat: other data, or another version; Malformed: too few, too many or damaged bytes;
-  ///         CageMismatch: saved with other tets, or with others of them quadratic
+  ///         CageMismatch: saved with other tets, or with another set of quadratic ones
   static Result<VibrationModes> load(const unsigned char* bytes, std::size_t count, const Cage& cage);
 };
 
 /// Computes the softest vibration modes of linear and quadratic tets with lumped masses, by preconditioned block
-/// iteration, in memory proportional to the mesh: see vibration_modes.cpp. Modes of equal frequency span the right
+/// iteration, in memory proportional to the mesh: see vibration_modes.cpp. Modes of equal frequency span the correct
 /// space, in an arbitrary basis.
 ///
 /// cage    valid (see `validate`), one component, without flat tets; rest space, any unit and size. At least as many
@@ -63,9 +63,9 @@ struct TETSKIN_ELASTIC_API VibrationModes {
 /// Cost    about proportional to tets x modes; see demos/README.md. Memory some 0.5 KB per tet (1 KB if it is
 ///         quadratic), and 60 bytes per tet and mode
 /// Errors  those of `validate(const Cage&)`; InvalidOption: options out of range, more modes than free nodes, or all
-///         nodes pinned; SizeMismatch: an array of another length; IndexOutOfRange: a pinned node does not exist;
-///         Degenerate: flat tets, nodes in no tet, several components, regions that are connected by a node or an edge
-///         alone, so that nothing resists their rotation, or no convergence
+///         nodes pinned; SizeMismatch: an array of the wrong length; IndexOutOfRange: a pinned node does not exist;
+///         Degenerate: flat tets, nodes in no tet, several components, regions that are connected only by a node or an
+///         edge, so that nothing resists their rotation, or no convergence
 TETSKIN_ELASTIC_API Result<VibrationModes> computeVibrationModes(const Cage& cage,
                                                                  const VibrationOptions& options = {});
 

@@ -17,7 +17,7 @@
 
 namespace tetskin {
 
-/// How a material looks. Groups of a mesh name theirs by `TriangleGroup::material`.
+/// The look of a material. Groups of a mesh refer to it by `TriangleGroup::material`.
 struct SurfaceMaterial {
   std::string name;                                          ///< as groups name it
   Eigen::Vector3f colour = Eigen::Vector3f::Constant(0.8f);  ///< red, green and blue, 0 to 1, sRGB
@@ -26,41 +26,42 @@ struct SurfaceMaterial {
 };
 
 /// Writes bodies that follow the nodes of their cages, and rigid objects, as one animation: binary glTF 2.0, which
-/// holds each mesh once and the bones' motion per frame, a hundredth of an OBJ sequence.
+/// holds each mesh once and the bones' motion per frame, in a hundredth of the size of an OBJ sequence.
 ///
-/// Each node of a cage that carries a vertex is a bone, and each vertex follows the four of its tet:
-/// - Linear: bones move by translation, which is linear skinning exactly. The mesh has no normals, as bones that do not
-///   turn would leave them as they are at rest: viewers shade such a mesh by its triangles, flat.
+/// Each node of a cage that carries a vertex is a bone, and each vertex follows the four bones of its tet:
+/// - Linear: bones only translate, which is exactly linear skinning. The mesh has no normals, because bones that do not
+///   turn would keep them as at rest: viewers shade such a mesh flat, by its triangles.
 /// - Quadratic: bone i is the affine map [F_i / 2 | x_i - F_i X_i / 2], with its position x_i, X_i at rest, and the
-///   deformation gradient F_i there: quadratic skinning, except where that limits its correction (`MeshSkin`), and in
-///   quadratic tets, whose own map it takes. A bone is two nodes, as F = U S V^T is a rotation and a scale above a
-///   rotation, which holds any F; the mesh has normals, which viewers turn with the bones, about as the surface turns.
+///   deformation gradient F_i there. This is quadratic skinning, except where that limits its correction (`MeshSkin`),
+///   and in quadratic tets, where it uses the tet's own map. A bone is two nodes, a rotation and a scale above a
+///   rotation: as F = U S V^T, they can hold any F. The mesh has normals, which viewers turn with the bones, about as
+///   the surface turns.
 ///
-/// A vertex outside of its tet would need weights below 0, which glTF does not allow: it takes those of the tet's
+/// A vertex outside of its tet would need negative weights, which glTF does not allow: it gets those of the tet's
 /// closest point (`EmbeddedPoint::clampedWeights`). A linear surface then keeps the vector from that point to the
-/// vertex as it is at rest, instead of turning it with the tet; a quadratic one differs to second order in its length.
+/// vertex as at rest, instead of turning it with the tet; a quadratic one differs to second order in its length.
 ///
-/// Coordinates are float; of bodies that are far from the origin for their size, they are relative to a point near
-/// them, which the scene's `extras` have as `origin`.
+/// Coordinates are float. For bodies that are far from the origin for their size, they are relative to a nearby point,
+/// stored as `origin` in the scene's `extras`.
 /// Memory: the keyframes, 12 bytes per bone and frame, 56 if quadratic, until `finish`. Can be moved, not copied. After
-/// `finish`, and when moved from, every call returns FileNotWritable, or does nothing where there is no status.
+/// `finish`, and after being moved from, every call returns FileNotWritable, or does nothing if it has no status.
 class TETSKIN_IO_API GlbWriter {
  public:
-  /// Why this build cannot write GLB: it was made without tinygltf. Empty if it can.
+  /// Why this build cannot write GLB: it was built without tinygltf. Empty if it can.
   static std::string whyNot();
 
-  /// Creates a writer that has nothing to write yet, and tests whether the file can be.
+  /// Creates a writer, still empty, and tests whether the file can be written.
   /// framesPerSecond  above 0
-  /// Errors  UnsupportedFormat if `whyNot`; FileNotWritable; InvalidOption for another rate
+  /// Errors  UnsupportedFormat if `whyNot`; FileNotWritable; InvalidOption: an invalid rate
   static Result<GlbWriter> create(const std::string& path, double framesPerSecond);
   ~GlbWriter();
   GlbWriter(GlbWriter&& other) noexcept;
   GlbWriter& operator=(GlbWriter&& other) noexcept;
 
-  /// Sets how materials look. Groups with other materials are of a light grey.
+  /// Sets the looks of materials. Groups with other materials are light grey.
   void setMaterials(std::vector<SurfaceMaterial> materials);
 
-  // What is shown, before the first frame.
+  // The content, before the first frame.
 
   /// Adds a mesh in its cage at rest, which any number of bodies may share. Returns its number, from 0. Nothing is
   /// kept.
@@ -70,16 +71,16 @@ class TETSKIN_IO_API GlbWriter {
                                const Embedding& embedding, Interpolation interpolation);
   /// Adds a body of a model, below the number of models.
   void addBody(std::size_t model, const std::string& name);
-  /// Adds a rigid object, which stays, or moves. Error: Empty for a mesh without triangles.
+  /// Adds a rigid object, which moves or stays in place. Error: Empty for a mesh without triangles.
   Status addObject(const std::string& name, const TriangleMesh& mesh, bool moves);
 
-  /// About how many bytes the file will have with this number of frames.
+  /// Approximate size of the file, in bytes, with this number of frames.
   double bytesFor(int frames) const;
 
   /// Adds the next frame.
   /// nodes   by body: its cage's nodes, nodeCount x 3, world space
-  /// places  by object that moves: rigid
-  /// Errors  SizeMismatch; NonFinite; TooLarge: beyond the 4 GB that a GLB can have
+  /// places  by moving object: a rigid motion
+  /// Errors  SizeMismatch; NonFinite; TooLarge: beyond the 4 GB limit of a GLB
   Status addFrame(const std::vector<PointView<const double>>& nodes, const std::vector<Eigen::Affine3d>& places = {});
 
   /// Writes the file, complete or not at all. The writer is then empty. Cost: some 10 ns per byte.
@@ -94,21 +95,21 @@ class TETSKIN_IO_API GlbWriter {
 
 /// Writes the positions of a deforming mesh's vertices in every frame: the point cache PC2, which Blender (modifier
 /// Mesh Cache), Maya and 3ds Max apply to a mesh with as many vertices in the same order. It holds any deformation, as
-/// floats: 32 bytes, and 12 per vertex and frame. Can be moved, not copied; without `finish`, nothing is left. After
-/// `finish`, and when moved from, every call returns FileNotWritable.
+/// floats: 32 bytes, and 12 per vertex and frame. Can be moved, not copied; without `finish`, no file is left. After
+/// `finish`, and after being moved from, every call returns FileNotWritable.
 class TETSKIN_IO_API Pc2Writer {
  public:
   /// Creates a writer.
   /// vertexCount  of the mesh
   /// first, step  the number of the first frame, and from one frame to the next; Blender ignores both
-  /// Errors       FileNotWritable, also for what is no regular file; TooLarge: 2^31 vertices or more
+  /// Errors       FileNotWritable, also for anything but a regular file; TooLarge: 2^31 vertices or more
   static Result<Pc2Writer> create(const std::string& path, std::size_t vertexCount, float first = 0.0f,
                                   float step = 1.0f);
   ~Pc2Writer();
   Pc2Writer(Pc2Writer&& other) noexcept;
   Pc2Writer& operator=(Pc2Writer&& other) noexcept;
 
-  /// Appends a frame to the file, which does not have its name yet. Positions are vertexCount x 3, finite.
+  /// Appends a frame to the file, which does not have its final name yet. Positions are vertexCount x 3, finite.
   /// Errors: SizeMismatch; NonFinite; FileNotWritable.
   Status addFrame(PointView<const float> positions);
   /// Overload for positions in double, which are rounded to float.

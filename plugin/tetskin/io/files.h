@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Meshes in, tet meshes, cages and embeddings in and out.
+// Reads meshes; reads and writes tet meshes, cages and embeddings.
 #pragma once
 
 #include <tetskin/core/cage.h>
@@ -13,7 +13,7 @@
 
 namespace tetskin {
 
-/// What was not read of a mesh file as it stands there. Also written if reading fails, up to the point of failure.
+/// The parts of a mesh file that were not read as they are. Also written if reading fails, up to the point of failure.
 struct TETSKIN_IO_API MeshFileReport {
   /// Faces of one kind.
   struct Faces {
@@ -32,24 +32,24 @@ struct TETSKIN_IO_API MeshFileReport {
 /// `.obj` files (in any case) are read as they are: vertices in the file's order, including unused ones; polygons split
 /// into triangles; groups by `g`, `o` and `usemtl`; texture coordinates and normals if every vertex has exactly one.
 ///
-/// `.ply`, `.off` and `.stl` files are read as they are, too: vertices in the file's order (three per triangle of an
-/// `.stl` file), polygons split into triangles, no groups, normals if the file has them for vertices, and texture
-/// coordinates of a `.ply` file.
+/// `.ply`, `.off` and `.stl` files are also read as they are: vertices in the file's order (three per triangle of an
+/// `.stl` file), polygons split into triangles, no groups, vertex normals if the file has them, and texture coordinates
+/// of a `.ply` file.
 ///
 /// `.gltf`, `.glb` and `.vrm` files of glTF 2.0 are read by tinygltf, everything else (FBX, Collada, 3DS, ...) by
-/// assimp, but for glTF 1.0 and 3MF, with the transforms of their scenes:
-/// - every mesh once for each node that shows it, transformed, as one group, or one for each primitive of a glTF mesh,
-///   which share its vertices; in the file's own unit;
-/// - vertices are those of the file, for assimp those that it makes, none merged; those of lines and points are left
-///   out, and so are bones, morph targets and animations;
+/// assimp, except glTF 1.0 and 3MF; with the transforms of their scenes:
+/// - every mesh once for each node that shows it, transformed, as one group, or as one for each primitive of a glTF
+///   mesh, which share its vertices; in the file's own unit;
+/// - vertices are those of the file, for assimp those that it creates, none merged; those of lines and points are left
+///   out, as are bones, morph targets and animations;
 /// - if only some of the meshes have texture coordinates, the others get 0; if only some have normals, the others get
-///   smooth ones, weighted by area. Normals have unit length, or are 0 where the file's are invalid.
+///   smooth ones, weighted by area. Normals have unit length, or are 0 if the file's are invalid.
 ///
-/// In a build with TETSKIN_ASSIMP=OFF, what assimp would read is an UnsupportedFormat.
+/// In a build with TETSKIN_ASSIMP=OFF, formats that assimp would read give UnsupportedFormat.
 ///
-/// Of a glTF file, buffers are read from its own folder and those below it, images and whatever else tells of no shape
-/// from nowhere. An extension that it requires and that is not supported is named (KHR_mesh_quantization is supported,
-/// compressed meshes are not).
+/// The buffers of a glTF file are read only from its own folder and those below it; images and other data that do not
+/// affect the shape are not read. An unsupported extension that the file requires is named in the error
+/// (KHR_mesh_quantization is supported, compressed meshes are not).
 ///
 /// report  what was left out, if not null
 ///
@@ -58,12 +58,12 @@ struct TETSKIN_IO_API MeshFileReport {
 /// line of an `.obj` or an ASCII `.ply` file. Throws nothing.
 TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report = nullptr);
 
-/// What was not read of a file of tets as it stands there. Also written if reading fails, up to the point of failure.
+/// The parts of a tet file that were not read as they are. Also written if reading fails, up to the point of failure.
 struct TETSKIN_IO_API TetFileReport {
-  std::size_t skippedCells = 0;   ///< cells that are no tets: surfaces, lines, hexahedra, ...
+  std::size_t skippedCells = 0;   ///< cells that are not tets: surfaces, lines, hexahedra, ...
   std::size_t quadraticTets = 0;  ///< tets of second order that became quadratic ones, of eight tets each
-  std::size_t movedNodes = 0;     ///< nodes on curved edges that were moved to the middle, so that the edge is straight
-  double farthestMove = 0.0;      ///< the largest distance by which one was, in the file's unit
+  std::size_t movedNodes = 0;     ///< nodes on curved edges that were moved to the middle, to make the edge straight
+  double farthestMove = 0.0;      ///< the largest distance of such a move, in the file's unit
 
   /// Readable summary in one line; empty if everything was read.
   std::string describe() const;
@@ -72,13 +72,13 @@ struct TETSKIN_IO_API TetFileReport {
 /// Reads a tet mesh; the extension, in any case, selects the format:
 /// - `.vtk`          legacy VTK, ASCII or binary, versions 1.0 to 5.1, of an unstructured grid; deviations from the
 ///                   standard as in Bullet's own files are accepted
-/// - `.node`, `.ele` TetGen: given either, the other is found beside it; numbered from 0 or 1
+/// - `.node`, `.ele` TetGen: given either one, the other is found beside it; numbered from 0 or 1
 ///
-/// Others, such as Gmsh's `.msh`, are converted by `meshio convert in.msh out.vtk`.
+/// Convert others, such as Gmsh's `.msh`, with `meshio convert in.msh out.vtk`.
 ///
-/// Nodes and tets are in the file's order and unit. Cells that are no tets are skipped. Tets of second order (VTK type
-/// 24, and 71 and 79 with 10 nodes) become eight tets each, with the nodes on their edges, wherever these are. All is
-/// counted in `report`. Refused are tets of higher order, and tets of first order that share an edge with ones of
+/// Nodes and tets are in the file's order and unit. Cells that are not tets are skipped. Each tet of second order (VTK
+/// type 24, and 71 and 79 with 10 nodes) becomes eight tets, with the nodes on its edges, wherever these are. `report`
+/// counts all of these. Tets of higher order are refused, as are tets of first order that share an edge with ones of
 /// second order. In the result, every index names a node and no coordinate is beyond Limits::kMaxCoordinate; for other
 /// faults see `checkTetMesh`.
 ///
@@ -91,19 +91,19 @@ TETSKIN_IO_API Result<TetMesh> loadTetMesh(const std::string& path, TetFileRepor
 /// - `.vtk`          legacy VTK 2.0, ASCII, one point per line and tets only, so that Bullet's reader accepts it
 /// - `.node`, `.ele` both TetGen files, given either; numbered from 0, as Bullet's reader expects
 ///
-/// Coordinates are the shortest numbers that read back as the same doubles: `loadTetMesh` gives the same mesh.
-/// Errors: UnsupportedFormat; Empty without tets; IndexOutOfRange and NonFinite, as no reader would accept the file;
+/// Coordinates are the shortest numbers that read back as the same doubles: `loadTetMesh` gives the same mesh. Errors:
+/// UnsupportedFormat; Empty without tets; IndexOutOfRange and NonFinite, because no reader would accept the file;
 /// FileNotWritable.
 TETSKIN_IO_API Status saveTetMesh(const TetMesh& mesh, const std::string& path);
 
-/// Reads a cage: what `loadTetMesh` reads, and from a `.vtk` file also the data that `saveCage` writes. The eight tets
-/// of one of second order become a quadratic tet (see `quadraticTets`), unless it is flat; so that its edges
-/// are straight, nodes on them are moved to their middles. Data that is absent stays empty; arrays of other names are
-/// skipped, and so are values of cells that are not tets. If the file stores which mesh the cage belongs to,
+/// Reads a cage: what `loadTetMesh` reads and, from a `.vtk` file, also the data that `saveCage` writes. The eight tets
+/// from one of second order become a quadratic tet (see `quadraticTets`), unless it is flat; to make its edges
+/// straight, nodes on them are moved to their middles. Data that is absent stays empty; arrays with other names are
+/// skipped, as are values of cells that are not tets. If the file stores which mesh the cage belongs to,
 /// `Cage::checkMesh` compares it.
 ///
-/// Cost: linear; memory is bounded by the size of the file. Errors: those of `loadTetMesh`; for an array by one of
-/// these names with a wrong count, type or value: Malformed, SizeMismatch, InvalidOption, IndexOutOfRange.
+/// Cost: linear; memory is bounded by the size of the file. Errors: those of `loadTetMesh`; for an array with one of
+/// these names but a wrong count, type or value: Malformed, SizeMismatch, InvalidOption, IndexOutOfRange.
 TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* report = nullptr);
 
 /// Writes a cage: the file of `saveTetMesh`, followed, in a `.vtk` file, by all data of the cage, so that `loadCage`
@@ -114,20 +114,20 @@ TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* rep
 /// - POINT_DATA: `mass` (double)
 ///
 /// ParaView shows these arrays; Bullet's reader and simple programs stop before them. A cage without data gives the
-/// file of `saveTetMesh`. The other formats store the tets alone.
+/// file of `saveTetMesh`. The other formats store only the tets.
 ///
 /// Errors: those of `saveTetMesh` and of `validate(const Cage&)`; UnsupportedFormat if `vertexTets` of a cage with
-/// duplicate elements would be lost, since only `.vtk` stores it.
+/// duplicate elements would be lost, because only `.vtk` stores it.
 TETSKIN_IO_API Status saveCage(const Cage& cage, const std::string& path);
 
 /// Writes the bytes of `Embedding::save` to a file, complete or not at all. The embedding must not be empty.
-/// cage    the cage that it was made with
+/// cage    the cage with which it was made
 /// Errors  FileNotWritable
 TETSKIN_IO_API Status saveEmbedding(const Embedding& embedding, const TetMesh& cage, const std::string& path);
 
 /// Reads a file written by `saveEmbedding`; see `Embedding::load` for what is checked. The caller should compare
 /// vertexCount() with the mesh's.
-/// cage    the cage that it was saved with, bit-identical: the same file again, or the same call of `createCage`
+/// cage    the cage with which it was saved, bit-identical: from the same file, or the same call of `createCage`
 /// Errors  FileNotFound; those of `Embedding::load`, with the path in front
 TETSKIN_IO_API Result<Embedding> loadEmbedding(const std::string& path, const TetMesh& cage);
 

@@ -15,9 +15,9 @@ namespace io {
 struct ObjStatement;
 }
 
-/// An OBJ file without its vertex positions: the text of a written file, formatted once, with a gap for every vertex.
+/// An OBJ file without its vertex positions: the text to write, formatted once, with a gap for every vertex.
 ///
-/// It keeps everything that the OBJ file has, byte for byte (order, polygons, texture coordinates, groups, materials,
+/// It keeps everything in the OBJ file, byte for byte (order, polygons, texture coordinates, groups, materials,
 /// comments, vertex colours behind the coordinates), except
 /// - normals: `vn` lines and the faces' references to them are left out. Authored normals belong to the rest shape and
 ///   would be wrong on a deformed one; without any, every viewer computes its own, and `withNormals` inserts current
@@ -30,7 +30,8 @@ class TETSKIN_IO_API ObjLayout {
   static Result<ObjLayout> load(const std::string& objPath);
 
   /// Creates a layout for a mesh from elsewhere: `v`, `vt` (if it has texture coordinates), `f`, and `g` and `usemtl`
-  /// for its groups. Blanks in names become underscores, as OBJ separates names by blanks. Indices must be in range.
+  /// for its groups. Blanks in names become underscores, because OBJ separates names by blanks. Indices must be in
+  /// range.
   static ObjLayout create(const TriangleMesh& mesh);
 
   /// Number of `v` lines of a written file.
@@ -38,8 +39,8 @@ class TETSKIN_IO_API ObjLayout {
   /// True if files of this layout have normals.
   bool hasNormals() const { return !normalGaps_.empty(); }
 
-  /// Returns this layout with a `vn` line after every `v` line, and faces that refer to them: "1" becomes "1//1", "1/2"
-  /// becomes "1/2/1". There is then one normal per vertex of the file: where authored normals differ between the
+  /// Returns this layout with a `vn` line after every `v` line, and with faces that refer to them: "1" becomes "1//1",
+  /// "1/2" becomes "1/2/1". There is then one normal per vertex of the file: if authored normals differ between the
   /// corners at one vertex, as at an edge whose vertices are not duplicated, the corners share the current one.
   ObjLayout withNormals() const;
 
@@ -47,11 +48,11 @@ class TETSKIN_IO_API ObjLayout {
   ObjLayout withMaterialLibrary(const std::string& name) const;
 
   /// Returns this layout for a file in `folder`: material libraries (`mtllib`) beside the source file are named by
-  /// their path from that folder, others are kept unchanged.
+  /// their path from that folder; others are unchanged.
   ObjLayout forFolder(const std::string& folder) const;
 
-  /// Formats the whole file with these positions in `buffer`, whose memory is reused: nothing is allocated if it was
-  /// used with this layout before. Every number is the shortest that reads back as the same float, or double. The
+  /// Formats the whole file with these positions in `buffer`, reusing its memory: if it was used with this layout
+  /// before, nothing is allocated. Every number is the shortest that reads back as the same float, or double. The
   /// result is a view of `buffer`.
   /// positions  vertexCount x 3, finite; the count is asserted
   /// normals    vertexCount x 3, finite, if the layout has normals, otherwise none
@@ -61,7 +62,7 @@ class TETSKIN_IO_API ObjLayout {
 
   /// Writes one file, complete or not at all, with `mtllib` lines adapted to its folder.
   /// Cost: formats about 30 million numbers per second.
-  /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
+  /// Errors: SizeMismatch; NonFinite, because OBJ has no such numbers; FileNotWritable.
   Status writeTo(const std::string& path, PointView<const float> positions, PointView<const float> normals = {}) const;
   /// Overload for positions in double, with the same cost and errors as for float.
   Status writeTo(const std::string& path, PointView<const double> positions, PointView<const float> normals = {}) const;
@@ -96,7 +97,7 @@ class TETSKIN_IO_API ObjLayout {
 /// Errors: those of `ObjLayout::load`; SizeMismatch if the file has changed since it was loaded.
 TETSKIN_IO_API Result<ObjLayout> objLayoutFor(const std::string& meshPath, const TriangleMesh& mesh);
 
-/// Writes the frames of one deforming mesh as `DIR/frame_0000.obj`, ...: four digits, more from frame 10,000 on. float
+/// Writes the frames of one deforming mesh as `DIR/frame_0000.obj`, ...: four digits, more from frame 10,000 on. Float
 /// positions are written as the shortest numbers that read back as the same floats, double positions as doubles (about
 /// twice as long): no frame loses precision.
 class TETSKIN_IO_API ObjSequenceWriter {
@@ -113,7 +114,7 @@ class TETSKIN_IO_API ObjSequenceWriter {
   /// Writes one frame, complete or not at all. `frame` must not be negative. Positions are vertexCount x 3; normals as
   /// well if the layout was made for them (`ObjLayout::withNormals`), otherwise none.
   /// Cost: only the first frame allocates the text buffer, about the size of a file.
-  /// Errors: SizeMismatch; NonFinite, as OBJ has no such numbers; FileNotWritable.
+  /// Errors: SizeMismatch; NonFinite, because OBJ has no such numbers; FileNotWritable.
   Status write(int frame, PointView<const float> positions, PointView<const float> normals = {});
   /// Overload for positions in double, with the same errors as for float.
   Status write(int frame, PointView<const double> positions, PointView<const float> normals = {});

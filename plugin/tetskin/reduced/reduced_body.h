@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A body that moves by a few vibrations instead of its tets: the other way to real time, beside embedding.
+// A body that moves by a few vibration modes instead of its tets: the other way to real time, beside embedding.
 #pragma once
 
 #include <BulletSoftBody/BulletReducedDeformableBody/btReducedDeformableBody.h>
@@ -40,8 +40,9 @@ struct ReducedBodyOptions {
 
 /// How well a cage's nodes represent the modes of the fine tets in it.
 struct TETSKIN_REDUCED_API ReductionReport {
-  /// For each mode in use: distance between the fine nodes as carried by the cage and as displaced by the mode,
-  /// relative to the mode itself, in the mass-weighted root mean square. 0: the cage represents the mode exactly.
+  /// For each mode in use: the difference between the fine nodes' positions as carried by the cage and as displaced by
+  /// the mode, relative to the mode itself, as a mass-weighted root mean square. 0: the cage represents the mode
+  /// exactly.
   std::vector<double> projectionErrors;
   std::size_t skippedModes = 0;  ///< modes left out as too fast
   std::size_t outside = 0;       ///< fine nodes in no tet of the cage, which are extrapolated
@@ -53,21 +54,21 @@ struct TETSKIN_REDUCED_API ReductionReport {
 };
 
 /// A btReducedDeformableBody with the nodes of a cage, moved by the vibration modes of fine tets. A step costs about
-/// modes x nodes, however fine the tets are. Its nodes are drawn and collide as those of any body: bind a SoftBodySkin
-/// to `body()`.
+/// modes x nodes, however fine the tets are. Its nodes are drawn and collide like those of any body: bind a
+/// SoftBodySkin to `body()`.
 ///
 /// Modes are linear: deformations look right up to about a tenth of the body's size, and swell beyond that; the body as
 /// a whole rotates freely. Only the modes move: where it is touched, it yields as a whole. The README says when this is
 /// a better choice than embedding.
 ///
 /// It corrects defects of Bullet's own step for such bodies: it sleeps where it lies instead of falling, is damped at
-/// any frequency, is attached by the pinned nodes of its modes and then bends by gravity, and is touched at the right
-/// nodes beside other bodies. The world's solver is Bullet's own. Gravity is the last value passed to
+/// any frequency, is held by the pinned nodes of its modes and still bends by gravity, and is touched at the right
+/// nodes if there are other bodies. The world's solver is Bullet's own. Gravity is the last value passed to
 /// `world.setGravity` since the solver was created, not that of worldInfo.
 ///
 /// Destroy it before its world; otherwise, or if the application has removed the body from the world, it only frees its
-/// memory. The body may be used in that world alone. Bullet must update all bounding boxes (`setForceUpdateAllAabbs`,
-/// on by default): sleeping bodies depend on it to stay in place.
+/// memory. The body may only be used in that world. Bullet must update all bounding boxes (`setForceUpdateAllAabbs`, on
+/// by default): sleeping bodies depend on it to stay in place.
 class TETSKIN_REDUCED_API ReducedBody {
  public:
   /// Creates the body and adds it to the world.
@@ -79,7 +80,7 @@ class TETSKIN_REDUCED_API ReducedBody {
   /// Cost    that of `embed` of the fine nodes, and a factorisation of a matrix of the cage's nodes
   /// Errors  InvalidOption: options out of range, modes too fast for the time step (or all of them, with
   ///         `skipFastModes`), another solver, a world that does not update all boxes, a soft body in it that is not
-  ///         reduced; Empty: no modes; SizeMismatch: an array of another length; IndexOutOfRange: in nodeTets, or a
+  ///         reduced; Empty: no modes; SizeMismatch: an array of the wrong length; IndexOutOfRange: in nodeTets, or a
   ///         pinned node; Degenerate: the modes do not determine the motion of the cage's nodes; OutsideCage: modes and
   ///         cage are at different positions; those of `createSoftBody` about the cage, and of `embed`
   static Result<std::unique_ptr<ReducedBody>> add(btDeformableMultiBodyDynamicsWorld& world,
@@ -95,8 +96,8 @@ class TETSKIN_REDUCED_API ReducedBody {
   double youngsModulus() const;                 ///< in use, in pressure units
   std::size_t modeCount() const;                ///< number of modes in use
 
-  /// Moves the body, in its current deformation and without a velocity; it wakes. Bullet's own `transform` would take
-  /// the deformed shape for the rest shape.
+  /// Moves the body, in its current deformation and without velocity; it wakes. Bullet's own `transform` would take the
+  /// deformed shape for the rest shape.
   /// placement  from the position of cage and modes to the world, as in the options
   void setPlacement(const btTransform& placement);
 

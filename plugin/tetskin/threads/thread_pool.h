@@ -11,9 +11,10 @@
 
 namespace tetskin {
 
-/// A fixed number of threads: for applications that have no scheduler of their own. They sleep until there is work;
-/// after a `run` they look for the next one for some microseconds, in which a step of a body makes it. In a process
-/// that was forked while no `run` was in progress, a pool has the calling thread alone, for the same results.
+/// A fixed number of threads, for applications without a scheduler of their own. They sleep until there is work. After
+/// a `run` they look for the next one for some microseconds; within a body's step, the next one comes in that time. In
+/// a process that was forked while no `run` was in progress, a pool uses only the calling thread, with the same
+/// results.
 ///
 ///     ThreadPool pool;                 // as many threads as the machine has
 ///     options.threads = &pool;         // of a skin; the pool outlives it
@@ -21,7 +22,7 @@ class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
  public:
   /// Starts the threads.
   /// threadCount  number of threads that work on a `run`, including the calling one, at least 1; not given: one for
-  ///              each hardware thread. With 1 none is started, and `run` is a loop.
+  ///              each hardware thread. With 1, none is started, and `run` is a loop.
   explicit ThreadPool(std::optional<std::size_t> threadCount = std::nullopt);
   /// Waits for the threads to end. No `run` may be in progress.
   ~ThreadPool() override;
@@ -32,10 +33,10 @@ class TETSKIN_THREADS_API ThreadPool : public ParallelFor {
   /// that was forked.
   std::size_t threadCount() const;
 
-  /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and waits only
-  /// while others finish their last task. Allocates nothing; costs less than a microsecond where the last run has just
-  /// ended, otherwise some microseconds to wake the others. Calls from several threads wait for each other; a call from
-  /// within a task never returns.
+  /// Calls task(k) once for every k in [0, count), see ParallelFor. The calling thread takes part, and waits only while
+  /// others finish their last task. Allocates nothing; costs less than a microsecond if the last run has just ended,
+  /// otherwise some microseconds to wake the others. Calls from several threads wait for each other; a call from within
+  /// a task never returns.
   void run(std::size_t count, Task task) override;
 
  private:

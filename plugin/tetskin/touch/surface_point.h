@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Points of the visual surface: where they are, how they are pushed, and how rays find them.
+// Points of the visual surface: their positions, pushing them, and finding them by ray casts.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -16,7 +16,7 @@
 
 namespace tetskin {
 
-/// A surface point with axes of unit length, right-handed, world space: for objects attached to the surface.
+/// A surface point with right-handed unit axes, world space: for objects attached to the surface.
 struct SurfaceFrame {
   btVector3 position{0, 0, 0};   ///< of the point
   btVector3 normal{0, 1, 0};     ///< outward normal of the surface
@@ -28,12 +28,12 @@ struct SurfaceFrame {
   btTransform transform() const;
 };
 
-/// A point on a triangle of a body's visual surface, stored as the corners' nodes and weights. A value of some 250
-/// bytes: it can be copied, and kept longer than the body lives.
+/// A point on a triangle of a body's visual surface, stored as the nodes and weights of the triangle's corners. A value
+/// of some 250 bytes: it can be copied, and may outlive the body.
 ///
-/// It is created by a `SurfaceTree`. Points of a body from `createSoftBody`, including that of a `DeformableBody`,
-/// detect its deletion, and all functions report it. For a body that the application has created itself this is not
-/// possible: call `release` before that is deleted.
+/// Created by a `SurfaceTree`. Points of a body from `createSoftBody`, including that of a `DeformableBody`, detect its
+/// deletion, and all functions report it. This is not possible for a body that the application has created itself: call
+/// `release` before deleting it.
 ///
 /// Reading works in every world. So do impulses, except for reduced bodies, whose nodes have no velocities of their
 /// own.
@@ -50,18 +50,18 @@ class TETSKIN_TOUCH_API SurfacePoint {
   /// Position of the point on the linear surface after the last step, world space: the point where impulses and forces
   /// act. Empty unless the status is Ok.
   std::optional<btVector3> position() const;
-  /// Position of the point as drawn by a skin of the same body after `update(alpha)`, world space (the skin's origin is
+  /// Position of the point as a skin of the same body draws it after `update(alpha)`, world space (the skin's origin is
   /// not subtracted), whether or not the skin is updated or visible. Empty if the skin is of another body, or unless
   /// the status is Ok.
   /// Cost  12 nodes are read; for a quadratic skin, those around them as well
   std::optional<btVector3> position(const SoftBodySkin& skin, btScalar alpha = 1) const;
-  /// Velocity of `position()`, world length per second: its displacement in the last of Bullet's steps, divided by its
-  /// time. Between two recorded steps the velocity is the same, as points are interpolated linearly. Empty unless the
-  /// status is Ok.
+  /// Velocity of `position()`, world length per second: its displacement in the last of Bullet's steps, divided by the
+  /// step's time. It is also the velocity between two recorded steps, because points are interpolated linearly. Empty
+  /// unless the status is Ok.
   std::optional<btVector3> velocity() const;
   /// The point on the linear surface and its axes after the last step, world space. Empty unless the status is Ok.
   std::optional<SurfaceFrame> frame() const;
-  /// The point and its axes as drawn by a skin of the same body after `update(alpha)`, world space. Empty if the skin
+  /// The point and its axes as a skin of the same body draws them after `update(alpha)`, world space. Empty if the skin
   /// is of another body, or unless the status is Ok.
   std::optional<SurfaceFrame> frame(const SoftBodySkin& skin, btScalar alpha = 1) const;
 
@@ -70,11 +70,11 @@ class TETSKIN_TOUCH_API SurfacePoint {
   btScalar effectiveMass() const;
 
   /// Applies an impulse: changes the velocities of the surrounding nodes so that the body's linear and angular momentum
-  /// grow by exactly the impulse and its moment, except for what pinned nodes take. Wakes the body.
+  /// grow by exactly the impulse and its moment, except for the part that pinned nodes absorb. Wakes the body.
   /// impulse  world space, mass times velocity
   /// Errors   InvalidOption for reduced bodies; those of `status`; NonFinite
   StatusCode applyImpulse(const btVector3& impulse);
-  /// Applies a force through the next of Bullet's steps, as part of their solve. Wakes the body.
+  /// Applies a force during Bullet's next steps, as part of their solve. Wakes the body.
   /// force   world space, mass times length / s^2; forces add up
   /// steps   number of Bullet's steps, that is substeps, 1 or more
   /// Errors  NotInWorld; InvalidOption in a world without a `DeformableSolver`, or for steps below 1; those of
@@ -108,7 +108,7 @@ struct SurfaceHit {
   int triangle = -1;                      ///< index of the triangle in the mesh
   btScalar weights[3] = {0, 0, 0};        ///< barycentric weights of its corners, sum 1
   btVector3 point{0, 0, 0};               ///< world space, on the drawn triangle
-  btVector3 normal{0, 1, 0};              ///< of the drawn triangle, of unit length, whichever side was hit
+  btVector3 normal{0, 1, 0};              ///< of the drawn triangle, unit length, whichever side was hit
   btScalar distance = 0;                  ///< from the start of the ray, world length
 
   /// True for a hit.
@@ -118,8 +118,8 @@ struct SurfaceHit {
 /// Selects the triangles that a ray may hit, by their index; empty: all.
 using TriangleFilter = std::function<bool(int triangle)>;
 
-/// A radial impulse on all of the surface in a ball, directed away from its centre: an explosion. The share of a vertex
-/// is proportional to its area at rest and falls to zero at the radius.
+/// A radial impulse on all of the surface in a ball, directed away from its centre: an explosion. A vertex's share is
+/// proportional to its area at rest, and falls to zero at the radius.
 struct RadialImpulse {
   btVector3 centre{0, 0, 0};  ///< world space
   btScalar radius = 0;        ///< world length, above 0
@@ -139,15 +139,15 @@ struct ImpulseResult {
 ///     auto tree = tetskin::SurfaceTree::create(skin.binding(), mesh).value();
 ///     if (auto hit = tree.raycast(skin, from, to)) auto point = tree.pointAt(body, hit);
 ///
-/// One tree serves all bodies of a binding, one after the other; it must not be used by several threads at a time. It
-/// is refitted when a ray is cast and the body's nodes are not where they were in the previous cast. It uses the nodes,
-/// so it does not matter whether skins are updated, hidden, written to other buffers, or in another order. Cast all
-/// rays for one body, then for the next.
+/// One tree serves all bodies of a binding, one after the other; it must not be used by several threads at a time. A
+/// ray cast refits it if the body's nodes have moved since the previous cast. It uses the nodes, so it does not matter
+/// whether skins are updated, hidden, written to other buffers, or in another order. Cast all rays for one body, then
+/// for the next.
 class TETSKIN_TOUCH_API SurfaceTree {
  public:
-  /// Creates a tree of a mesh's triangles. It is fitted by the first ray.
+  /// Creates a tree of a mesh's triangles. The first ray cast fits it.
   /// binding  of this mesh; shared
-  /// mesh     copied as far as it is needed
+  /// mesh     the necessary parts are copied
   /// Cost     O(n log n) for n triangles
   /// Errors   Empty without a binding or triangles; SizeMismatch for another mesh than the binding's; those of
   ///          `validate`
@@ -157,7 +157,7 @@ class TETSKIN_TOUCH_API SurfaceTree {
   SurfaceTree& operator=(SurfaceTree&&) noexcept;
 
   /// The first triangle between two points, hit from either side.
-  /// skin      bound with the tree's binding; its body must exist, even if the skin is not updated any more
+  /// skin      bound with the tree's binding; its body must exist, even if the skin is no longer updated
   /// from, to  world space
   /// filter    triangles that may be hit; empty: all
   /// Cost      some microseconds; if the nodes have moved, also a skin's update and a refit: less than a millisecond
@@ -167,25 +167,25 @@ class TETSKIN_TOUCH_API SurfaceTree {
                      const TriangleFilter& filter = {}) const;
 
   /// The surface point at a ray's hit.
-  /// Errors: InvalidOption for a result that is no hit, is of another body, or has weights that do not add up to 1;
+  /// Errors: InvalidOption for a result that is not a hit, is of another body, or has weights that do not add up to 1;
   /// SizeMismatch for a body of another cage; Empty if the tree was moved from.
   Result<SurfacePoint> pointAt(btSoftBody& body, const SurfaceHit& hit) const;
-  /// The surface point at a vertex of the mesh; its axes are those of the largest triangle around it, its normal that
-  /// at rest. Cost O(1).
+  /// The surface point at a vertex of the mesh; its axes are those of the largest triangle around it, its normal is the
+  /// vertex's at rest. Cost O(1).
   /// Errors: IndexOutOfRange, also for a vertex without triangles; SizeMismatch for a body of another cage; Empty if
   /// the tree was moved from.
   Result<SurfacePoint> pointAtVertex(btSoftBody& body, int vertex) const;
-  /// The point of the rest surface nearest to a position in rest space; of several, that on the triangle of the lowest
-  /// number. Cost about O(log n) for n triangles; O(n) in the first call.
+  /// The point of the rest surface nearest to a position in rest space; if several are equally near, the one on the
+  /// triangle of the lowest number. Cost about O(log n) for n triangles; O(n) in the first call.
   /// Errors: NonFinite; SizeMismatch for a body of another cage; Empty if the tree was moved from.
   Result<SurfacePoint> pointAtRest(btSoftBody& body, const Eigen::Vector3d& rest) const;
 
-  /// Applies a radial impulse at once, by the current surface; wakes the body as `SurfacePoint::applyImpulse` does.
+  /// Applies a radial impulse at once, to the current surface; wakes the body as `SurfacePoint::applyImpulse` does.
   /// Cost O(vertices).
   /// Errors: in the result: NoHit, OtherBody for a body of another cage, InvalidOption for a radius not above 0, and
   /// those of `SurfacePoint::applyImpulse`.
   ImpulseResult applyImpulse(btSoftBody& body, const RadialImpulse& impulse) const;
-  /// Applies a radial force through the next steps, as `SurfacePoint::applyForce` does, by the current surface. Cost
+  /// Applies a radial force during the next steps, as `SurfacePoint::applyForce` does, to the current surface. Cost
   /// O(vertices).
   /// Errors: in the result: NoHit, OtherBody for a body of another cage, and those of `SurfacePoint::applyForce`;
   /// InvalidOption for a radius not above 0.

@@ -44,20 +44,20 @@ using cage_detail::SurfaceSamples;
 
 /// Sizes and coordinates outside of this range would overflow or underflow in areas and their squares.
 constexpr double kMaxLength = 1e60;
-/// Number of other origins tried when a vertex falls on a lattice plane so exactly that rounding puts it outside of all
+/// Number of other origins to try if a vertex falls so exactly on a lattice plane that rounding puts it outside of all
 /// tets.
 constexpr std::size_t kAttempts = 4;
 /// Distance in the sequence of origins between two attempts: more than one search uses.
 constexpr std::size_t kOriginsPerAttempt = 100;
-/// Number of searches for the tet count if splitting changes it, and the deviation at which they end.
+/// Largest number of searches for the tet count if splitting changes it, and the deviation at which they end.
 constexpr int kSizeRounds = 4;
 constexpr double kSizeTolerance = 0.07;
-/// Distance, in half cubes, of the points on large triangles that fitting has to keep inside: several of them then lie
-/// on each face of a cube, while meshes finer than the lattice get none.
+/// Distance, in half cubes, of the points on large triangles that fitting must keep inside: with this, several lie on
+/// each face of a cube, while meshes finer than the lattice get none.
 constexpr double kHoldStep = 0.5;
-/// Loose vertices farther from the cage's centre than this, in diagonals of its box, get the tet that is nearest to the
-/// point on their way at that distance: the same but for a hundredth of their distance, and no coordinate is too large
-/// for the search.
+/// Loose vertices farther from the cage's centre than this, in diagonals of its box, get the tet nearest to the point
+/// in their direction at this distance: the result is the same within a hundredth of their distance, and no coordinate
+/// is too large for the search.
 constexpr double kLooseReach = 100.0;
 
 Status checkInput(const TriangleMesh& mesh, const CageOptions& options) {
@@ -102,9 +102,9 @@ struct BoundCage {
   std::size_t outside = 0;  ///< number of the surface's own points outside
 };
 
-/// Fractions of the time at which stages end, about: those of 3,000 tets for 60,000 triangles.
+/// Approximate fractions of the time at which stages end: those of 3,000 tets for 60,000 triangles.
 constexpr double kSurfaceDone = 0.1, kLatticesDone = 0.8, kFitDone = 0.95;
-/// Share of the rest that each lattice is told to take: how many there will be is not known.
+/// Share of the remaining progress given to each lattice: the number of lattices is not known.
 constexpr double kLatticeShare = 0.5;
 
 /// Splits the lattice if that creates duplicates; otherwise it stays as it is.
@@ -205,7 +205,7 @@ void reportCage(const TetMesh& cage, CageReport& report) {
   report.volumeRatioUnfitted = report.cageVolumeUnfitted / report.meshVolume;
 }
 
-/// The nearest tet of each loose vertex, in their order.
+/// The nearest tet of each loose vertex, in order.
 std::vector<int> tetsOfLoose(const TriangleMesh& mesh, const Surface& surface, const TetMesh& cage) {
   std::vector<Eigen::Vector3d> loose;
   const Box3 box = boundingBox(cage.nodes);
@@ -219,13 +219,13 @@ std::vector<int> tetsOfLoose(const TriangleMesh& mesh, const Surface& surface, c
   std::vector<int> tets(loose.size(), 0);
   if (loose.empty()) return tets;
   const Result<Embedding> embedded = embed(cage, viewOf(std::as_const(loose)));
-  if (!embedded.ok()) return tets;  // a cage so large that nothing can be embedded in it
+  if (!embedded.ok()) return tets;  // the cage is too large to embed anything in it
   const std::vector<VertexBinding> bindings = embedded.value().bindings();
   std::transform(bindings.begin(), bindings.end(), tets.begin(), [](const VertexBinding& b) { return b.tet; });
   return tets;
 }
 
-/// By vertex: its tet. Empty where rounding has left a vertex outside of all tets: `embed` then finds the nearest tet.
+/// By vertex: its tet. Empty if rounding has left a vertex outside of all tets: `embed` then finds the nearest tet.
 std::vector<int> vertexTets(const TriangleMesh& mesh, const Surface& surface, const BoundCage& bound) {
   std::vector<int> tets;
   const std::vector<int> loose = tetsOfLoose(mesh, surface, bound.tets.mesh);
@@ -238,7 +238,7 @@ std::vector<int> vertexTets(const TriangleMesh& mesh, const Surface& surface, co
 Cage cageOf(const TriangleMesh& mesh, const Surface& surface, BoundCage bound) {
   assert(bound.tets.tetOf.size() >= surface.points.size() && surface.pointOf.size() == mesh.vertexCount());
   Cage cage(bound.tets.mesh);
-  // For a sheet, or where inside and outside cannot be told apart, the whole of a tet counts as material.
+  // For a sheet, or if inside and outside cannot be distinguished, the whole tet counts as material.
   const bool solid = surface.oriented && surface.volume > 0.0;
   if (solid) {
     cage_detail::CageFill fill = cage_detail::fillOf(bound.tets, bound.cage.frame, bound.cage.set, bound.lattice);

@@ -27,7 +27,7 @@ Status checkSoftOptions(const SoftContactOptions& options) {
   return {};
 }
 
-/// True if other contacts of the world contain the body: each of them would push it.
+/// True if other SoftContacts of the world contain the body: both would push it.
 bool isInOthers(const btAlignedObjectArray<btDeformableLagrangianForce*>& list, const SoftContactRows& own,
                 const btSoftBody& body) {
   for (int i = 0; i < list.size(); ++i) {

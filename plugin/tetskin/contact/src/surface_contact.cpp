@@ -24,7 +24,7 @@ constexpr double kMeshThickness = 0.03;
 /// Distance around the surface within which a search finds clearances, relative to the body's size: nodes move by less
 /// in a few steps.
 constexpr double kSearchSlack = 0.005;
-/// Largest sum of the absolute weights of a vertex outside: larger sums come from a cage that does not fit.
+/// Largest sum of the absolute weights of an outside vertex: a larger sum means that the cage does not fit.
 constexpr btScalar kMaxSpread = btScalar(1.2);
 
 Status refused(StatusCode code, const char* message) {

@@ -13,10 +13,10 @@
 namespace tetskin {
 namespace {
 
-/// A bone costs about as much as two vertices; its gradient is computed by tasks of their own.
+/// A bone costs about as much as two vertices; gradients have their own tasks.
 constexpr std::size_t kBonesPerTask = 8192;
 
-/// The weights in 65535ths. What rounding leaves of the sum goes to the largest weight, where it matters least.
+/// The weights in 65535ths. The rounding error of the sum goes to the largest weight, where it matters least.
 std::array<std::uint16_t, 4> normalised(const std::array<float, 4>& weights) {
   constexpr int kOne = 65535;
   double sum = 0.0;
@@ -73,7 +73,7 @@ struct BonePalette<Scalar>::Impl {
   Binding binding;
   PaletteOptions options;
   PackedNodes<Scalar> nodes;
-  std::vector<std::uint32_t> gradientOf;  ///< by node: the last one, the identity, for nodes that have none
+  std::vector<std::uint32_t> gradientOf;  ///< by node: the last gradient, the identity, for nodes without one
   NodeGradients<Scalar> gradients;
   std::size_t firstBadNode = 0;
 
@@ -91,7 +91,7 @@ struct BonePalette<Scalar>::Impl {
     for (std::size_t g = 0; g < gradientNodes.size(); ++g) gradientOf[gradientNodes[g]] = static_cast<std::uint32_t>(g);
   }
 
-  /// For the packed nodes.
+  /// Uses the packed nodes.
   void write(BoneView bones) {
     assert(bones.count == nodes.size());
     if (hasGradients()) gradients.update(*bound().quadratic, nodes, options.threads);

@@ -31,7 +31,7 @@ struct MeshSkin<Scalar>::Impl {
   Box3 bounds;
   std::size_t firstBadNode = 0;
 
-  /// Allocates only what the options ask for.
+  /// Allocates only what the options request.
   Impl(Binding made, const InstanceOptions& wanted)
       : binding(std::move(made)), options(wanted), nodes(bound().embedding.nodeCount()) {
     const std::size_t vertexCount = bound().embedding.vertexCount();
@@ -52,7 +52,7 @@ struct MeshSkin<Scalar>::Impl {
     if (normalsKind() != Normals::None) prepareNormals();
   }
 
-  /// Updates for the packed nodes.
+  /// Updates from the packed nodes.
   void skin() {
     if (stencils()) edges.update(*stencils(), nodes, options.threads);
     if (const auto* single = std::get_if<PointView<float>>(&options.target)) return skinTo(*single);

@@ -19,7 +19,7 @@ namespace {
 using elastic_detail::BodyDynamics;
 using kernels::kGroup;
 
-/// The options with the cage's values for what they do not give.
+/// The options, completed by the cage's values.
 ElasticOptions withCageDefaults(const Cage& cage, ElasticOptions options) {
   if (options.stiffnessScale.empty()) options.stiffnessScale = cage.stiffnessScale();
   if (options.nodeMasses.empty()) {
@@ -28,7 +28,7 @@ ElasticOptions withCageDefaults(const Cage& cage, ElasticOptions options) {
   return options;
 }
 
-/// options  with the cage's values
+/// options  completed by the cage's values
 template <class Scalar>
 Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
@@ -75,7 +75,7 @@ Status checkMesh(const TetMesh& cage, const TetMeshReport& report) {
 
 template <class Scalar>
 struct ElasticBody<Scalar>::Impl {
-  /// options  with the cage's values
+  /// options  completed by the cage's values
   Impl(elastic_detail::RestTets rest, const TetMesh& cage, const ElasticOptions& options)
       : dynamics(std::move(rest), cage.nodeCount()), masses(options.nodeMasses) {
     for (const Eigen::Vector3d& p : cage.nodes) {
@@ -95,7 +95,7 @@ struct ElasticBody<Scalar>::Impl {
         for (const int n : tet) masses[static_cast<std::size_t>(n)] += quarter;
         total += 4.0 * quarter;
       }
-      // A node that no tet uses is a point that falls.
+      // A node without tets is a point that falls.
       for (double& m : masses) m = m > 0.0 ? m : total / static_cast<double>(masses.size());
     }
     assert(masses.size() == cage.nodeCount());
@@ -194,7 +194,7 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   p.dynamics.predict(start, threads);
   p.dynamics.findResidual(threads);
   elastic_detail::SolveLimits limits = p.limits;
-  // At rest, less than this is left of the weight, and no step needs an iteration.
+  // At rest, less than this is left of the weight, and steps need no iterations.
   double squared = 0.0;
   for (const double a : acceleration) squared += a * a;
   const double unseen = std::min(1e-3, 0.2 * limits.tolerance) * pushed * std::sqrt(squared);

@@ -84,14 +84,14 @@ ModalMaterial materialOf(const VibrationModes& modes, const TetMesh& cage, const
     material.density = *options.mass / volume;
   }
   if (!options.youngsModulus) {
-    constexpr double kEarth = 9.81;  // without gravity nothing sags; the earth's gravity serves as a scale
+    constexpr double kEarth = 9.81;  // without gravity nothing sags; the earth's gravity then sets the scale
     material.youngsModulus = options.relativeStiffness * material.density * (gravity > 0.0 ? gravity : kEarth) *
                              boundingBox(cage.nodes).sizes().maxCoeff();
   }
   return material;
 }
 
-/// The number of modes requested, and the number of these that are slow enough.
+/// The number of requested modes, and the number of these that are slow enough.
 struct Selection {
   std::size_t wanted = 0, slow = 0;
 };
@@ -124,7 +124,7 @@ struct ReducedBody::Impl {
 
   btDeformableMultiBodyDynamicsWorld& world;
   btSoftBodySolver* solver =
-      nullptr;  ///< the solver of its world: a different one shows that the body is in another world
+      nullptr;  ///< the solver of its world: a different one means that the body is in another world
   std::unique_ptr<ModalBody> body;
   ReductionReport report;
   double youngsModulus = 0.0;
@@ -182,8 +182,8 @@ Result<std::unique_ptr<ReducedBody>> ReducedBody::add(btDeformableMultiBodyDynam
 }
 
 ReducedBody::~ReducedBody() {
-  // The body was removed from the world, by the application or by the world's destructor: nothing there needs to be
-  // updated any more.
+  // The body was removed from the world, by the application or by the world's destructor: nothing there needs an update
+  // any more.
   if (!impl_->body->getBroadphaseHandle()) return;
   if (impl_->body->getSoftBodySolver() == impl_->solver) {
     impl_->world.removeSoftBody(impl_->body.get());

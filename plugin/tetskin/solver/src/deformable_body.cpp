@@ -31,13 +31,13 @@ using namespace bullet_detail;
 
 namespace {
 
-/// Largest median of (time step x natural frequency of a node)^2 for a default stiffness. Elastic forces are explicit,
-/// and above 4 it is the implicit damping alone that keeps them stable. In free motion it does, at any stiffness; in a
-/// hard landing of thin parts it fails between 15 and 30 (measured with cages of 300 to 30,000 tets).
+/// Largest median of (time step x natural frequency of a node)^2 for a default stiffness. Elastic forces are explicit;
+/// above 4 only the implicit damping keeps them stable. In free motion it does so at any stiffness; in a hard landing
+/// of thin parts it fails between 15 and 30 (measured with cages of 300 to 30,000 tets).
 constexpr double kStableFrequency = 8.0;
 
-/// Median over the nodes of the squared natural frequency for a Young's modulus of 1: stiffness of the node's tets,
-/// with its neighbours pinned, over its mass.
+/// Median over the nodes of the squared natural frequency for a Young's modulus of 1: the stiffness of the node's tets
+/// with its neighbours pinned, divided by its mass.
 double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& options, const std::vector<double>& masses) {
   assert(masses.size() == cage.nodeCount());
   const elastic_detail::Lame unit = elastic_detail::lameOf(1.0, options.poissonRatio);
@@ -60,7 +60,7 @@ double weightPressure(const Cage& cage, const std::vector<double>& masses, doubl
   const double volume =
       cage.masses.empty() ? totalVolume(cage.mesh) : std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
   const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / volume;
-  // Without gravity nothing sags; the earth's gravity then serves as a scale.
+  // Without gravity nothing sags; the earth's gravity then sets the scale.
   constexpr double kEarth = 9.81;
   return density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.mesh.nodes).sizes().maxCoeff();
 }
@@ -78,7 +78,7 @@ double defaultYoungsModulus(const TetMesh& cage, const SoftBodyOptions& options,
 void setDamping(btDeformableNeoHookeanForce& force, btScalar damping) {
   force.setDamping(damping);
 }
-/// The first argument, damping by mass, would slow even free fall.
+/// The first argument, mass-proportional damping, would slow even free fall.
 void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
   force.setDamping(0, damping);
 }
@@ -86,7 +86,7 @@ void setDamping(btDeformableLinearElasticityForce& force, btScalar damping) {
 void setWorld(ElasticForce& force, btDeformableMultiBodyDynamicsWorld& world) {
   force.setWorld(world);
 }
-/// Bullet's forces know no world.
+/// Bullet's forces do not know their world.
 template <class Force>
 void setWorld(Force&, btDeformableMultiBodyDynamicsWorld&) {}
 
@@ -119,7 +119,7 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
   return refusal("ForceModel::Corotated", changes);
 }
 
-/// Rejects gravity with which bodies move farther in a step than numbers of this precision can represent.
+/// Rejects gravity that moves bodies farther in a step than numbers of this precision can represent.
 Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   constexpr double kMaxBodyLengths = 1e6;
   double volume = 0.0;
@@ -134,15 +134,15 @@ Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   return invalid(text);
 }
 
-/// With as many digits as Bullet has: the last ones of a double may differ from one processor to another. Where GCC 12
-/// joins two conversions to float and back in a vector, it leaves them out; so this is Veltkamp's splitting.
+/// Rounded to Bullet's precision: the last digits of a double may differ from one processor to another. GCC 12 drops
+/// two vectorised conversions, to float and back; hence Veltkamp's splitting.
 double inBulletsDigits(double x) {
   if (sizeof(btScalar) == sizeof(double)) return x;
   const double high = x * 536870913.0;  // 2^29 + 1
   return high - (high - x);
 }
 
-/// In Bullet's digits, from the first node on.
+/// Rounded to Bullet's precision, as offsets from the first node.
 std::vector<Eigen::Vector3d> roundedNodes(std::vector<Eigen::Vector3d> nodes) {
   const Eigen::Vector3d first = nodes.front().unaryExpr(&inBulletsDigits);
   for (Eigen::Vector3d& p : nodes) p = first + (p - first).unaryExpr(&inBulletsDigits);
@@ -164,9 +164,9 @@ struct DeformableBody::Impl final : BodyOwner {
   // The world that the body is in, or was in last.
   btDeformableMultiBodyDynamicsWorld* world;
   btDeformableBodySolver* solver;
-  bool hasOwnSolver;  ///< it is a DeformableSolver: the library knows whether it still exists
+  bool hasOwnSolver;  ///< it is a DeformableSolver: the library can tell whether it still exists
   ForceList* list;
-  // Collision filters of the body, when it comes into a world: at first those that Bullet gives a soft body.
+  // Collision filters that the body gets when it enters a world: at first Bullet's defaults for a soft body.
   int group = btBroadphaseProxy::DefaultFilter, mask = btBroadphaseProxy::AllFilter;
   std::unique_ptr<btSoftBody> body;
   std::vector<btScalar> masses;  ///< by node: its mass when it is not pinned
@@ -177,7 +177,7 @@ struct DeformableBody::Impl final : BodyOwner {
   BodyGravity gravity;
   std::unique_ptr<btDeformableLagrangianForce> elasticity;
   std::function<void(const ElasticMaterial&)> applyMaterial;  ///< sets the material of `elasticity`
-  std::function<void()> moveElasticity;                       ///< tells `elasticity` that the world is another one
+  std::function<void()> moveElasticity;                       ///< tells `elasticity` that the world has changed
 
   template <class Force, class... Arguments>
   void makeElasticity(Arguments&&... arguments) {
@@ -211,7 +211,7 @@ struct DeformableBody::Impl final : BodyOwner {
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == solver; }
-  /// True if the forces are still in the world: whoever removes the body from the world removes it from its forces, and
+  /// True if the forces are still in the world. Removing the body from the world removes it from its forces, and
   /// elasticity drops a body with tets that it cannot simulate.
   bool isActedOn() const {
     return isInItsWorld() && gravity.m_softBodies.size() > 0 && elasticity->m_softBodies.size() > 0;
@@ -222,7 +222,7 @@ struct DeformableBody::Impl final : BodyOwner {
   }
   /// Ok if the body may be put elsewhere now.
   Status checkIsPlaced(const std::string& call) const;
-  /// Wakes what lies on the body or beside it, since the body has gone.
+  /// Wakes bodies on or beside this one after it has gone.
   void wakeNeighbours();
   bool solverLives() const { return !hasOwnSolver || deformableSolver(solver); }
   Status checkNode(int node) const {
@@ -280,8 +280,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   return made;
 }
 
-/// Adds the body, unless it is there, and its forces to the world. What may run out of memory comes first: from then
-/// on, nothing throws.
+/// Adds the body, unless it is already there, and its forces to the world. Whatever may run out of memory comes first:
+/// after that, nothing throws.
 void DeformableBody::Impl::enter() {
   assert(elasticity);
   btDispatcher& dispatcher = *world->getDispatcher();
@@ -345,8 +345,8 @@ void DeformableBody::Impl::leaveWithoutSolver() {
 }
 
 DeformableBody::~DeformableBody() {
-  // The body was removed from the world, by the application or by the world's destructor: nothing there needs to be
-  // updated, and the world may not exist any more.
+  // The body was removed from the world, by the application or by the world's destructor: nothing in the world needs an
+  // update, and it may not exist any more.
   if (!impl_->isInAWorld()) return;
   if (!impl_->isInItsWorld()) {
     (void)impl_->body.release();  // another world still contains it
@@ -361,7 +361,7 @@ DeformableBody::~DeformableBody() {
   impl_->world->removeSoftBody(impl_->body.get());
 }
 
-/// The body is in no world, or in this one without its forces. The world before may have been destroyed, and another
+/// The body is in no world, or in this one without its forces. Its former world may have been destroyed, and another
 /// one be at its address.
 void DeformableBody::Impl::moveTo(btDeformableMultiBodyDynamicsWorld& to) {
   assert(!isActedOn());
@@ -393,7 +393,7 @@ void DeformableBody::removeFromWorld() {
 }
 
 Status DeformableBody::addToWorld(btDeformableMultiBodyDynamicsWorld& world) {
-  if (impl_->isActedOn()) return invalid("the body is in a world already: call removeFromWorld first");
+  if (impl_->isActedOn()) return invalid("the body is already in a world: call removeFromWorld first");
   const auto& inWorld = world.getSoftBodyArray();
   const bool isThere = inWorld.findLinearSearch(impl_->body.get()) < inWorld.size();
   if (impl_->isInAWorld() && !isThere) return invalid("the body is in another world: remove it there first");
@@ -475,7 +475,7 @@ Status DeformableBody::setPinned(int node, bool pinned) {
 Status DeformableBody::setPinnedPosition(int node, const btVector3& position) {
   if (Status status = impl_->checkNode(node); !status.ok()) return status;
   if (!isPinned(node)) {
-    return invalid("node " + std::to_string(node) + " is not pinned: call setPinned before it is led");
+    return invalid("node " + std::to_string(node) + " is not pinned: call setPinned first");
   }
   if (!toEigen(position).allFinite()) {
     return {StatusCode::NonFinite, "the position of pinned node " + std::to_string(node) + " is not finite"};

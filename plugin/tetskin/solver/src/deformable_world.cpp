@@ -19,7 +19,7 @@ using namespace bullet_detail;
 
 namespace {
 
-/// The longest side of the box around the nodes; once it is long enough, at least so much.
+/// The longest side of the box around the nodes; stops early once it is at least `enough`.
 btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
   assert(body.m_nodes.size() > 0);
   btVector3 low = body.m_nodes[0].m_x, high = low;
@@ -32,13 +32,13 @@ btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
   return size;
 }
 
-/// Into how many steps one of this length is divided, so that gravity moves no soft body that is awake by more than a
-/// share of its size in each: a contact is searched where a body would be without it, and one that is deeper in the
+/// The number of parts into which a step of this length is divided, so that gravity moves no awake soft body by more
+/// than a share of its size in each. Contacts are searched at the position without them: a body that is deeper in the
 /// ground there trembles, or falls through.
 int partsOf(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds) {
   constexpr btScalar kMostFall = btScalar(0.06), kMostParts = 64;
   const btScalar enough = world.getGravity().length() * seconds * seconds / kMostFall;
-  if (!(enough < BT_LARGE_FLOAT)) return 1;  // no length of a step
+  if (!(enough < BT_LARGE_FLOAT)) return 1;  // not a valid length of a step
   btScalar smallest = enough;
   const auto& bodies = world.getSoftBodyArray();
   for (int b = 0; b < bodies.size(); ++b) {
@@ -49,7 +49,7 @@ int partsOf(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds) {
   return static_cast<int>(std::min(std::ceil(btSqrt(enough / smallest)), kMostParts));
 }
 
-/// As long as this exists, the world is within `stepSimulation`; an exception that leaves it ends the step, too.
+/// While this exists, the world is within `stepSimulation`; an exception that leaves it ends the step, too.
 template <class SolverImpl>
 class Simulation {
  public:
@@ -64,7 +64,7 @@ class Simulation {
  private:
   SolverImpl& solver_;
   const btSoftBodyArray& bodies_;
-  const bool isInner_;  ///< a callback has called it
+  const bool isInner_;  ///< called within a step, by a callback
   const Running running_;
 };
 
@@ -82,7 +82,7 @@ struct DeformableWorldObjects::Impl {
   DeformableSolver deformableSolver;
   btDeformableMultiBodyConstraintSolver constraintSolver;
   RigidTurns turns;
-  std::unique_ptr<RigidForces> forces;  ///< null: as Bullet has them
+  std::unique_ptr<RigidForces> forces;  ///< null: Bullet's own treatment
 };
 
 DeformableWorldObjects::DeformableWorldObjects() : impl_(std::make_unique<Impl>()) {}
@@ -104,8 +104,8 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
 
 DeformableWorld::~DeformableWorld() = default;
 
-/// Between the steps of one call, a world's state is incomplete: Bullet knows how many steps are left, and clears
-/// the application's forces after the last one.
+/// Between the steps of one call, a world's state is incomplete: Bullet holds the number of steps left, and clears the
+/// application's forces after the last one.
 int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar fixedTimeStep) {
   const Simulation simulation(Access<DeformableSolver>::impl(impl_->deformableSolver), getSoftBodyArray());
   // Bullet would add it to its clock, or divide by it.
@@ -117,7 +117,7 @@ int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar
   const int parts = partsOf(*this, seconds);
   if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
   const DividedLimits limits(*this, parts);
-  // A step of the caller's own length is all of it, although rounding may have made the parts a little longer.
+  // A time of exactly one step must include its last part, although rounding may have made the parts a little too long.
   constexpr btScalar kRounding = 4 * SIMD_EPSILON;
   const btScalar part = seconds / static_cast<btScalar>(parts) * (1 - kRounding);
   return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, std::max(maxSubSteps, 1) * parts, part);
@@ -144,7 +144,7 @@ void DeformableWorld::predictUnconstraintMotion(btScalar dt) {
   impl_->deformableSolver.predictMotion(dt);
 }
 
-/// Likewise.
+/// See predictUnconstraintMotion.
 void DeformableWorld::integrateTransforms(btScalar dt) {
   if (impl_->forces) impl_->forces->end();
   if (!impl_->deformableSolver.deterministic()) return btDeformableMultiBodyDynamicsWorld::integrateTransforms(dt);

@@ -23,7 +23,8 @@ namespace tetskin {
 
 namespace {
 
-/// How often this process has come from another one by `fork`, which leaves all threads but its own behind.
+/// Number of times that this process has come from another one by `fork`, which leaves all threads but the calling one
+/// behind.
 unsigned forksSoFar() {
   static std::atomic<unsigned> forks{0};
 #if defined(__unix__) || defined(__APPLE__)
@@ -32,14 +33,15 @@ unsigned forksSoFar() {
   return forks.load(std::memory_order_relaxed);
 }
 
-/// How long threads look for work, and a caller for the end of others' tasks, before they sleep: longer than waking a
-/// thread takes, and short, as a thread that another program has displaced ends its task only when it gets a core.
+/// How long threads look for work, and a caller waits for the end of others' tasks, before they sleep: longer than
+/// waking a thread takes, but short, because a thread displaced by another program only ends its task when it gets a
+/// core.
 constexpr std::chrono::microseconds kSpin{20};
 
-/// Looks for kSpin whether a condition holds. Returns whether it does.
+/// Waits up to kSpin for a condition. Returns whether it holds.
 template <class Condition>
 bool spinUntil(Condition&& holds) {
-  // Reading the clock takes longer than a look.
+  // Reading the clock takes longer than a test of the condition.
   constexpr int kLooksPerClock = 16;
   const auto begin = std::chrono::steady_clock::now();
   do {
@@ -53,8 +55,8 @@ bool spinUntil(Condition&& holds) {
 
 }  // namespace
 
-/// One `run` at a time. Threads enter a run that is open, take the next task from a counter, and leave when there is
-/// none. The caller closes the run when all tasks are taken, and waits for those that have entered only.
+/// One `run` at a time. Threads enter an open run, take the next task from a counter, and leave when there is none. The
+/// caller closes the run when all tasks are taken, and waits only for threads that have entered.
 class ThreadPool::Workers {
  public:
   explicit Workers(std::size_t count) {
@@ -78,7 +80,7 @@ class ThreadPool::Workers {
   Workers& operator=(const Workers&) = delete;
 
   std::size_t size() const { return threads_.size(); }
-  /// The threads are those of another process: they do not work here, and what they wait at cannot be destroyed.
+  /// The threads are those of another process: they do not work here, and what they wait on cannot be destroyed.
   bool leftBehind() const { return forks_ != forksSoFar(); }
 
   void run(std::size_t count, Task task) {
@@ -104,11 +106,11 @@ class ThreadPool::Workers {
   // Parts of the state: the number of the run, whether it is open, and how many threads have entered it.
   static constexpr std::uint64_t kInside = 0xFFFF, kOpen = 0x10000, kOneRound = 0x100000000, kRound = ~0xFFFFFFFFull;
 
-  /// No more than there is work for: the caller does at least one task.
+  /// Wakes no more threads than there is work for: the caller does at least one task.
   void wakeSleepers(std::size_t count) {
     const std::size_t wanted = std::min(sleeping_.load(), count - 1);
     if (wanted == 0) return;
-    { const std::lock_guard<std::mutex> lock(mutex_); }  // those that are about to sleep do
+    { const std::lock_guard<std::mutex> lock(mutex_); }  // those about to sleep then do
     for (std::size_t k = 0; k < wanted; ++k) wake_.notify_one();
   }
 
@@ -120,7 +122,7 @@ class ThreadPool::Workers {
     }
   }
 
-  /// Enters the open run, if it is not the last one in which this thread has been.
+  /// Enters the open run, unless this thread has already been in it.
   bool enter(std::uint64_t& seen) {
     std::uint64_t state = state_.load();
     while ((state & kOpen) != 0 && (state & kRound) != seen) {
@@ -134,7 +136,7 @@ class ThreadPool::Workers {
   void leave() {
     if (((state_.fetch_sub(1) - 1) & (kOpen | kInside)) != 0) return;
     if (!callerSleeps_.load()) return;
-    { const std::lock_guard<std::mutex> lock(mutex_); }  // a caller that is about to sleep does
+    { const std::lock_guard<std::mutex> lock(mutex_); }  // a caller about to sleep then does
     idle_.notify_one();
   }
 
@@ -163,7 +165,7 @@ class ThreadPool::Workers {
 
   std::atomic<std::uint64_t> state_{0};
   std::atomic<std::size_t> next_{0};  ///< first task that has not been taken
-  std::mutex mutex_;                  ///< of those who sleep
+  std::mutex mutex_;                  ///< of sleeping threads
   std::condition_variable wake_, idle_;
   std::atomic<std::size_t> sleeping_{0};
   std::atomic<bool> callerSleeps_{false}, ending_{false};

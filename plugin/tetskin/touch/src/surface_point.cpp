@@ -17,7 +17,7 @@ using touch_detail::PointJacobian;
 
 namespace {
 
-/// The frame of a triangle as it is drawn: one axis along its first side, one along its normal.
+/// The frame of a triangle as drawn: one axis along its first side, one along its normal.
 SurfaceFrame frameOf(const btVector3 corners[3], const PointData& point) {
   SurfaceFrame frame;
   frame.position = corners[0];

@@ -23,7 +23,7 @@ using touch_detail::JointAnchor;
 using touch_detail::JointOwner;
 using touch_detail::JointSettings;
 
-/// Default stiffness of a spring to a point in space, which gives as a hand would, and of one to a body.
+/// Default stiffness of a spring to a point in space, as yielding as a hand, and of one to a body.
 constexpr double kToPoint = 10.0, kToBody = 1000.0;
 
 bool isStiffness(double s) {
@@ -49,7 +49,7 @@ Status badPivot() {
 
 /// The default largest force for a point in space: it carries the body, and accelerates it as fast as a hand would.
 double defaultForce(const btDiscreteDynamicsWorld& world, const btSoftBody& body) {
-  // In weights of the body; and in body lengths per second squared, where gravity is small.
+  // In weights of the body; and in body lengths per second squared, for low gravity.
   constexpr double kWeights = 4.0, kSizes = 20.0;
   double mass = 0.0;
   Box3 box;

@@ -51,7 +51,7 @@ struct SurfaceTree::Impl {
                        int firstCorner) const;
 };
 
-/// firstCorner  the corner of the triangle with which the weights begin
+/// firstCorner  the corner of the triangle that the first weight belongs to
 SurfacePoint SurfaceTree::Impl::pointOf(btSoftBody& body, std::size_t triangle, const std::array<btScalar, 3>& weights,
                                         int firstCorner) const {
   assert(triangle < mesh.triangleCount() && firstCorner >= 0 && firstCorner < 3);
@@ -93,7 +93,7 @@ SurfaceTree::~SurfaceTree() = default;
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
 SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
 
-/// The parts of this tree; those of an empty tree if it was moved from.
+/// The parts of this tree; if it was moved from, those of an empty tree.
 SurfaceTree::Impl& SurfaceTree::impl() const {
   static Impl movedFrom{{StatusCode::Empty, "the surface tree has been moved from"}, {}, {}, {}, {}, {}, {}};
   return impl_ ? *impl_ : movedFrom;

@@ -11,7 +11,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// The leaves of a tree that is to be built, with their items.
+/// The leaves of a tree to be built, with their items.
 struct Leaves {
   std::vector<btDbvtNode*> nodes;
   Bvh::Centroids<btScalar> centroids;
@@ -23,7 +23,7 @@ struct Leaves {
   btDbvtNode* add(void* data, const btVector3& centroid);
 };
 
-/// Allocates nodes as Bullet does, since Bullet deletes them.
+/// Allocates nodes as Bullet does, because Bullet deletes them.
 btDbvtNode* newNode() {
   return new (btAlignedAlloc(sizeof(btDbvtNode), 16)) btDbvtNode();
 }
@@ -32,13 +32,13 @@ btDbvtNode* Leaves::add(void* data, const btVector3& centroid) {
   btDbvtNode* node = newNode();
   node->parent = nullptr;
   node->data = data;
-  node->childs[1] = nullptr;  // by which Bullet recognises leaves
+  node->childs[1] = nullptr;  // this is how Bullet recognises leaves
   nodes.push_back(node);
   centroids.emplace_back(centroid.x(), centroid.y(), centroid.z());
   return node;
 }
 
-/// Creates the tree of a hierarchy with one item per leaf, linked as Bullet does it. The caller computes the boxes.
+/// Creates the tree of a hierarchy with one item per leaf, linked as in Bullet. The caller computes the boxes.
 btDbvtNode* linkNodes(const Bvh& bvh, const std::vector<btDbvtNode*>& leaves, int index = 0) {
   assert(leaves.size() == bvh.items().size());
   const Bvh::Node& from = bvh.nodes()[static_cast<std::size_t>(index)];
@@ -59,7 +59,7 @@ void setTree(btDbvt& tree, const Leaves& leaves) {
   tree.m_leaves = static_cast<int>(leaves.nodes.size());
 }
 
-/// Allocated with `new`: btSoftBody deletes it so.
+/// Allocated with `new`, because btSoftBody deletes it.
 btDbvntNode* copyWithNormals(const btDbvtNode* node) {
   if (!node) return nullptr;
   auto* copy = new btDbvntNode(node);
@@ -112,7 +112,7 @@ btSoftBody::Face* nowhere() {
   return &face;
 }
 
-/// True if every item has a leaf that points back at it, which is no longer so once Bullet has moved the array.
+/// True if every item has a leaf that points back at it; after Bullet has moved the array, this no longer holds.
 template <class Item>
 bool isTreeOf(const btDbvt& tree, const btAlignedObjectArray<Item>& items) {
   if (items.size() == 0 || !tree.m_root) return items.size() == 0;
@@ -143,7 +143,7 @@ void updateConstants(btSoftBody& body) {
   body.m_bUpdateRtCst = false;
 }
 
-/// Bullet asks for the margin in each step, right after it has deleted the tree.
+/// Bullet asks for the margin in each step, right after deleting the tree.
 class BodyWithTrees::Shape : public btSoftBodyCollisionShape {
  public:
   explicit Shape(BodyWithTrees& body) : btSoftBodyCollisionShape(&body), body_(body) {}
@@ -208,8 +208,8 @@ void BodyWithTrees::renewFaceTree() {
   setFaceTree(*this, leaves);
 }
 
-/// Bullet may have deleted the tree; and where nodes are appended, Bullet lets each leaf point at its face, including a
-/// leaf that must not.
+/// Bullet may have deleted the tree. And when nodes are appended, Bullet makes each leaf point at its face, including
+/// the leaf that must not.
 void BodyWithTrees::keepFaceTree() {
   if (kind_ == Kind::None) return;
   if (!m_fdbvt.m_root) renewFaceTree();

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Tets of Bullet's that point to nodes which are not there any more.
+// Bullet's tets that point to nodes which no longer exist.
 #pragma once
 
 #include <tetskin/bullet/soft_body.h>
 
 namespace tetskin::bullet_detail {
 
-/// IndexOutOfRange if there are such tets in what `readTetMesh` has read: how many, why, and what to do.
+/// IndexOutOfRange if `readTetMesh` has read such tets: how many, why, and what to do.
 TETSKIN_BULLET_API Status checkDangling(const TetMesh& read);
 
 }  // namespace tetskin::bullet_detail

@@ -15,7 +15,7 @@ struct OwnAddresses {
   std::unordered_set<const void*> of[4];  ///< by kind
 };
 
-/// Never destroyed: static objects may be known, too.
+/// Never destroyed: static objects may be registered, too.
 OwnAddresses& ownAddresses() {
   static auto* addresses = new OwnAddresses;
   return *addresses;

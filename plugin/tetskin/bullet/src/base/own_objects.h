@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin: which of the objects that an application hands over are the library's own.
+// Internal to tetskin: which of the objects that an application passes in are of the library's own classes.
 //
 // An application may be compiled without type information (-fno-rtti, /GR-). A dynamic_cast or typeid of an object of
-// its own classes then crashes. Therefore objects of the library's own classes are known by their addresses. Whatever
-// derives from one of these classes has type information, and may be cast from there on.
+// its own classes then crashes. Therefore the library registers the addresses of objects of its own classes. Anything
+// derived from one of these classes has type information, and may be cast from there on.
 #pragma once
 
 #include <tetskin/core/src/base/compiler.h>
@@ -16,11 +16,12 @@
 
 namespace tetskin::bullet_detail {
 
-/// A member of an object, which is known as long as it has this. From any thread; cost of a look-up: that of a hash.
+/// As a member of an object, registers the object as long as it exists. From any thread; a look-up costs that of a
+/// hash.
 class TETSKIN_BULLET_API OwnObject {
  public:
   enum class Kind { InactiveForce, BodyGravity, DeformableSolver, BodyWithTrees };
-  /// object  as its class in Bullet
+  /// object  as a pointer to its Bullet class
   OwnObject(Kind kind, const void* object);
   ~OwnObject();
   OwnObject(const OwnObject&) = delete;
@@ -39,8 +40,8 @@ Own* asOwn(OwnObject::Kind kind, Bullets* object) {
   return OwnObject::is(kind, object) ? static_cast<Own*>(object) : nullptr;
 }
 
-/// True if the object has type information, so that it may be cast by it. Only the C++ ABI of GCC and clang tells
-/// whether it has: with another one, the result is false.
+/// True if the object has type information, so that it may be cast by it. Only the C++ ABI of GCC and clang reveals
+/// this: with any other, the result is false.
 template <class Base>
 bool hasTypeInformation([[maybe_unused]] const Base& object) {
 #ifdef TETSKIN_GNU
@@ -52,16 +53,15 @@ bool hasTypeInformation([[maybe_unused]] const Base& object) {
 #endif
 }
 
-/// True if an object is known by its type information to be of another class than `Derived`, and of none derived from
-/// it.
+/// True if an object's type information says that it is neither of the class `Derived` nor of one derived from it.
 template <class Derived, class Base>
 bool isKnownNotToBe(const Base& object) {
   return hasTypeInformation(object) && !dynamic_cast<const Derived*>(&object);
 }
 
-/// True if an object is of the same class as another one, rather than of one derived from it: both have one table of
-/// virtual functions. Two libraries may each have such a table; then type information decides, if there is any. Only
-/// the C++ ABI of GCC and clang tells whether there is: with another one, the result may be false for the same class.
+/// True if an object is of exactly the same class as another one: both have one virtual function table. Two libraries
+/// may each have such a table; then type information decides, if there is any. Only the C++ ABI of GCC and clang
+/// reveals whether there is: with any other, the result may be false for the same class.
 template <class Base>
 bool isOfSameClass(const Base& object, const Base& other) {
   const auto tableOf = [](const Base& of) {

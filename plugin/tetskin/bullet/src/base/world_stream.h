@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: a StateStream that knows Bullet's types, and names objects by their place in the world.
+// Between the libraries: a StateStream that knows Bullet's types, and refers to objects by their index in the world.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -23,7 +23,7 @@ class WorldStream : public StateStream {
       : StateStream(arguments...), world_(world) {}
 
   btDeformableMultiBodyDynamicsWorld& world() const { return world_; }
-  /// Whether force records are written, which tell of steps, and change none.
+  /// Whether to include force records, which describe steps and change none.
   bool withRecords() const { return withRecords_; }
   void leaveOutRecords() { withRecords_ = false; }
 
@@ -43,8 +43,9 @@ class WorldStream : public StateStream {
     ((*this)(more), ...);
   }
 
-  /// An object of the world, by its index there; or null. While a snapshot is restored, the world's list of objects has
-  /// the order of the snapshot. An object that is no longer in the world may have been destroyed: it is read as null.
+  /// An object of the world, stored as its index there; or null. While a snapshot is restored, the world's list of
+  /// objects has the snapshot's order. An object that is no longer in the world may have been destroyed: it is read as
+  /// null.
   template <class Object>
   void object(Object*& object) {
     int index = saving() && object ? indexOf(*object) : -1;
@@ -66,7 +67,7 @@ class WorldStream : public StateStream {
   bool has(const btCollisionObject* object) { return object && indexOf(*object) >= 0; }
 
   /// A map whose keys are objects of the world: visit(key, value) in the order of the objects, which does not depend on
-  /// addresses. Entries of objects that are not in the world are left out, and lost on restoring.
+  /// addresses. Entries for objects that are not in the world are left out, and lost on restoring.
   template <class Map, class Visit>
   void byObject(Map& map, Visit&& visit) {
     using Key = typename Map::key_type;
@@ -90,26 +91,26 @@ class WorldStream : public StateStream {
     }
   }
 
-  /// What cannot be saved, or does not fit: names it. The first one counts.
+  /// Names what cannot be saved, or does not fit. Only the first refusal counts.
   void refuse(const std::string& message) {
     if (refusal_.empty()) refusal_ = message;
     fail();
   }
   const std::string& refusal() const { return refusal_; }
-  /// A number that must be the same in the world that is saved and the one that is restored.
+  /// A number that must be the same in the saved world and in the restored one.
   template <class T>
   void same(T now, const char* otherwise) {
     T saved = now;
     (*this)(saved);
     if (saved != now) refuse(otherwise);
   }
-  /// The object must be the same one: that which has its place in the world. Null, or not in the world: none.
+  /// The object must have the same index in both worlds. Null, or an object that is not in the world, counts as none.
   void sameObject(const btCollisionObject* object, const char* otherwise) {
     same(object ? indexOf(*object) : -1, otherwise);
   }
 
  private:
-  /// -1: it is not in the world. The same one is asked for many times in succession.
+  /// -1: not in the world. The same object is often asked for many times in succession.
   int indexOf(const btCollisionObject& object) {
     const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
     if (last_ < objects.size() && objects[last_] == &object) return last_;

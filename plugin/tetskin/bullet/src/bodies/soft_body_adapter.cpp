@@ -13,7 +13,7 @@ using namespace bullet_detail;
 
 namespace {
 
-/// Index of the node pointed to, or -1. Pointers are compared as numbers: dangling ones must not be subtracted.
+/// Index of the node, or -1. Pointers are compared as numbers, because dangling ones must not be subtracted.
 int indexOf(const btSoftBody::Node* node, const btSoftBody& body) {
   if (body.m_nodes.size() == 0) return -1;
   const auto address = reinterpret_cast<std::uintptr_t>(node);

@@ -20,7 +20,7 @@ using namespace bullet_detail;
 
 namespace {
 
-/// Least mass of a node relative to the mean: lighter nodes explode on cages with slivers.
+/// Smallest mass of a node relative to the mean: lighter nodes explode on cages with slivers.
 constexpr double kMinNodeMass = 0.3;
 /// Default margin relative to the largest side of the cage's box. Bullet's own default is 0.25, whatever the size.
 constexpr double kMarginFraction = 0.02;
@@ -95,7 +95,7 @@ void setMasses(const TetMesh& cage, const SoftBodyOptions& options, const std::v
   }
 }
 
-/// Multiplies the measures of tets by the stiffness factors: Bullet's forces are proportional to the measure of a tet.
+/// Multiplies the tets' measures by the stiffness factors: Bullet's forces are proportional to a tet's measure.
 void scaleMeasures(const std::vector<double>& scale, btSoftBody& body) {
   assert(scale.empty() || scale.size() == static_cast<std::size_t>(body.m_tetras.size()));
   for (std::size_t t = 0; t < scale.size(); ++t) {
@@ -112,8 +112,8 @@ void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& 
   }
 }
 
-/// Rejects a cage so far from the origin that in the precision of positions its tets have no volume, or, where Bullet's
-/// forces read their shapes there, another one.
+/// Rejects a cage so far from the origin that, in the precision of positions, its tets have no volume or, for Bullet's
+/// forces, which read their shapes from positions, another volume.
 Status checkPlace(const TetMesh& cage, const std::vector<btVector3>& nodes, ForceModel model) {
   const double left = model == ForceModel::Corotated ? 0.0 : 0.5;  // of a volume
   for (std::size_t t = 0; t < cage.tetCount(); ++t) {
@@ -131,7 +131,7 @@ Status checkPlace(const TetMesh& cage, const std::vector<btVector3>& nodes, Forc
   return {};
 }
 
-/// Rejects masses whose products with lengths and times of any use leave the range of Bullet's numbers.
+/// Rejects masses whose products with any practical lengths and times exceed the range of Bullet's numbers.
 Status checkMass(double mass) {
   const double heaviest = sizeof(btScalar) == sizeof(double) ? 1e100 : 1e15;
   if (mass <= heaviest && mass >= 1 / heaviest) return {};
@@ -162,7 +162,7 @@ Status bullet_detail::checkCage(const TetMesh& cage, const TetMeshReport& report
 void bullet_detail::appendElements(const TetMesh& cage, btSoftBody& body) {
   assert(static_cast<std::size_t>(body.m_nodes.size()) == cage.nodeCount() && body.m_tetras.size() == 0);
   for (const Tet& t : cage.tets) body.appendTetra(t[0], t[1], t[2], t[3]);
-  // Bullet's own function searches linearly for an existing link; these are already distinct.
+  // Bullet's own function searches linearly for an existing link; these edges are already distinct.
   for (const auto& e : uniqueEdges(cage)) body.appendLink(e[0], e[1], nullptr, false);
   for (const auto& f : boundaryFaces(cage)) body.appendFace(f[0], f[1], f[2]);
   body.initializeDmInverse();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftBodySkin: chooses the four nodes by which it detects whether a sleeping body, whose own moves are
-// counted, has been moved as a whole by an application that writes its nodes.
+// Internal to SoftBodySkin: chooses the four nodes that reveal whether an application has moved a sleeping body as a
+// whole by writing its nodes, for bodies whose own moves are counted.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ using FourNodes = std::array<int, 4>;
 template <class At>
 FourNodes independentFrom(std::size_t start, std::size_t count, At&& at) {
   assert(start < count);
-  // Below this fraction of the largest offset, a component that is orthogonal to the others counts as 0.
+  // A component orthogonal to the others counts as 0 below this fraction of the largest offset.
   constexpr double kIndependent = 1e-3;
   FourNodes found = {static_cast<int>(start), -1, -1, -1};
   const Eigen::Vector3d origin = at(start);
@@ -38,15 +38,15 @@ FourNodes independentFrom(std::size_t start, std::size_t count, At&& at) {
   return found;
 }
 
-/// Four nodes that are not in one plane, close together in memory: each page that is not in the caches costs a sleeping
-/// body one or two tenths of a microsecond. For a flat body, any four.
+/// Four nodes that are not in one plane, close together in memory: each page that is not cached costs a sleeping body
+/// one or two tenths of a microsecond. For a flat body, any four.
 /// strideBytes  from one node to the next
 /// at           position of a node
-/// Cost         at most 64 looks at all nodes; of a lattice, at 64 of its layers
+/// Cost         at most 64 passes over all nodes; for a lattice, over 64 of its layers
 template <class At>
 FourNodes nodesToSample(std::size_t count, std::size_t strideBytes, At&& at) {
   assert(count > 0 && strideBytes > 0);
-  // Bytes of a page on most systems; and how many starts are tried, see Cost.
+  // Bytes of a page on most systems; and the number of starts that are tried, see Cost.
   constexpr std::size_t kPage = 4096, kStarts = 64;
   const auto page = [&](int n) { return static_cast<std::size_t>(n) * strideBytes / kPage; };
   const auto cost = [&](const FourNodes& n) { return std::make_pair(page(n[3]) - page(n[0]), n[3] - n[0]); };

@@ -19,7 +19,7 @@ PointView<const btScalar> renderNodePositions(const btSoftBody& body) {
           sizeof(btSoftBody::RenderNode)};
 }
 
-/// Weights in Bullet's precision; the fourth is computed from the other three after their rounding.
+/// Weights in Bullet's precision; the fourth is computed from the other three after rounding.
 btVector4 weightsIn(const BarycentricMap& map, const btVector3& point) {
   const Eigen::Vector4d b = map(toEigen(point));
   const auto b0 = static_cast<btScalar>(b[0]), b1 = static_cast<btScalar>(b[1]), b2 = static_cast<btScalar>(b[2]);
@@ -45,7 +45,7 @@ Result<EmbedReport> bindRenderNodes(btSoftBody& body) {
   body.m_z.resize(0);
   body.m_renderNodesInterpolationWeights.resize(body.m_renderNodes.size());
   body.m_renderNodesParents.resize(body.m_renderNodes.size());
-  // In Bullet's order, so that its update reads them from memory sequentially.
+  // In Bullet's order, so that its update reads them sequentially.
   for (int v = 0; v < body.m_renderNodes.size(); ++v) body.m_renderNodesParents[v].resize(4);
   const std::vector<EmbeddingData::Run>& runs = embedding.runs;
   for (std::size_t r = 0; r + 1 < runs.size(); ++r) {

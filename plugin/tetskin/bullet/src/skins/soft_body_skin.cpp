@@ -25,14 +25,14 @@ Status checkNodeCount(const btSoftBody& body, std::size_t nodeCount) {
                                         "; bind with the cage from which the body was created"};
 }
 
-/// Gives the address of the state by which Bullet marks sleeping bodies.
+/// Gives the address of Bullet's activation state.
 struct ActivationState : btCollisionObject {
   static const void* addressIn(const btCollisionObject& object) {
     return &(object.*(&ActivationState::m_activationState1));
   }
 };
 
-/// By axis, so that the steps of one hash do not wait for those of the others.
+/// One hash per axis, so that the three run in parallel.
 std::uint64_t hashOf(PointView<const btScalar> nodes) {
   std::array<Hash, 3> axes;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -43,7 +43,7 @@ std::uint64_t hashOf(PointView<const btScalar> nodes) {
   return hash.value();
 }
 
-/// Number of skins that are decided on before any is computed.
+/// Number of skins that are decided before any is computed.
 constexpr std::size_t kTogether = 512;
 /// Number of skins whose memory is being prefetched: each has up to nine cache lines, and a processor has at most some
 /// dozens in flight.
@@ -109,10 +109,10 @@ StatusCode SoftBodySkin::update(btScalar alpha) {
   return status == StatusCode::Ok ? compute(alpha) : status;
 }
 
-/// Decides what the update must do, as far as that is known without computing anything.
+/// Decides what the update must do, as far as this is known without computing anything.
 StatusCode SoftBodySkin::decide(btScalar alpha) {
   if (!skin_.bound()) return StatusCode::Unbound;
-  skin_.clearMotion();  // unless it is updated
+  skin_.clearMotion();  // until it is updated
   if (!visible_) return StatusCode::Hidden;
   if (!bodyLives()) return StatusCode::BodyDeleted;
   if (body_->m_nodes.size() != nodeCount_) return topologyChanged();
@@ -126,7 +126,7 @@ StatusCode SoftBodySkin::compute(btScalar alpha) {
   const bool between = isBetween(alpha);
   const StatusCode done = between ? skin_.update(steps_, alpha) : skin_.update(nodePositions(*body_));
   if (done != StatusCode::Ok) {
-    moved_ = true;  // there are no valid nodes to compare with
+    moved_ = true;  // no valid nodes to compare with
     return done;
   }
   if (teleported_) skin_.clearMotion();
@@ -136,7 +136,7 @@ StatusCode SoftBodySkin::compute(btScalar alpha) {
   return StatusCode::Ok;
 }
 
-/// A step with other nodes or tets does not count as the one before the next.
+/// A step with other nodes or tets does not count as the previous one.
 StatusCode SoftBodySkin::topologyChanged() {
   between_ = false;
   steps_.clear();
@@ -148,7 +148,7 @@ void SoftBodySkin::recordStep() {
   between_ = false;
   if (!bodyLives()) return steps_.clear();
   const bool slept = std::exchange(sleeps_, !body_->isActive());
-  if (slept && sleeps_) return;  // where it was
+  if (slept && sleeps_) return;  // still at the same place
   if (body_->m_nodes.size() != nodeCount_ || body_->m_tetras.size() != tetCount_) return steps_.clear();
   if (slept) steps_.clear();
   between_ = steps_.record(nodePositions(*body_));
@@ -159,7 +159,7 @@ void SoftBodySkin::markTeleported() {
   if (visible_) restart();
 }
 
-/// The next kept step begins at the body's current position.
+/// The next recorded step begins at the body's current position.
 void SoftBodySkin::restart() {
   between_ = false;
   if (steps_.empty()) return;
@@ -171,7 +171,7 @@ void SoftBodySkin::restart() {
 
 std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses, btScalar alpha,
                                     ParallelFor* threads) {
-  // First all decisions, and then all work: the memory pages that decisions read would slow each update in between by a
+  // All decisions first, then all work: the memory pages that decisions read would slow each update in between by a
   // tenth.
   std::array<StatusCode, kTogether> done;
   std::size_t updated = 0;
@@ -189,7 +189,7 @@ std::size_t SoftBodySkin::updateAll(SoftBodySkin* const* skins, std::size_t coun
   return updated;
 }
 
-/// Decides on a few skins. Each stage reads what the stage before has prefetched.
+/// Decides for a few skins. Each stage reads what the one before has prefetched.
 void SoftBodySkin::decideAll(SoftBodySkin* const* skins, std::size_t count, StatusCode* statuses, btScalar alpha) {
   assert(count <= kInFlight);
   for (std::size_t k = 0; k < count; ++k) skins[k]->fetch();
@@ -222,7 +222,7 @@ void SoftBodySkin::fetchNodes() const {
 void SoftBodySkin::setVisible(bool visible) {
   if (visible == visible_) return;
   visible_ = visible;
-  moved_ = true;  // whatever has happened in between
+  moved_ = true;  // whatever happened in between
   if (visible) {
     restart();
     (void)update();
@@ -243,13 +243,13 @@ Status SoftBodySkin::setOrigin(const btVector3& origin) {
   return status;
 }
 
-/// True if steps count the moves of nodes, as long as the body is in the world of the solver that does.
+/// True if steps count the moves of nodes; holds while the body is in the world of the solver that counts.
 bool SoftBodySkin::movesCounted() const {
   return moves_ && moves_->counter && moves_->counter == body_->m_softBodySolver;
 }
 
-/// The surface is where the nodes are now: stores what tells whether they have moved since. Where nothing counts, that
-/// is a hash of all nodes.
+/// The surface now matches the nodes: stores what will tell whether they move. If nothing counts moves, that is a hash
+/// of all nodes.
 /// hashes  false: the next update computes the surface anyway, unless moves are counted
 void SoftBodySkin::remember(bool hashes) {
   assert(body_ && body_->m_nodes.size() == nodeCount_);
@@ -262,8 +262,8 @@ void SoftBodySkin::remember(bool hashes) {
   for (Sample& s : samples_) std::copy_n(now[static_cast<std::size_t>(s.node)], 3, s.position);
 }
 
-/// True if the nodes are where they were when the surface was computed. What is not counted is what the application
-/// does by writing nodes: of that, only affine motions of the whole body are seen, by the samples.
+/// True if the nodes are where they were when the surface was computed. Nodes written by the application are not
+/// counted; of such changes, the samples reveal only affine motions of the whole body.
 bool SoftBodySkin::unmoved() const {
   assert(body_->m_nodes.size() == nodeCount_);
   if (counted_ != movesCounted()) return false;

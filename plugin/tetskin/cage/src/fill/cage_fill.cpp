@@ -17,13 +17,13 @@ namespace {
 /// A full tet, in the unit of `Cage::fineVolumeFraction`.
 constexpr int kFull = 255;
 /// Mass of the lightest node, relative to the mean. Mass added to reach it is not where the mesh's mass is: with a
-/// fifth, the load of thin ends makes the serpent's sag wrong by half as much again.
+/// fifth, the load of thin ends makes the error of the serpent's sag half as large again.
 constexpr double kMinNodeMass = 0.1;
-/// Number of rounds in which light nodes take mass from those around them, and the fraction of a node's surplus that
-/// each may take, as others may, too.
+/// Number of rounds in which light nodes take mass from their neighbours, and the fraction of a node's surplus that
+/// each may take, because others may take some, too.
 constexpr int kMassRounds = 20;
 constexpr double kMaxDrawn = 0.1;
-/// Number of small tets of a tet in one refinement.
+/// Number of small tets per tet in one refinement.
 constexpr std::size_t kEighths = 8;
 /// Samples of a small tet: one near each of its corners, for a quarter of its volume.
 constexpr double kNear = 0.55, kFar = 0.15;
@@ -60,7 +60,7 @@ class FillSampler {
     return false;
   }
 
-  /// True if the two tets share a node: fitting moves a tet over the material of those around it.
+  /// True if the two tets share a node: fitting moves a tet over the material of its neighbours.
   bool goesWith(std::size_t tet, std::size_t other) const {
     return shareNode(cage_.mesh.tets[tet], cage_.mesh.tets[other]);
   }
@@ -103,7 +103,7 @@ std::vector<char> deepTets(const CageTets& cage) {
   return deep;
 }
 
-/// Light nodes take the mass that they lack from those around them, in proportion to the surplus of these.
+/// Light nodes take the mass that they lack from their neighbours, in proportion to the neighbours' surplus.
 void drawFromNeighbours(const std::vector<std::array<int, 2>>& edges, double minimum, std::vector<double>& masses) {
   assert(minimum >= 0.0);
   std::vector<double> spare(masses.size(), 0.0);  // sum around each node
@@ -124,7 +124,7 @@ void drawFromNeighbours(const std::vector<std::array<int, 2>>& edges, double min
   for (std::size_t n = 0; n < masses.size(); ++n) masses[n] += change[n];
 }
 
-/// Raises values below the bound, and lowers all above it in return.
+/// Raises values below the bound, and lowers all values above it to compensate.
 void keepAtLeast(double minimum, std::vector<double>& masses) {
   assert(!masses.empty() && minimum >= 0.0);
   for (bool changed = true; changed;) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which tet of the cage contains which point of the surface; it is updated as nodes move.
+// Which tet of the cage contains which point of the surface; updated as nodes move.
 #pragma once
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
@@ -17,7 +17,7 @@ namespace tetskin::cage_detail {
 std::vector<int> bindPoints(const std::vector<Eigen::Vector3d>& points, const LatticeSet& set,
                             const LatticeFrame& frame, const LatticeMesh& lattice);
 
-/// How many of the first `count` points are not in their tet. Cost O(count).
+/// Number of the first `count` points that are not in their tet. Cost O(count).
 std::size_t countOutside(const std::vector<Eigen::Vector3d>& points, std::size_t count, const TetMesh& mesh,
                          const std::vector<int>& tetOf);
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Node by node: a boundary node steps down the gradient of the cage's volume, an inner one towards the mean of its
-// neighbours. A step changes the shape of the tets around the node only, so it is safe when these keep their shape and
-// still contain all the points that they contained together.
+// neighbours. A step only changes the tets around the node, so it is safe if these stay well-shaped and together still
+// contain all of their points.
 //
 // This work is based on:
 //   Lori Freitag, Carl Ollivier-Gooch, "Tetrahedral Mesh Improvement Using Swapping and Smoothing", 1997 ("smart"
@@ -23,16 +23,16 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// A degree.
+/// Radians per degree.
 constexpr double kRadians = 3.14159265358979323846 / 180.0;
-/// Limits while fitting, narrower than those promised: 10 and 165 degrees would save 1 % more of the volume.
+/// Limits while fitting, narrower than the promised ones: 10 and 165 degrees would save 1 % more of the volume.
 constexpr double kFitMinDihedralDeg = 25.0;
 constexpr double kFitMaxDihedralDeg = 140.0;
 static_assert(kFitMinDihedralDeg > kMinDihedralDeg && kFitMaxDihedralDeg < kMaxDihedralDeg);
-/// Smallest tet as a fraction of the lattice's: small tets with good angles also need small time steps.
+/// Smallest volume of a tet as a fraction of the lattice's: small tets with good angles still need small time steps.
 constexpr double kMinTet = 0.15;
-/// Margin of the points to the cage's boundary, as a barycentric weight. It keeps them inside when they or the cage are
-/// rounded to single precision. The lattice starts with a margin of kTouch, since its tets are 1.4 high.
+/// Distance of the points from the cage's boundary, as a barycentric weight. It keeps them inside when they or the cage
+/// are rounded to single precision. The lattice starts with a margin of kTouch, because its tets are 1.4 high.
 constexpr double kBoundaryMargin = 0.5 * kTouch;
 /// Step of a boundary node, in half cubes: the first one, its growth after success, its reduction after failure, and
 /// the length below which the node stops.
@@ -44,7 +44,7 @@ constexpr double kLastStep = 0.02;
 constexpr double kRetryStep = 0.05;
 /// An inner node nearer than this to its neighbours' mean, in half cubes, does not move.
 constexpr double kNearMean = 0.02;
-/// The volume hardly changes after some twelve sweeps.
+/// After some twelve sweeps the volume hardly changes.
 constexpr int kSweeps = 16;
 
 /// Points by tet, as doubly linked lists, so that a point changes its tet in constant time.
@@ -184,7 +184,7 @@ class CageFit {
     return true;
   }
 
-  /// Distance of the node's dihedral angles from 0 and 180 degrees, by their cosines.
+  /// Distance of the node's dihedral angles from 0 and 180 degrees, in terms of cosines.
   double worstShape(int n) const {
     double worst = 1.0;
     for (int k = 0; k < starSize(n); ++k) {
@@ -223,7 +223,7 @@ class CageFit {
     maps_.clear();
     for (int k = 0; k < starSize(n); ++k) maps_.emplace_back(cornersOf(mesh_, mesh_.tets[starTet(n, k)]));
     moved_.clear();
-    // The point that stopped the node last time is the likeliest to stop it again, if it is still around.
+    // The point that stopped the node last time is the most likely to stop it again, if it is still nearby.
     if (blocker_[n] >= 0) {
       const Tet& home = mesh_.tets[lists_.tetOf(blocker_[n])];
       if (std::find(home.begin(), home.end(), n) != home.end() && holder(n, 0, blocker_[n]) < 0) return false;
@@ -241,7 +241,7 @@ class CageFit {
     return true;
   }
 
-  /// The tet around the node that contains the point, trying number k first; -1 if there is none.
+  /// The tet around the node that contains the point; tries number k first; -1 if there is none.
   int holder(int n, int k, int point) const {
     assert(maps_.size() == static_cast<std::size_t>(starSize(n)));
     if (holds(starTet(n, k), k, point)) return k;
@@ -251,7 +251,7 @@ class CageFit {
     return -1;
   }
 
-  /// Of several duplicates, only one that shares a face with the point's tet is known to belong to its component.
+  /// Among several duplicates, only one that shares a face with the point's tet certainly belongs to its component.
   bool mayTake(int tet, int from) const {
     if (!copied_[tet] && !copied_[from]) return true;
     const Tet& own = mesh_.tets[from];

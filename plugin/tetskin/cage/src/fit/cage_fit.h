@@ -9,11 +9,11 @@
 namespace tetskin::cage_detail {
 
 /// Pulls the boundary nodes of a cage towards the surface, and moves the inner nodes out of their way.
-/// cage      nodes are moved; tets stay as they are; which of them contains a point is updated
-/// half      spacing of the lattice the cage came from, rest space
-/// points    that the cage contains, and must still contain in the sense of `embed`
-/// Every dihedral angle stays within kMinDihedralDeg and kMaxDihedralDeg. Each move is checked by itself and undone if
-/// it would violate one of these conditions; so the cage is valid at any time. Cost O(tets + points), a few dozen
+/// cage      nodes are moved, tets stay; the tet that contains each point is updated
+/// half      half the spacing of the cage's lattice, rest space
+/// points    which the cage contains, and must still contain in the sense of `embed`
+/// Every dihedral angle stays within kMinDihedralDeg and kMaxDihedralDeg. Each move is checked separately, and undone
+/// if it would violate one of these conditions, so the cage is valid at any time. Cost O(tets + points), a few dozen
 /// visits each.
 void fitCage(CageTets& cage, double half, const std::vector<Eigen::Vector3d>& points);
 

@@ -41,7 +41,7 @@ std::vector<int> componentNumbers(const TetMesh& mesh) {
 
 DihedralRange dihedralRange(const TetMesh& mesh) {
   Progress::goOnWithRound();
-  // A radian.
+  // Degrees per radian.
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   double smallest = 1.0, largest = -1.0;  // cosines of the angles
   for (const Tet& tet : mesh.tets) {

@@ -10,7 +10,7 @@
 
 namespace tetskin {
 
-/// Limits of a cage's dihedral angles, degrees. Outside them explicit integration needs smaller steps (a thin tet is
+/// Limits of a cage's dihedral angles, degrees. Outside of them explicit integration needs smaller steps (a thin tet is
 /// stiff along its shortest altitude) and linear tets lock.
 constexpr double kMinDihedralDeg = 10.0;
 constexpr double kMaxDihedralDeg = 165.0;

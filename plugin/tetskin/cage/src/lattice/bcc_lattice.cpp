@@ -17,7 +17,7 @@ namespace {
 
 using Point = std::array<int, 3>;
 
-/// The side `sign` along axis `u` of the face that lies along axis `b`.
+/// The edge on the side `sign` along axis `u`, of the cube's face along axis `b`.
 int localOf(int b, int u, int sign) {
   return 4 * b + (u == (b + 1) % 3 ? 0 : 2) + (sign < 0 ? 1 : 0);
 }
@@ -153,7 +153,7 @@ LatticeTet locate(const Eigen::Vector3d& p) {
     tet.cube[axis] = static_cast<std::int32_t>(std::floor(0.5 * p[axis]));
     r[axis] = p[axis] - (2.0 * tet.cube[axis] + 1.0);
   }
-  // The cube is split into a pyramid for each face, each pyramid into a quarter for each edge of the face.
+  // The cube is split into a pyramid for each face, and each pyramid into a quarter for each edge of the face.
   const Eigen::Vector3d size = r.cwiseAbs();
   const int b = size[0] >= size[1] ? (size[0] >= size[2] ? 0 : 2) : (size[1] >= size[2] ? 1 : 2);
   const int next = (b + 1) % 3, last = (b + 2) % 3;

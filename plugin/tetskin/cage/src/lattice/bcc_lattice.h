@@ -6,7 +6,7 @@
 // Nodes have integer coordinates that are all even (corners of cubes with sides of 2) or all odd (centres of cubes). A
 // tet joins the centres of two neighbouring cubes with one of the four edges of the face between them, so all tets are
 // congruent, with dihedral angles of 60 and 90 degrees. All their faces lie in planes x+y, x-y, y+z, y-z, z+x, z-x =
-// even, which makes finding a point's tet, and most tests against one, a matter of comparing six numbers.
+// even, so finding a point's tet, and most tests against one, only compare six numbers.
 #pragma once
 
 #include <tetskin/core/mesh.h>
@@ -28,7 +28,7 @@ constexpr std::uint16_t kAllTets = (1u << kTetsPerCube) - 1;
 constexpr int kStarSize = 24;
 /// Volume of a tet in lattice coordinates: two edges of length 2, crossing at distance 1.
 constexpr double kLatticeTetVolume = 2.0 / 3.0;
-/// Largest coordinate of a cube: leaves room for doubling and for the steps to neighbours in 32 bits.
+/// Largest coordinate of a cube: leaves room in 32 bits for doubling it and for steps to neighbours.
 constexpr double kMaxCube = 1 << 29;
 
 struct LatticeTet {
@@ -55,6 +55,7 @@ struct LatticeTables {
   std::array<std::array<LatticeStep, 4>, kTetsPerCube> neighbours;  ///< across the face opposite to each corner
   std::array<std::array<LatticeStep, kStarSize>, 2> star;           ///< tets around a node of each kind
   std::array<std::array<std::uint32_t, kStarSize>, 2> starLinks;    ///< bits of those that share a face and that node
+                                                                    ///< with it
 };
 const LatticeTables& latticeTables();
 
@@ -73,13 +74,12 @@ inline Eigen::Vector3d cubeOrigin(const Cube& c) {
   return {2.0 * c[0], 2.0 * c[1], 2.0 * c[2]};
 }
 
-/// The tet that holds a point in lattice coordinates; on a face, one of its two tets. O(1).
+/// The tet that contains a point in lattice coordinates; on a face, one of its two tets. O(1).
 LatticeTet locate(const Eigen::Vector3d& p);
 
 /// Centroid of a tet in lattice coordinates.
 Eigen::Vector3d centroid(const LatticeTet& tet);
 
-/// The four nodes of a tet.
 std::array<LatticeNode, 4> nodesOf(const LatticeTet& tet);
 
 /// The position and size of the lattice in the mesh's space.
@@ -91,8 +91,8 @@ struct LatticeFrame {
   Eigen::Vector3d toRest(const Eigen::Vector3d& x) const { return origin + half * x; }
 };
 
-/// A sparse set of tets: memory is proportional to the number of cubes that were ever inserted, wherever they are.
-/// Cubes keep the order in which they were inserted, so that everything built from a set is reproducible.
+/// A sparse set of tets: memory is proportional to the number of cubes ever inserted, wherever they are. Cubes keep
+/// their order of insertion, so that everything built from a set is reproducible.
 class LatticeSet {
  public:
   LatticeSet() : slots_(64, -1) {}
@@ -100,14 +100,13 @@ class LatticeSet {
   std::size_t cubeCount() const { return cubes_.size(); }
   std::size_t tetCount() const { return tetCount_; }
   const Cube& cube(std::size_t i) const { return cubes_[i]; }
-  /// Bit t is set where tet t of cube i is in the set.
+  /// Bit t is set if tet t of cube i is in the set.
   std::uint16_t mask(std::size_t i) const { return masks_[i]; }
   /// Index of a cube, or -1.
   int find(const Cube& cube) const;
-  /// Index of a cube, which is added without tets if it is not in the set yet.
+  /// Index of a cube; adds it, without tets, if it is not in the set yet.
   int insert(const Cube& cube);
   bool contains(const LatticeTet& tet) const;
-  /// Adds tets of cube i.
   void add(std::size_t i, std::uint16_t tets);
   void add(const LatticeTet& tet) { add(insert(tet.cube), static_cast<std::uint16_t>(1u << tet.local)); }
 
@@ -128,7 +127,7 @@ struct LatticeMesh {
   /// One per tet: bit c is set if no tet lies beyond the face opposite to corner c.
   std::vector<std::uint8_t> openFaces;
 
-  /// Index of a tet of the set that the mesh was made of, or -1 if the tet is not in it.
+  /// Index of a tet of the set from which the mesh was made, or -1 if the tet is not in it.
   int indexOf(const LatticeSet& set, const LatticeTet& tet) const {
     assert(tet.local >= 0 && tet.local < kTetsPerCube && tetOf.size() == kTetsPerCube * set.cubeCount());
     const int cube = set.find(tet.cube);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The triangles of a node's star that lie opposite to it tile a sphere. Where the kept ones and the missing ones are
-// each connected by edges, they meet in one simple closed curve (the Jordan curve theorem excludes the rest), which is
-// what a manifold boundary means. That includes the edges at the node, which are the corners of the tiling.
+// The triangles of a node's star opposite to the node tile a sphere. If the kept ones and the missing ones are each
+// connected by edges, they meet in one simple closed curve (by the Jordan curve theorem), which makes the boundary a
+// manifold. That includes the edges at the node, which are the corners of the tiling.
 #include <tetskin/cage/src/lattice/cage_joints.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::uint32_t firstComponent(std::uint32_t within, const Links& links) {
   return component;
 }
 
-/// The fewest missing tets that connect one component of the kept tets with another.
+/// The smallest number of missing tets that connect one component of the kept tets with another.
 std::uint32_t shortestBridge(std::uint32_t kept, std::uint32_t component, const Links& links) {
   assert(component != 0 && (kept & component) == component && kept != component);
   std::array<std::uint32_t, kStarSize> rings{};  // rings[k]: tets at distance k from the component

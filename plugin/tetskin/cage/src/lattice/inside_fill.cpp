@@ -49,8 +49,8 @@ class InsideFill {
     int left = 0, right = 0;
   };
 
-  /// Enters the cubes around touched ones, so that every neighbour of a touched cube has an entry, and a cube without
-  /// one only borders on cubes without touched tets.
+  /// Adds entries for the cubes around touched ones, so that every neighbour of a touched cube has an entry, and a cube
+  /// without an entry only borders on cubes without touched tets.
   bool addRim() {
     const std::size_t touched = set_.cubeCount();
     wasTouched_.assign(touched, 1);
@@ -65,7 +65,7 @@ class InsideFill {
     return true;
   }
 
-  /// Name of an untouched tet: the tets of a cube that is untouched as a whole share one.
+  /// Number of an untouched tet: the tets of a completely untouched cube share one.
   int nameOf(std::size_t entry, int local) const {
     assert(entry < wasTouched_.size() && local >= 0 && local < kTetsPerCube);
     return static_cast<int>(kTetsPerCube * entry) + (wasTouched_[entry] ? local : 0);
@@ -91,9 +91,9 @@ class InsideFill {
     }
   }
 
-  /// Connects the regions at both ends of every gap along x, and the ends of every column with the outside. That
-  /// connects all of a region: each of its rims is connected in itself, and from the last cube of a rim along x a gap
-  /// leads on to a rim farther out.
+  /// Connects the regions at both ends of every gap along x, and the ends of every column with the outside. This
+  /// connects each region completely: each of its rims is connected in itself, and from a rim's last cube along x a gap
+  /// leads to a rim farther out.
   std::vector<Gap> connectColumns(DisjointSets& regions, int outside) const {
     const std::vector<std::int32_t> order = columnOrder(set_);
     std::vector<Gap> gaps;
@@ -126,7 +126,7 @@ class InsideFill {
     return cubeOrigin(cube) + Eigen::Vector3d::Constant(1.0 + 1.0 / 3.0);
   }
 
-  /// By name of a region's representative: 1 if it is inside.
+  /// By number of a region's representative: 1 if it is inside.
   std::vector<char> classify(DisjointSets& regions, int outside) const {
     const int outsideRoot = regions.find(outside);
     std::vector<std::array<int, 2>> members;  // representative, member
@@ -145,7 +145,7 @@ class InsideFill {
     return inside;
   }
 
-  /// Calls f with every untouched tet; with tet 0 only for cubes that are untouched as a whole.
+  /// Calls f with every untouched tet; for a completely untouched cube, only with tet 0.
   template <class F>
   void forUntouched(F f) const {
     for (std::size_t i = 0; i < touchedMask_.size(); ++i) {

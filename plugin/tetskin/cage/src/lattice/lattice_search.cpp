@@ -16,30 +16,31 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// A count this near the target ends the search at once. A closer one would cost more lattices than it is worth.
+/// A count this close to the target ends the search at once: a closer one is not worth more lattices.
 constexpr double kGoodCount = 0.03;
-/// Spacings tried at one origin before a count within kCountTolerance is accepted, and before the next origin is tried.
+/// Number of spacings to try at one origin before a count within kCountTolerance is accepted, and before the next
+/// origin is tried.
 constexpr std::size_t kSpacingsPerOrigin = 7;
-/// Origins tried. A box of a dozen tets needs most of them, everything else one or two.
+/// Number of origins to try. A box of a dozen tets needs most of them, everything else one or two.
 constexpr std::size_t kOrigins = 12;
-/// Counting stops at this many times the target, plus a constant for small targets: memory stays in bounds and a bad
-/// first guess costs little.
+/// Counting stops at this many times the target, plus a constant for small targets: this bounds the memory, and makes a
+/// bad first guess cheap.
 constexpr std::size_t kCountLimit = 3;
 constexpr std::size_t kCountLimitMore = 200;
 /// Mean width of a tet in lattice coordinates: the volume of tets that a plane touches, per area.
 constexpr double kMeanWidth = 1.65;
-/// How the count depends on the spacing, as a power: between 2 for sheets and 3 for bulk. Only for the first steps.
+/// Power with which the count depends on the spacing: between 2 for sheets and 3 for bulk. Only for the first steps.
 constexpr double kCountPower = 2.5;
-/// Steps without a bracket go a little too far, so that the next count is likely to be on the other side.
+/// Steps without a bracket go slightly too far, so that the next count is likely to be on the other side.
 constexpr double kOvershoot = 1.02;
-/// Change of the spacing after a count that was stopped.
+/// Factor of the spacing after a count that was stopped.
 constexpr double kStoppedFactor = 1.5;
 /// Share of the bracket that a step leaves at each end, so that it shrinks from both sides.
 constexpr double kBracketMargin = 0.1;
-/// Spacing in units of the rounding error of the coordinates; below, tets would be visibly distorted.
+/// Smallest spacing, in rounding errors of the coordinates; below, tets would be visibly distorted.
 constexpr double kRoundingRoom = 1e5;
 
-/// Origin number i in cubes: additive recurrence with the powers of the plastic number of three dimensions. All are
+/// Origin number i, in cubes: additive recurrence with the powers of the plastic number of three dimensions. All are
 /// irrational, so no face of a mesh with round coordinates lies in a lattice plane.
 Eigen::Vector3d originOf(std::size_t i) {
   constexpr double kPlastic = 1.2207440846057596;
@@ -53,8 +54,8 @@ Eigen::Vector3d originOf(std::size_t i) {
   return origin;
 }
 
-/// Estimated number of tets at a spacing: those in the volume, and half of those that touch the surface; all of the
-/// latter for sheets, whose area counts once.
+/// Estimated number of tets at a spacing: those in the volume, plus half of those that touch the surface; for sheets,
+/// whose area counts once, all of the latter.
 double estimatedCount(const Surface& surface, double half) {
   const double volume = surface.volume + 0.5 * kMeanWidth * half * surface.area;
   return volume / (kLatticeTetVolume * half * half * half);

@@ -11,7 +11,7 @@ namespace tetskin::cage_detail {
 /// The search aims at a count within this fraction of the target.
 constexpr double kCountTolerance = 0.10;
 
-/// One lattice and the tets it keeps.
+/// One lattice and the tets kept from it.
 struct LatticeCage {
   LatticeFrame frame;
   LatticeSet set;               ///< touching the surface, inside it, or joining pinched parts
@@ -21,7 +21,7 @@ struct LatticeCage {
 
 /// Finds the spacing, and the lattice's origin along each axis, for which about `target` tets are kept.
 /// The count is not a continuous function of the spacing: on flat faces it jumps by whole layers. So the spacing is
-/// bracketed at one origin first, then at others, until the count is good; the best is returned in any case.
+/// bracketed at one origin first, then at others, until the count is good; in any case the best is returned.
 /// firstOrigin  index of the first origin in the sequence: another one gives another lattice
 /// Cost: lattices * O(triangles + target). Spacings never fall below `smallestSpacing`, even if that means fewer tets.
 LatticeCage searchLattice(const Surface& surface, const WindingTree& winding, std::size_t target,

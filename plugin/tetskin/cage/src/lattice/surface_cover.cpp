@@ -54,7 +54,7 @@ class TriangleProbe {
       const auto& c = latticeTables().corners[tet.local][i];
       nodes[i] = {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
     }
-    // Relative to the tet's cube, so that far from the origin nothing is lost to cancellation.
+    // Relative to the tet's cube, so that nothing is lost to cancellation far from the origin.
     const Corners triangle = {corners_[0] - base, corners_[1] - base, corners_[2] - base};
     if (separates(normal_, triangle, nodes)) return false;
     for (int i = 0; i < 3; ++i) {
@@ -115,7 +115,6 @@ class Cover {
 
   bool full() const { return set_.tetCount() > limit_; }
 
-  /// Sets the number of the triangles that follow.
   void setTriangle(std::uint32_t triangle) { triangle_ = triangle; }
 
   void addTriangle(const Corners& corners, const LatticeTet& start) {
@@ -189,7 +188,7 @@ bool coverAll(const Surface& surface, const LatticeFrame& frame, Cover& cover) {
     const auto& t = surface.triangles[k];
     cover.setTriangle(k);
     const Located &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-    // Tets are convex: a triangle whose corners are deep in one touches no other.
+    // Tets are convex: a triangle whose corners are all deep in one tet touches no other.
     if (a.deep && b.deep && c.deep && sameTet(a, b) && sameTet(a, c)) {
       cover.addTet(a.tet);
     } else {

@@ -8,8 +8,8 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Number of cubes of cells along each axis around a cube of the lattice that its tets may reach, and how far below it
-/// they begin.
+/// Number of cubes of cells along each axis around a lattice cube that its tets may reach, and how far below it they
+/// begin.
 constexpr int kReach = 3 * kCellDivision;
 constexpr int kBelow = kCellDivision;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A tet of the lattice is divided into 64 cells: the tets of the same lattice at a quarter of the spacing, which nest
-// in it. One 64-bit word stores which of them are inside a body.
+// A lattice tet is divided into 64 cells: the tets of the same lattice at a quarter of the spacing, which nest in it.
+// One 64-bit word stores which of them are inside a body.
 #pragma once
 
 #include <tetskin/cage/src/lattice/bcc_lattice.h>
@@ -21,20 +21,20 @@ constexpr int kCellDivision = 4;
 
 /// Bit k is set for cell k of a tet.
 using CellMask = std::uint64_t;
-/// A tet that is full.
+/// A full tet.
 constexpr CellMask kAllCells = ~CellMask{0};
 constexpr CellMask cellBit(int cell) {
   return CellMask{1} << cell;
 }
 
-/// By cell of a tet: the cells of the same tet that it shares a face with.
+/// By cell of a tet: the cells of the same tet with which it shares a face.
 using CellGraph = std::array<CellMask, kCellsPerTet>;
 
 /// By tet of a cube, `LatticeTet::local`.
 struct CellTables {
   struct Crossing {
     std::uint8_t own = 0;     ///< cell of the tet
-    std::uint8_t beyond = 0;  ///< cell of the tet beyond, on the other side of the same face of a cell
+    std::uint8_t beyond = 0;  ///< adjacent cell of the tet beyond, on the other side of that face
   };
 
   /// Lattice coordinates relative to the cube.

@@ -12,7 +12,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// More layers than any mesh has around a point; the number is kept in 16 bits.
+/// More layers than any mesh has around a point; the number must fit 16 bits.
 constexpr double kMaxWinding = 100.0;
 
 class MaterialFinder {

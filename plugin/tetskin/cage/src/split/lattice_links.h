@@ -9,7 +9,7 @@
 
 namespace tetskin::cage_detail {
 
-/// The adjacency of a lattice mesh, by the numbers of its tets.
+/// The adjacency of a lattice mesh, in terms of its tets' numbers.
 struct LatticeLinks {
   LatticeLinks(const LatticeSet& set, const LatticeMesh& lattice);
 

@@ -12,9 +12,9 @@ namespace {
 constexpr double kJustThere = 1e-6;
 /// Up to this many elements are tested one by one: a tree would save nothing.
 constexpr std::size_t kFewElements = 32;
-/// The boxes of triangles are enlarged by this, in half cubes. Spacings are such that rounding errors stay far below
-/// it, see smallestSpacing: a tree finds every crossing that a test of all triangles would, except those that exist by
-/// rounding only, as with a triangle without area.
+/// The boxes of triangles are enlarged by this, in half cubes. Rounding errors stay far below it, see smallestSpacing:
+/// a tree finds every crossing that a test of all triangles would find, except those that exist only by rounding, as
+/// with a triangle without area.
 constexpr double kBoxSlack = 1e-4;
 /// Leaf size of a tree: testing a triangle costs little more than testing a box.
 constexpr int kLeafSize = 4;
@@ -78,8 +78,8 @@ int SegmentQueries::firstCrossing(int tet, const Eigen::Vector3d& from, const Ei
   forElementsAlong(tet, from, direction, [&](std::size_t e, double& maximum) {
     const Crossing crossing = crossingOf(e, from, direction);
     if (crossing.leaves != leaving || !(crossing.fraction > kJustThere && crossing.fraction <= maximum)) return;
-    // Of two crossings at the same position, the one of lower number counts: elements come in any order. A crossing at
-    // the end of the segment is too late.
+    // Of two crossings at the same position, the one of lower number counts, because elements come in any order. A
+    // crossing at the end of the segment is too late.
     const int element = static_cast<int>(e);
     if (crossing.fraction == maximum && element > first) return;
     maximum = crossing.fraction;

@@ -55,7 +55,6 @@ class SegmentQueries {
   Crossing crossingOf(std::size_t element, const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
   int firstCrossing(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& direction, bool leaving) const;
 
-  /// A tree of a tet's elements.
   struct ElementTree {
     Bvh bvh;
     std::vector<BvhBox<double>> boxes;

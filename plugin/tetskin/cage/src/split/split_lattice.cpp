@@ -54,7 +54,7 @@ class Splitter {
     }
   }
 
-  /// Unites the corners that two duplicates have in common into the same nodes.
+  /// Unites the common corners of two duplicates into the same nodes.
   void joinNodes(int a, int b) {
     assert(kept_[a] && kept_[b]);
     for (int i = 0; i < 4; ++i) {
@@ -65,8 +65,8 @@ class Splitter {
     components_.unite(a, b);
   }
 
-  /// Where components of the surface have been separated in spite of this, they are joined again, by tets with their
-  /// duplicates or with those of a neighbour. The component with the most points is the one that the others join.
+  /// If components of the surface have still been separated, joins them again, by tets with their duplicates or with
+  /// those of a neighbour. The others join the component with the most points.
   void joinTornComponents() {
     DisjointSets components(samples_.points.size());
     for (const auto& [a, b] : samples_.steps) components.unite(a, b);

@@ -19,15 +19,15 @@ struct CageTets {
   std::vector<int> tetOf;        ///< by point: the tet that contains it, or -1
   bool split = false;            ///< some node has a duplicate at the same lattice position
 
-  /// The number of tets in addition to the first one of each lattice tet.
+  /// The number of tets beyond the first of each lattice tet.
   std::size_t copies() const;
 };
 
 /// The lattice without duplicates: every tet once.
 CageTets wholeLattice(const LatticeMesh& lattice, const TetMaterial& material, const std::vector<int>& tetOf);
 
-/// The duplicates, joined face to face where they are connected: by nodes that they share. Each component of the
-/// surface ends up in one component; components without a point are removed, and so are duplicates that contain next to
+/// The duplicates, joined face to face where they are connected: by sharing nodes. Each component of the surface ends
+/// up in one component of the cage; components without a point are removed, as are duplicates that contain almost
 /// nothing.
 CageTets splitLattice(const TetCopies& copies, const SurfaceSamples& samples, const LatticeMesh& lattice,
                       const LatticeLinks& links);

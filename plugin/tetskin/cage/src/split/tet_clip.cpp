@@ -26,7 +26,7 @@ struct Polygon {
   }
 };
 
-/// The part of the polygon where one weight is not below 0.
+/// The part of the polygon where one weight is not negative.
 Polygon cut(const Polygon& polygon, int weight) {
   Polygon kept;
   for (std::size_t k = 0; k < polygon.count; ++k) {

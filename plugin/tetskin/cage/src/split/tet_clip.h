@@ -10,12 +10,11 @@
 
 namespace tetskin::cage_detail {
 
-/// True if the segment between two points passes through the tet, or passes it within the rounding of lattice
-/// coordinates.
+/// True if the segment between two points passes through the tet, or by it within the rounding of lattice coordinates.
 bool passesThrough(const Eigen::Vector4d& from, const Eigen::Vector4d& to);
 
-/// Mean of the corners of the part of a triangle in the tet, as weights; for a triangle that only touches the tet, a
-/// point near by.
+/// Mean of the corners of the part of a triangle within the tet, as weights; for a triangle that only touches the tet,
+/// a nearby point.
 Eigen::Vector4d centroidWithin(const std::array<Eigen::Vector4d, 3>& triangle);
 
 }  // namespace tetskin::cage_detail

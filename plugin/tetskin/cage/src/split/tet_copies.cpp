@@ -11,7 +11,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Most duplicates that are visited around a tet, which has some seventy neighbours.
+/// Largest number of duplicates to visit around a tet, which has some seventy neighbours.
 constexpr std::size_t kMaxAround = 200;
 
 /// Keeps each pair once, with the lower number first.
@@ -34,7 +34,7 @@ class CopyLinks {
         links_(links),
         queries_(directions) {}
 
-  /// Finds the links; returns them with the pieces of a tet united that are found to be one.
+  /// Finds the links. Pieces of a tet that turn out to be one are united.
   std::vector<std::array<int, 2>> run() {
     linkTriangles();
     linkMaterial();
@@ -98,7 +98,7 @@ class CopyLinks {
     return against;
   }
 
-  /// A piece without material is united with another piece of its tet if the two are connected in the tets around: both
+  /// Unites a piece without material with another piece of its tet if the two are connected in the tets around: both
   /// then belong to the rim of one part.
   void mergeLightPieces() {
     DisjointSets same(pieces_.pieces.size());
@@ -115,7 +115,7 @@ class CopyLinks {
     renumber(same);
   }
 
-  /// Unites it with those of its tet to which a path of links leads that does not leave the tets around it.
+  /// Unites it with those pieces of its tet that a path of links within the surrounding tets leads to.
   void uniteAround(int light, const Lists<>& neighbours, DisjointSets& same) const {
     const int tet = piece(light).tet;
     std::vector<int> reached = {light};

@@ -23,7 +23,7 @@ struct TetCopies {
   std::vector<std::array<int, 2>> links;  ///< pairs of duplicates, of tets that share a face, that are connected there
 };
 
-/// Each connected piece within a tet (see `piecesIn`) becomes a duplicate, so that a point's duplicate is one of the
+/// Each connected piece within a tet (see `piecesIn`) becomes a duplicate, so a point's duplicate always belongs to the
 /// tet that contains it, whatever the shape. Between tets, duplicates are connected where cells share faces, or where a
 /// triangle passes through.
 ///

@@ -11,7 +11,7 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Depths below a triangle at which its material is searched for, in altitudes of a cell.
+/// Depths below a triangle at which its material is looked for, in altitudes of a cell.
 constexpr std::array<double, 4> kProbeDepths = {0.3, 0.6, 1.0, 1.5};
 /// Altitude of a lattice tet, in lattice coordinates.
 constexpr double kAltitude = 1.4142135623730951;
@@ -19,10 +19,10 @@ constexpr double kAltitude = 1.4142135623730951;
 constexpr double kJustOutside = 1e-3;
 /// An eighth of a tet's longest edge, in half cubes: components nearer to each other than this are joined.
 constexpr double kNearComponents = 0.25;
-/// Most segments between two pieces of material that are tested.
+/// Largest number of segments to test between two pieces of material.
 constexpr std::size_t kSights = 24;
 
-/// Finds the pieces. The elements of surface come first, see SegmentQueries, then the connected cells of material.
+/// Finds the pieces. Elements of surface come first, see SegmentQueries, then the connected cells of material.
 class PieceFinder {
  public:
   PieceFinder(const Surface& surface, const WindingTree& winding, const std::vector<int>& tetOf,
@@ -124,7 +124,7 @@ class PieceFinder {
     return ofMaterial_[element - surfaceElements()];
   }
 
-  /// The faces of a tet's material cells in which no surface lies: a gap may be narrower than a cell.
+  /// The faces of a tet's material cells that contain no surface: a gap may be narrower than a cell.
   CellGraph openFaces(int tet) const {
     CellGraph open{};
     for (int a = 0; a < kCellsPerTet; ++a) {
@@ -159,7 +159,7 @@ class PieceFinder {
     });
   }
 
-  /// Calls visit(element, a point of it, unit normal) for the surface in a tet that is not united with material yet.
+  /// Calls visit(element, a point of it, unit normal) for the surface in a tet that is not yet united with material.
   template <class Visit>
   void forEmpty(int tet, Visit&& visit) {
     for (std::size_t e = first(tet); e < last(tet); ++e) {
@@ -181,7 +181,7 @@ class PieceFinder {
     return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2] + weights[3] * corners[3];
   }
 
-  /// The element of material in the tet that a ray first reaches, and at what depth; or 0.
+  /// The element of material in the tet that a ray reaches first, and its depth; or 0.
   std::pair<std::size_t, double> materialAlong(int tet, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     const LatticeTet& own = links_.tets[tet];
     for (const double depth : kProbeDepths) {
@@ -201,7 +201,7 @@ class PieceFinder {
     return false;
   }
 
-  /// Unites components that lie in each other, or near: something placed on a body, or in it, stays attached.
+  /// Unites components that lie inside each other, or near: something placed on a body, or in it, stays attached.
   void joinComponents(int tet) {
     for (std::size_t k = first(tet); k < last(tet); ++k) {
       withNormal(tet, k, [&](std::size_t e, const Eigen::Vector3d& from, const Eigen::Vector3d& outward) {
@@ -214,7 +214,7 @@ class PieceFinder {
     }
   }
 
-  /// Unites an element with the material outside of its triangle, if that lies within another component.
+  /// Unites an element with the material outside of its triangle, if that lies inside another component.
   void joinSurroundings(int tet, std::size_t element, const Eigen::Vector3d& from, const Eigen::Vector3d& outward) {
     const std::size_t found = materialAlong(tet, from, outward).first;
     if (found == 0) return;
@@ -222,7 +222,7 @@ class PieceFinder {
     if (std::abs(winding_.windingNumber(from + kJustOutside * cell_ * outward)) >= kInside) unite(element, found);
   }
 
-  /// Where there is little of a body, its cells may touch at edges only.
+  /// Where a body has little material, its cells may touch at edges only.
   void joinMaterialInSight(int tet) {
     for (std::size_t a = materialStarts_[tet]; a < materialStarts_[tet + 1]; ++a) {
       for (std::size_t b = a + 1; b < materialStarts_[tet + 1]; ++b) {

@@ -12,7 +12,7 @@ namespace tetskin::cage_detail {
 /// A connected piece of a body within a tet.
 struct TetPiece {
   int tet = -1;        ///< of the lattice mesh
-  CellMask cells = 0;  ///< its own material; 0 where only surface passes through
+  CellMask cells = 0;  ///< its own material; 0 if only surface passes through
 };
 
 struct TetPieces {
@@ -22,13 +22,13 @@ struct TetPieces {
   std::vector<char> layered;     ///< by tet: the surface passes through it more than once
 };
 
-/// Within a tet, the part of a triangle in it is connected, and is connected with that of the next triangle where an
-/// edge that they share passes through the tet. Cells of material are connected by faces in which no surface lies, or
-/// if a straight segment between them stays inside. Surface is connected with the material below it, or, where it is
-/// too thin for cells, with the surface on its other side. Components that lie in each other, or nearer to each other
-/// than an eighth of a tet, are united there.
+/// Within a tet, the part of a triangle in it is connected, also with the part of the next triangle if a common edge
+/// passes through the tet. Cells of material are connected by faces that contain no surface, or if a straight segment
+/// between them stays inside. Surface is connected with the material below it or, where it is too thin for cells, with
+/// the surface on its other side. Components that lie inside each other, or nearer to each other than an eighth of a
+/// tet, are united there.
 ///
-/// tetOf  by point of the surface, and further points: the tet that contains it, or -1
+/// tetOf  by point, the surface's own and further ones: the tet that contains it, or -1
 /// Cost   O(pairs of triangle and touched tet), a few microseconds each
 TetPieces piecesIn(const Surface& surface, const WindingTree& winding, const std::vector<int>& tetOf,
                    const TetMaterial& material, const LatticeFrame& frame, const LatticeMesh& lattice,

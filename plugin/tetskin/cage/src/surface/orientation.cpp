@@ -13,13 +13,13 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// Fraction of the half-edges that must have an opposite partner before the surface counts as oriented. Small scans
-/// with holes stay far above, a soup of unconnected triangles has none.
+/// Fraction of the half-edges that must have an opposite partner for the surface to count as oriented. Small scans with
+/// holes are far above it; a soup of unconnected triangles has 0.
 constexpr double kOrientedFraction = 0.8;
-/// Number of triangles of a patch for which it is tested whether they lie within other patches.
+/// Number of triangles of a patch that are tested for being inside other patches.
 constexpr std::size_t kCavitySamples = 9;
 /// How far below its surface a patch is sampled, as a fraction of the sampled triangle's size: near enough to stay
-/// inside thin patches, far enough for the winding number not to drown in rounding.
+/// inside thin patches, far enough that rounding does not dominate the winding number.
 constexpr double kCavityDepth = 1e-3;
 
 /// One side of a triangle, from its lower to its higher point.
@@ -71,7 +71,7 @@ class Sides {
 struct Patch {
   bool mixed = false;  ///< neighbours disagreed
   bool open = false;
-  double volume = 0.0;  ///< about the patch's own centre, which is the best choice for an open patch
+  double volume = 0.0;  ///< about the patch's own centre, the best choice for an open patch
   double area = 0.0;
   std::vector<int> triangles;
 };
@@ -96,7 +96,7 @@ bool isSheet(const Patch& patch) {
   return std::abs(patch.volume) <= kSheetVolume * patch.area * std::sqrt(patch.area);
 }
 
-/// Groups the triangles into patches and makes the orientations within each agree.
+/// Groups the triangles into patches, and makes the orientations within each consistent.
 std::vector<Patch> makePatches(Surface& surface, const Sides& sides) {
   DisjointSets sets(surface.solidCount);
   sides.forEdges([&](auto first, auto last) {
@@ -126,8 +126,8 @@ std::vector<Patch> makePatches(Surface& surface, const Sides& sides) {
   return patches;
 }
 
-/// True if the patch, closed and of negative volume, lies within others: just inside itself it contributes -1 to the
-/// winding number, so that anything above -1/2 comes from others around it.
+/// True if the patch, closed and of negative volume, lies inside others: just inside itself it contributes -1 to the
+/// winding number, so anything above -1/2 comes from others around it.
 bool isCavity(const Surface& surface, const WindingTree& tree, const Patch& patch) {
   const std::size_t step = std::max<std::size_t>(1, patch.triangles.size() / kCavitySamples);
   for (std::size_t i = 0; i < patch.triangles.size(); i += step) {

@@ -6,13 +6,13 @@
 
 namespace tetskin::cage_detail {
 
-/// Makes the triangles' orientation as consistent as it can be, in three steps, and sets `openEdges` and `oriented`:
-/// - a patch (triangles connected by edges of exactly two) in which neighbours disagree is made to agree, then
-///   turned so that its volume is positive;
-/// - a closed patch of negative volume is a cavity if it lies within another patch; otherwise it was inside out, and is
+/// Makes the triangles' orientation as consistent as possible, in three steps, and sets `openEdges` and `oriented`:
+/// - a patch (triangles connected by edges with exactly two triangles) with inconsistent neighbours is made consistent,
+///   then turned so that its volume is positive;
+/// - a closed patch of negative volume is a cavity if it lies inside another patch; otherwise it was inside out, and is
 ///   turned;
-/// - open patches whose triangles agree are left as they are: their author may know better.
-/// Cost: linear, and a winding number tree if there are closed patches of negative volume.
+/// - consistent open patches are left as they are: their author may know better.
+/// Cost: linear, plus a winding number tree if there are closed patches of negative volume.
 void orient(Surface& surface);
 
 }  // namespace tetskin::cage_detail

@@ -14,13 +14,13 @@
 namespace tetskin::cage_detail {
 namespace {
 
-/// A triangle whose area is below this fraction of its longest edge squared has no side: its normal is rounding error.
+/// A triangle whose area is below this fraction of its longest edge squared has no sides: its normal is rounding error.
 constexpr double kThinTriangle = 1e-12;
 
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// The triangles by the first vertex at each corner's position, without those that are points: they join nothing, and
-/// have no extent that a tet could cover.
+/// The triangles by the first vertex at each corner's position, without those that are points: these connect nothing,
+/// and have no extent that a tet could cover.
 Triangles weldedTriangles(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first) {
   Triangles welded;
   welded.reserve(mesh.triangleCount());
@@ -32,8 +32,8 @@ Triangles weldedTriangles(const TriangleMesh& mesh, const std::vector<std::uint3
   return welded;
 }
 
-/// Makes a point of each position that triangles use, in the order of the vertices. What a modeller cut off often
-/// leaves its vertices in the file: tets around those would belong to nothing, and fall apart.
+/// Makes a point of each position that triangles use, in the order of the vertices. Vertices of cut-off parts often
+/// stay in the file: tets around them would belong to nothing, and fall apart.
 void makePoints(const TriangleMesh& mesh, const std::vector<std::uint32_t>& first, Triangles& triangles,
                 Surface& surface) {
   std::vector<char> used(mesh.vertexCount(), 0);

@@ -61,7 +61,7 @@ class TriangleRows {
     return row;
   }
 
-  /// Joins each point of the longer row with the one beside it in the other row.
+  /// Joins each point of the longer row with its neighbour in the other row.
   void joinRows(const std::vector<int>& before, const std::vector<int>& row) {
     if (before.empty()) return;
     for (std::size_t k = 0; k < before.size(); ++k) {

@@ -10,7 +10,7 @@
 namespace tetskin::cage_detail {
 
 /// Points of a surface that represent all of it. Core's `forEachSample` does not know which points are neighbours, and
-/// takes many more of a long thin triangle.
+/// takes many more on a long thin triangle.
 struct SurfaceSamples {
   /// The surface's own points first, then points on those of its triangles that are longer than a step, in rows a step
   /// apart.

@@ -19,8 +19,8 @@ struct Crossing {
   int change() const { return !within() ? 0 : leaves ? -1 : 1; }
 };
 
-/// A triangle as seen from a point. An edge that two triangles share, and run along in opposite directions, gives both
-/// the same numbers except for the sign: no segment passes between them, unless it hits the edge to the last bit.
+/// A triangle as seen from a point. An edge of two triangles that use it in opposite directions gives both the same
+/// numbers except for the sign: no segment passes between them, unless it hits the edge to the last bit.
 class SeenTriangle {
  public:
   /// a, b, c  its corners, relative to the point

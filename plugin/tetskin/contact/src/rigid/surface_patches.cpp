@@ -14,12 +14,13 @@ namespace {
 
 using Point = EmbeddedPoint<btScalar>;
 
-/// Triangles with longer edges have samples by default, in mean edges of tets. A sphere half an edge wide rests 0.05
-/// edges or less deep between three corners so far apart; with 0.43 it would pass.
+/// Triangles with edges longer than this, in mean edges of tets, have samples by default. A sphere half an edge wide
+/// rests 0.05 edges or less deep between three corners this far apart; with 0.43 it would pass.
 constexpr double kLargeInEdges = 0.25;
-/// Spacing of these samples. The edge of a box that lies between two rows of them is at most half of it deep.
+/// Spacing of these samples, in mean edges. A box edge that lies between two rows of samples is at most half of this
+/// deep.
 constexpr double kSpacingInEdges = 0.125;
-/// Most divisions of an edge. A triangle has more samples than are allowed long before.
+/// Largest number of divisions of an edge. The number of samples reaches its limit long before.
 constexpr double kMaxEdgeDivisions = 1 << 14;
 
 void dropRepeated(std::vector<Point>& points) {

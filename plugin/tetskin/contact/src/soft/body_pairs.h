@@ -11,7 +11,7 @@
 
 namespace tetskin::contact_detail {
 
-/// Pairs of indices of boxes that overlap, each pair once, and each index with itself, sorted by the smaller index and
+/// Pairs of indices of boxes that overlap, each pair once, and each index with itself; sorted by the smaller index and
 /// then by the larger one. Cost O(n log n) for bodies that are spread along some axis.
 std::vector<std::pair<std::size_t, std::size_t>> overlappingBoxPairs(const std::vector<ContactBox>& boxes);
 

@@ -10,9 +10,9 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// The slack is the relative motion of this many steps, in cubes of the grid bounded as given.
+/// The slack is the relative motion of this many steps, bounded as given in cubes of the grid.
 constexpr btScalar kSlackSteps = 6, kSlackCubes = btScalar(0.7), kMaxSlackCubes = 3;
-/// In cubes of the grid: more than the planes of thin tets are wrong by in single precision.
+/// In cubes of the grid: more than the error of thin tets' planes in single precision.
 constexpr btScalar kRoundingCubes = btScalar(1e-3);
 
 /// A lower bound of the distance between two boxes; below 0 if they overlap.
@@ -22,7 +22,7 @@ btScalar gapBetween(const ContactBox& a, const ContactBox& b) {
   return gap;
 }
 
-/// By node: the least gap between a box of the tree, in which one of its tets is, and another box, at least `slack`.
+/// By node: the smallest gap between a box of the tree that contains one of its tets and another box; at least `slack`.
 /// tetOf  int(int item): the tet of an item of the tree
 template <class TetOf>
 void findClearances(const ContactBody& body, const SearchTree& tree, const std::vector<ContactBox>& boxes,
@@ -79,7 +79,7 @@ bool CandidateValidity::lasts(const ContactBody& first, const ContactBody& secon
                                                  [&](std::size_t n) { return second.positions[n]; });
   const Deviation own = deviate(0, first, motion), other = deviate(1, second, motion);
   drift_ = spread * own.near + kInsideSpread * other.near;
-  // The part of the slack that is used up: the rest is left for later steps.
+  // The used part of the slack: the rest is left for later steps.
   moved_ = std::max(
       {drift_, usedUp(0, spread, kInsideSpread * other.anywhere), usedUp(1, kInsideSpread, spread * own.near)});
   return moved_ + rounding_ <= slack_;
@@ -102,8 +102,8 @@ CandidateValidity::Deviation CandidateValidity::deviate(int k, const ContactBody
   return largest;
 }
 
-/// What the nodes that were far from the other body have used up of the slack.
-/// other  what the other body deviates by
+/// The part of the slack used by nodes that were far from the other body.
+/// other  the other body's deviation
 btScalar CandidateValidity::usedUp(int k, btScalar spread, btScalar other) const {
   btScalar used = 0;
   for (std::size_t n = 0; n < rooms_[k].size(); ++n) {

@@ -73,7 +73,7 @@ void ContactBody::read() {
   centroid = sum / static_cast<btScalar>(positions.size());
 }
 
-/// Everything else is read from the body in each step; its motion since the last one begins at these positions.
+/// Everything else is read from the body in each step; its motion since the last step is measured from these positions.
 void ContactBody::visitState(bullet_detail::WorldStream& stream, bool moves) {
   stream(self, id, reads);
   std::vector<btVector3> none;
@@ -168,8 +168,8 @@ DeformedTet ContactBody::deformed(int tet) const {
 void ContactBody::measure(DeformedTet& tet, int t) const {
   const Tet& n = data().tets[static_cast<std::size_t>(t)];
   tet.setPlanes(data().filled[static_cast<std::size_t>(t)].minimum);
-  // The map from world to rest space. The largest sum of a row of its square bounds its largest singular value's
-  // square.
+  // The map from world to rest space. The largest row sum of its square bounds the square of its largest singular
+  // value.
   const auto rest = [&](std::size_t k) -> const btVector3& { return data().nodes[static_cast<std::size_t>(n[k])]; };
   btVector3* map = tet.toRest;
   for (int axis = 0; axis < 3; ++axis) map[axis].setZero();

@@ -20,7 +20,7 @@ namespace tetskin::contact_detail {
 struct DeformedTet {
   btVector3 origin{0, 0, 0};
   btVector3 rows[3];
-  /// Of the planes that bound its filled part: unit normals, inwards, and the distances of the origin from them.
+  /// The planes that bound its filled part: unit normals, inwards, and the distances of the origin from them.
   btVector3 normals[4];
   btScalar offsets[4] = {};
   btVector3 restOrigin{0, 0, 0}, toRest[3];  ///< rest position: restOrigin[i] + toRest[i] . (p - origin)
@@ -38,13 +38,13 @@ struct DeformedTet {
   void setPlanes(const btScalar minimum[4]);
 };
 
-/// A lower bound of the distance between a box and the tet's filled part; below 0 if they may overlap. The tet is not
-/// flat.
+/// A lower bound of the distance between a box and the tet's filled part; negative if they may overlap. The tet must
+/// not be flat.
 btScalar gapTo(const ContactBox& box, const DeformedTet& tet);
 
 static_assert(kLanes == 4, "one lane for each tet of a group");
 
-/// The boxes of the tets of a group side by side: coordinates by axis. What is left over is empty.
+/// The boxes of the tets of a group side by side: coordinates by axis. Unused lanes are empty boxes.
 struct GroupBoxes {
   Four low[3], high[3];
 };
@@ -57,7 +57,7 @@ struct FourBoxes {
         high{four(box.high[0]), four(box.high[1]), four(box.high[2])} {}
 };
 
-/// The distances between a box and those of a group, 0 or below where they overlap.
+/// The distances between a box and those of a group; 0 or below if they overlap.
 TETSKIN_INLINE Four gapsBetween(const FourBoxes& box, const GroupBoxes& boxes) {
   const Four x = larger(Four(box.low[0] - boxes.high[0]), Four(boxes.low[0] - box.high[0]));
   const Four y = larger(Four(box.low[1] - boxes.high[1]), Four(boxes.low[1] - box.high[1]));
@@ -65,7 +65,7 @@ TETSKIN_INLINE Four gapsBetween(const FourBoxes& box, const GroupBoxes& boxes) {
   return larger(larger(x, y), z);
 }
 
-/// Something that is computed at most once a step, by the first thread that needs it.
+/// A computation that runs at most once per step, in the first thread that needs its result.
 class OncePerStep {
  public:
   void reset() { done_.store(false, std::memory_order_relaxed); }
@@ -83,18 +83,18 @@ class OncePerStep {
   std::mutex mutex_;
 };
 
-/// Several threads may search in a body at once, after one has read it.
+/// Several threads may search in a body at once, after one thread has read it.
 class ContactBody {
  public:
   ContactBody(btSoftBody& solved, std::shared_ptr<const ContactShape> ofShape, bool meetsItself, int number);
 
   const ShapeData& data() const { return dataOf(*shape); }
-  /// False if the body is known to have been deleted; of bodies of the application, this is not known.
+  /// False if the body is known to have been deleted; for the application's own bodies this is unknown.
   bool lives() const { return !watched_ || !life_.expired(); }
   bool isWatched() const { return watched_; }
   /// True if the living body is in the world in which it was added.
   bool isInWorld() const { return body->getBroadphaseHandle() && body->getSoftBodySolver() == solver_; }
-  /// True if the body has the nodes and tets that the shape was made for.
+  /// True if the body has the nodes and tets for which the shape was made.
   bool fits() const;
 
   /// Reads the positions and velocities of the nodes, and computes their box. Cost O(nodes)
@@ -104,7 +104,7 @@ class ContactBody {
   /// Fits the trees to the current positions, unless this has been done since `read`. Cost O(tets + runs)
   void fit();
 
-  /// moves  whether its motion since the last step will matter
+  /// moves  whether its motion since the last step will be needed
   void visitState(bullet_detail::WorldStream& stream, bool moves);
 
   /// A box around the samples of a run, by the nodes of its tet.
@@ -125,12 +125,12 @@ class ContactBody {
   bool awake = true;
   bool readable = false;  ///< all positions are finite
   ContactBox box;
-  btVector3 centroid{0, 0, 0};                         ///< of the nodes
-  int reads = 0;                                       ///< number of times that `read` has been called
-  btScalar moved = 0, fastest = 0;                     ///< most of any node since it was read before, and its speed
-  btScalar farthest = 0;                               ///< largest coordinate of any node, by which rounding grows
+  btVector3 centroid{0, 0, 0};      ///< of the nodes
+  int reads = 0;                    ///< number of times that `read` has been called
+  btScalar moved = 0, fastest = 0;  ///< largest displacement of a node since the last `read`, and largest speed
+  btScalar farthest = 0;            ///< largest coordinate of any node: rounding grows with it
   std::vector<btVector3> positions, velocities;        ///< by node
-  std::vector<btVector3> before;                       ///< positions by node when it was read before
+  std::vector<btVector3> before;                       ///< positions by node at the `read` before
   std::vector<GroupBoxes> groupBoxes;                  ///< by group: around the tets' filled parts; valid after `place`
   std::vector<ContactBox> runTreeBoxes, tetTreeBoxes;  ///< by node of the shape's trees, valid after `fit`
 

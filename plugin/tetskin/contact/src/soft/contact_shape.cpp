@@ -18,22 +18,22 @@ namespace tetskin {
 namespace contact_detail {
 namespace {
 
-/// Height above a triangle at which it is tested whether it is inside another component, in sides of the mesh's box.
+/// Height above a triangle at which a point is tested for being inside another component, in sides of the mesh's box.
 constexpr double kOverTriangle = 1e-4;
 /// Divisions of a tet along each weight: 64 cells.
 constexpr int kCellsAlong = 4;
 static_assert(kCellsAlong * kCellsAlong * kCellsAlong <= 64, "CarriedCells has 64 bits");
 /// Elements per leaf of the trees: few enough that a leaf's box is tight, many enough that fitting is cheap.
 constexpr int kLeafSize = kLanes;
-/// Added around the weights of a run's samples: more than rounding changes them.
+/// Added around the weights of a run's samples: more than rounding can change them.
 constexpr btScalar kWeightMargin = btScalar(1e-3);
 
-/// Default number of samples, for each node of the cage's surface, and its bounds.
+/// Default number of samples per node of the cage's surface, and the bounds of the total.
 constexpr std::size_t kSamplesPerNode = 30, kFewSamples = 2000, kManySamples = 8000;
 
-/// Of each node few samples are used; with fewer than these, a pile of cubes takes longer to come to rest, and with
-/// fewer than vertices, what is finer than the cage enters other bodies: in the heap of `tetskin_pile` by 2.6 % of the
-/// body's size instead of 0.5.
+/// Few samples are used per node. With fewer than these, a pile of cubes takes longer to come to rest; with fewer than
+/// the vertices, details finer than the cage enter other bodies: in the heap of `tetskin_pile` by 2.6 % of the body's
+/// size instead of 0.5.
 std::size_t defaultSampleCount(const Cage& cage, const TriangleMesh& mesh) {
   std::vector<char> atSurface(cage.mesh.nodes.size(), 0);
   for (const std::array<int, 3>& face : boundaryFaces(cage.mesh)) {
@@ -53,13 +53,13 @@ Status checkOptions(const ContactShapeOptions& options) {
   return {};
 }
 
-/// Default number of cells of the grid; and what bounds it where parts are thinner than two of them.
+/// Default number of cells of the grid, and the bound of corners if parts are thinner than two cells.
 constexpr int kUsualCells = 64;
 constexpr double kMostCorners = 4e5;
-/// Cells along the longest side of the box: more than usual where the usual ones would hardly have one in the thickness
-/// of the body; then two, within the bound.
+/// Cells along the longest side of the box. If the usual number would hardly give one cell in the body's thickness,
+/// enough for two, within the bound.
 int cellsFor(const TriangleMesh& mesh, const std::vector<int>& visible, const TriangleBvh& surface, const Box3& box) {
-  constexpr double kSeen = 1.25;  // of a cell: a corner is inside
+  constexpr double kSeen = 1.25;  // of a cell: ensures that a corner is inside
   const double size = box.sizes().maxCoeff(), seen = kSeen * size / kUsualCells;
   const double thickness = usualThickness(mesh, visible, surface, seen);
   if (!(thickness < seen)) return kUsualCells;
@@ -81,8 +81,8 @@ Status checkInput(const Cage& cage, const TriangleMesh& mesh, const ContactShape
   return {};
 }
 
-/// True if the normals point inwards, by the sign of the enclosed volume; the volume is taken relative to the first
-/// triangle's first corner.
+/// True if the normals point inwards, by the sign of the enclosed volume, computed relative to the first triangle's
+/// first corner.
 bool facesInwards(const TriangleMesh& mesh) {
   assert(!mesh.triangles.empty());
   double volume = 0.0;
@@ -154,7 +154,7 @@ void appendSample(const TetMesh& cage, int tet, const Eigen::Vector3d& rest, Sha
   data.sampleRest.push_back(toBullet(rest));
 }
 
-/// Sorts the samples by tet; those of flat tets, in which no weights can be computed, are left out.
+/// Sorts the samples by tet. Leaves out those of flat tets, in which no weights can be computed.
 void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, const std::vector<btVector3>& normals,
               const std::vector<int>& tets, ShapeData& data) {
   assert(tets.size() == samples.size() && normals.size() == samples.size());
@@ -169,7 +169,7 @@ void makeRuns(const TetMesh& cage, const std::vector<SurfaceSample>& samples, co
     data.sampleNormals.push_back(normals[s]);
     data.runs.back().last = index + 1;
   }
-  // The samples of the last run, too, are read by fours.
+  // The samples of the last run are also read in fours.
   for (std::vector<btScalar>& weights : data.weights) weights.resize(weights.size() + kLanes - 1);
 }
 
@@ -179,7 +179,7 @@ ContactBox restBox(const ShapeData& data, int tet) {
   return box;
 }
 
-/// Computed from points of the tet that are so close to each other that the distance can hardly change between them.
+/// Computed from points of the tet that are so close together that the distance hardly changes between them.
 TetSubregion filledSubregion(const ShapeData& data, const Tet& nodes, btScalar size) {
   assert(data.grid.spacing() > 0 && size >= 0);
   const int along = 2 + static_cast<int>(size / data.grid.spacing());
@@ -235,7 +235,7 @@ void makeGroups(ShapeData& data) {
   }
 }
 
-/// By run: the least weights of its samples.
+/// By run: the smallest weights of its samples.
 void boundRuns(ShapeData& data) {
   for (const SampleRun& run : data.runs) {
     TetSubregion part;

@@ -8,13 +8,13 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Cosine from which on two normals belong to one side: edges may be rounded while a sample slides over them.
+/// Cosine above which two normals belong to one side: edges may be rounded while a sample slides over them.
 constexpr btScalar kSameSide = btScalar(0.5);
-/// Number of projections by which a side follows its sample along the surface.
+/// Number of projections with which a side follows its sample along the surface.
 constexpr int kProjections = 2;
-/// Steps by which a sample's motion is traced back to find where it has entered.
+/// Number of steps for which a sample's motion is traced back to find where it has entered.
 constexpr int kStepsBack = 4;
-/// Depth, in cubes of the grid, that is larger than the error of the grid.
+/// A depth, in cubes of the grid, larger than the error of the grid.
 constexpr btScalar kDeepCubes = 2;
 
 bool unitNormal(const GridDistance& at, btVector3& normal) {
@@ -47,7 +47,7 @@ ContactSide followed(const DistanceGrid& grid, const btVector3& rest, const Cont
   return side;
 }
 
-/// Finds the side through which a sample has entered that is already deep when it is first seen, by tracing its motion
+/// Finds the side through which a sample has entered, if it is already deep when first seen, by tracing its motion
 /// back.
 bool entered(const DistanceGrid& grid, const btVector3& rest, const btVector3& motion, ContactSide& side) {
   for (int k = 1; k <= kStepsBack; ++k) {
@@ -86,7 +86,7 @@ void ContactSides::clear() {
   next_ = 0;
 }
 
-/// Sides of the previous step are not saved: the next step replaces them when it begins.
+/// Sides of the step before are not saved: the next step replaces them when it begins.
 void ContactSides::visitState(bullet_detail::WorldStream& stream) {
   if (stream.restoring()) clear();
   stream.each(now_, [&](ContactSide& side) { stream(side.sample, side.point, side.normal); });

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Internal to SoftContacts: the side of a body's surface through which a sample has entered. The sample is pushed back
-// through that side, even from beyond the middle of a thin part, where the nearest surface is another one.
+// through that side, even from beyond the middle of a thin part, where another side is nearer.
 #pragma once
 
 #include <tetskin/bullet/src/base/world_stream.h>
@@ -14,8 +14,8 @@
 
 namespace tetskin::contact_detail {
 
-/// The plane of the surface that a sample is in front of, or has entered through, in the rest space of the body that it
-/// is in.
+/// The plane of the surface that a sample is in front of, or has entered through, in the rest space of the body it is
+/// in.
 struct ContactSide {
   int sample = 0;
   btVector3 point{0, 0, 0};   ///< a point of the surface
@@ -23,12 +23,12 @@ struct ContactSide {
 };
 
 /// The sides of the samples of one body in another. Where that body folds, a sample may be in several places of it,
-/// each with a side.
+/// each with its own side.
 class ContactSides {
  public:
   void beginStep();
-  /// The sample's side of the step before that is nearest to a point and nearer than `within`, or null. Samples must be
-  /// asked for in ascending order.
+  /// The sample's side from the last step that is nearest to a point, and nearer than `within`; or null. Samples must
+  /// be asked for in ascending order.
   const ContactSide* find(int sample, const btVector3& rest, btScalar within);
   void keep(const ContactSide& side) {
     assert(now_.empty() || now_.back().sample <= side.sample);
@@ -48,14 +48,14 @@ struct SideDistance {
   ContactSide side;
 };
 
-/// True if the side depends on the sample's motion: it is deep when it is first seen.
+/// True if the side depends on the sample's motion: it is already deep when it is first seen.
 bool asksForMotion(const DistanceGrid& grid, const GridDistance& nearest, const ContactSide* before);
 
 /// Finds the side of a sample. Returns false if the surface cannot be determined there.
 /// grid    of the body that the sample is in
 /// rest    position of the sample in that body's rest space; `nearest` is the grid's result there
-/// motion  the sample's motion in a step, in that rest space; used if `asksForMotion`
-/// before  the sample's side in the step before, or null
+/// motion  the sample's motion in a step, in that rest space; used if `asksForMotion` is true
+/// before  the sample's side in the last step, or null
 bool findSide(const DistanceGrid& grid, const btVector3& rest, const GridDistance& nearest, const btVector3& motion,
               const ContactSide* before, SideDistance& result);
 

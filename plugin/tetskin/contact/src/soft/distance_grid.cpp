@@ -50,7 +50,7 @@ DistanceGrid::DistanceGrid(const TriangleBvh& outside, const WindingTree& solid,
   findSteepness();
 }
 
-/// Between corners, each slope is a mean of those along the edges around.
+/// Between corners, each slope is a mean of those along the surrounding edges.
 void DistanceGrid::findSteepness() {
   float squares = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -69,7 +69,7 @@ void DistanceGrid::findSteepness() {
 }
 
 /// From one corner to the next, the nearest triangle is the same one or near it. The distance changes by at most the
-/// spacing, so that the sign can only change near the surface.
+/// spacing, so the sign can only change near the surface.
 void DistanceGrid::fillRow(const TriangleBvh& outside, const WindingTree& solid, const Eigen::Vector3d& first,
                            double spacing, float* row) const {
   NearestPoint nearest;

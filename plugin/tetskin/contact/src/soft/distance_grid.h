@@ -13,9 +13,9 @@
 
 namespace tetskin::contact_detail {
 
-/// Length of a gradient below which it has no direction, as in the middle of a thin part.
+/// A gradient shorter than this has no direction, as in the middle of a thin part.
 constexpr btScalar kNoDirection = btScalar(0.1);
-/// Length of a gradient at the surface from which on it is on no edge.
+/// A gradient at the surface at least this long is not on an edge.
 constexpr btScalar kOnFace = btScalar(0.9);
 
 /// The result of the grid at a point.
@@ -24,27 +24,27 @@ struct GridDistance {
   btVector3 gradient{0, 0, 0};
 };
 
-/// The number of corners that a grid has.
+/// The number of corners of a grid.
 /// cells  as for its constructor
 double cornersOfGrid(const Box3& box, int cells);
 
-/// Signed distances at the corners of cubes. Between the corners they are interpolated trilinearly; the gradient is
-/// that of the interpolation.
+/// Signed distances at the corners of cubes, interpolated trilinearly between them; the gradient is that of the
+/// interpolation.
 class DistanceGrid {
  public:
   DistanceGrid() = default;
   /// outside  the triangles that bound the union of all components; distances are measured from them
   /// solid    all triangles, which determine what is inside
-  /// box      to be covered; a few cubes around it are added
+  /// box      to be covered; a border of a few cubes is added
   /// cells    number of cubes along its longest side, at least 1
   /// Cost     some microseconds per corner
   DistanceGrid(const TriangleBvh& outside, const WindingTree& solid, const Box3& box, int cells);
 
-  /// Returns false, and writes nothing, outside of the grid.
+  /// Returns false, and writes nothing, for a point outside of the grid.
   bool at(const btVector3& point, GridDistance& result) const;
   /// Side of a cube.
   btScalar spacing() const { return spacing_; }
-  /// How much the distance changes by at most, per length.
+  /// The largest change of the distance per length.
   btScalar steepness() const { return steepness_; }
   /// True if any corner is inside.
   bool hasInside() const;

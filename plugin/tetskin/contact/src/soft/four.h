@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftContacts: four numbers side by side. Compilers do not find by themselves that loops over four can be
-// computed at once.
+// Internal to SoftContacts: four numbers side by side. Compilers do not vectorise loops over four by themselves.
 #pragma once
 
 #define TETSKIN_KERNELS contact
@@ -25,7 +24,7 @@ TETSKIN_INLINE Four four(btScalar x) {
   return Four{x, x, x, x};
 }
 
-/// Four numbers from memory at any address.
+/// Loads four numbers from any address.
 TETSKIN_INLINE Four fourAt(const btScalar* from) {
   Four v;
   std::memcpy(&v, from, sizeof v);
@@ -36,7 +35,7 @@ TETSKIN_INLINE void put(const Four& v, btScalar* to) {
   std::memcpy(to, &v, sizeof v);
 }
 
-/// The coordinates, and a fourth number of no meaning.
+/// The coordinates, and a meaningless fourth number.
 TETSKIN_INLINE Four fourOf(const btVector3& p) {
   return fourAt(p.m_floats);
 }

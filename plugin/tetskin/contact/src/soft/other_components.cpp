@@ -25,7 +25,7 @@ std::vector<std::vector<int>> neighboursOf(const ShapeData& data) {
   return neighbours;
 }
 
-/// Finds the nodes within some distance of a tet along edges.
+/// Finds the nodes within some distance of a tet, measured along edges.
 class NearNodes {
  public:
   explicit NearNodes(const ShapeData& data)

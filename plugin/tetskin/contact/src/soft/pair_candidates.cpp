@@ -16,7 +16,7 @@ void PairCandidates::update(ContactBody& first, ContactBody& second, btScalar dt
   reads_[1] = second.reads;
 }
 
-/// Returns false if the candidates may not be complete any more.
+/// Returns false if the candidates may no longer be complete.
 bool PairCandidates::follow(const ContactBody& first, const ContactBody& second) {
   if (first.reads != reads_[0] + 1 || second.reads != reads_[1] + 1) return false;
   if (!validity_.lasts(first, second)) return false;
@@ -32,8 +32,8 @@ bool PairCandidates::follow(const ContactBody& first, const ContactBody& second)
   return true;
 }
 
-/// Calls use(run, bound) for each run, with a bound of what the run's samples and the tets near them approach each
-/// other by, while nodes go from one position to another.
+/// Calls use(run, bound) for each run, with a bound of how much the run's samples and the tets near them approach each
+/// other while nodes go from one position to another.
 /// from, to            btVector3(std::size_t node), of the first body
 /// fromOther, toOther  of the second one
 template <class From, class To, class FromOther, class ToOther, class Use>
@@ -106,7 +106,7 @@ void PairCandidates::find(ContactBody& first, ContactBody& second) {
   listNodes(first, second);
 }
 
-/// Finds the groups near to all runs of a leaf, and then those near to each.
+/// Finds the groups near to all runs of a leaf, and then those near to each run.
 void PairCandidates::findInLeaf(const Pair& pair, std::size_t leaf) {
   const SearchTree &runs = pair.first->data().runTree, &tets = pair.second->data().tetTree;
   const ContactBox around = pair.first->runTreeBoxes[leaf].grownBy(validity_.slack()).intersection(pair.overlap);

@@ -14,54 +14,54 @@
 
 namespace tetskin::contact_detail {
 
-/// Infinite: a clearance that no motion exceeds.
+/// Infinite: no motion exceeds this clearance.
 constexpr btScalar kForever = std::numeric_limits<btScalar>::infinity();
 
 /// Upper bound of how much a sample within a tet approaches the surface, per motion relative to the tet. While the tet
-/// deforms, the surface comes nearer faster than its nodes.
+/// deforms, the surface may approach faster than its nodes.
 constexpr btScalar kApproach = 4;
 
 /// A lower bound of the distance by which samples may move before one of them enters a tet, or reaches the surface;
-/// world space. Nothing depends on what is skipped by it: found again, it would be as clear.
+/// world space. Skipping by it changes no result: a new search would also find nothing.
 struct Clearance {
   btScalar outside = kForever;
-  /// Of the samples within the tet, the least distance from the surface: it becomes shorter by at most `kApproach`
-  /// times their motion. Below 0 inside
+  /// Of the samples within the tet, the smallest distance from the surface, negative inside: it decreases by at most
+  /// `kApproach` times their motion
   btScalar distance = kForever;
 
   void cut(const Clearance& other) {
     outside = std::min(outside, other.outside);
     distance = std::min(distance, other.distance);
   }
-  /// The values at which they end, if the path of the run is now this long.
+  /// The path lengths at which these clearances end, if the run's path is now this long.
   Clearance endsAt(btScalar path) const { return {path + outside, kApproach * path + distance}; }
 };
 
-/// The tet in which a sample was found last, away from the surface, and the end of its clearance in that tet, as in
+/// The tet in which a sample was last found, away from the surface, and the end of its clearance in that tet, as in
 /// `Clearance::endsAt`.
 struct SampleClearance {
   int tet = -1;
   btScalar until = 0;
 };
 
-/// A run whose samples are to be tested in this step.
+/// A run whose samples must be tested in this step.
 struct VisitedRun {
   int run;
   btScalar path;             ///< bound of the motion of its samples relative to the tets near them, since some step
-  btScalar reach;            ///< a bound of the distances within which its samples may touch the surface in the step
-  btScalar rounding;         ///< what a distance may be wrong by
-  SampleClearance* samples;  ///< by sample of the run: what has been found for this path
+  btScalar reach;            ///< bound of the distance within which its samples may touch the surface in the step
+  btScalar rounding;         ///< bound of the error of a distance
+  SampleClearance* samples;  ///< by sample of the run: results for this path
 };
 
 /// Runs of samples of the first body, each with the groups of tets of the second that may contain samples. They stay
-/// complete while no two nodes approach each other by more than a slack. Among them, what is clear of the other body is
-/// not tested again until it has moved far enough, relative to that part of the other body which is near.
+/// complete as long as no two nodes approach each other by more than a slack. A candidate that is clear of the other
+/// body is not tested again until it has moved far enough, relative to the nearby part of the other body.
 class PairCandidates {
  public:
-  /// Records the motion since it was called before, and finds the candidates anew unless they are still complete. Both
-  /// bodies have been read; they may be the same one: then tets near to each other at rest are no candidates.
-  /// dt    seconds of the step to come
-  /// Cost  O(nodes); if candidates are found, about O(number of runs and tets, and of candidates)
+  /// Records the motion since the last call, and finds the candidates anew unless they are still complete. Both bodies
+  /// have been read; they may be the same one: then tets near to each other at rest are not candidates.
+  /// dt    seconds of the coming step
+  /// Cost  O(nodes); if candidates are found anew, about O(number of runs and tets, and of candidates)
   void update(ContactBody& first, ContactBody& second, btScalar dt);
 
   /// Visits the runs that may have samples in tets, in ascending order: calls begin(VisitedRun), which returns the box
@@ -70,7 +70,7 @@ class PairCandidates {
   template <class Begin, class Test, class End>
   void visit(const ContactBody& second, Begin&& begin, Test&& test, End&& end);
   bool empty() const { return runs_.empty(); }
-  /// Nothing is known any more: they will be found anew. What is found in the bodies does not depend on it.
+  /// Forgets everything: candidates will be found anew. Results do not depend on it.
   void drop() { reads_[0] = reads_[1] = -1; }
   int age() const { return validity_.age(); }  ///< number of steps since the candidates were found
 
@@ -79,8 +79,8 @@ class PairCandidates {
   struct Link {
     Clearance until{0, 0};  ///< of the whole group: values of the run's path at which clearances end
     int group = 0;
-    int lanes = -1;           ///< index in `lanes_`; -1: none has been tested
-    unsigned neighbours = 0;  ///< by lane a bit: the tet is no candidate
+    int lanes = -1;           ///< index in `lanes_`; -1: no tet has been tested
+    unsigned neighbours = 0;  ///< one bit per lane: the tet is not a candidate
   };
   /// By lane of a group, the values of the run's path at which clearances end; may be later than that of the group.
   struct Lanes {
@@ -89,8 +89,8 @@ class PairCandidates {
   struct Run {
     int run = 0;
     std::size_t first = 0, last = 0;  ///< in `links_`
-    Clearance until{0, 0};            ///< the least of its links' values
-    btScalar path = 0;   ///< bound of the motion of its samples relative to any tet of its links since they were found
+    Clearance until{0, 0};            ///< the smallest of its links' values
+    btScalar path = 0;   ///< bound of the motion of its samples relative to any tet of its links since these were found
     btScalar reach = 0;  ///< as in VisitedRun
     std::size_t samples = 0;  ///< of its first sample, in `samples_`
   };
@@ -123,11 +123,11 @@ class PairCandidates {
   std::vector<Link> links_;               ///< by run
   std::vector<Lanes> lanes_;              ///< of those links that have been tested
   std::vector<SampleClearance> samples_;  ///< by run
-  std::vector<std::size_t> groups_;       ///< found for a leaf of runs
+  std::vector<std::size_t> groups_;       ///< the groups found for a leaf of runs
   std::vector<btScalar> nodeMotion_;      ///< by node of the first body, in `measure`
 };
 
-/// `kForever` in lanes of neighbours, which are no candidates.
+/// `kForever` in the lanes of neighbours, which are not candidates.
 inline Four PairCandidates::gapsOf(unsigned neighbours, const GroupBoxes& boxes, const FourBoxes& box) {
   Four gaps = gapsBetween(box, boxes);
   for (unsigned k = 0; k < kLanes && neighbours != 0; ++k) {

@@ -10,7 +10,7 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// The nodes of a body in a box. None: all, since large tets may reach into the box.
+/// The nodes of a body in a box. If there are none: all, since large tets may reach into the box.
 void listNodesIn(const ContactBox& box, const ContactBody& body, std::vector<int>& nodes) {
   nodes.clear();
   for (std::size_t n = 0; n < body.positions.size(); ++n) {
@@ -38,7 +38,7 @@ bool PairMotion::isStill(const ContactBody& first, const ContactBody& second, bt
   if (!searched_) return false;
   const btScalar motion = sinceBefore(first, second);
   path_ += motion;
-  // A pair that moves this fast is searched in the next step, too.
+  // A pair that moves this fast is also searched in the next step.
   if (motion > maximum) return false;
   coming_ = inNextStep(first, second, dt);
   return path_ + std::max(coming_ - searchedComing_, btScalar(0)) <= maximum;
@@ -58,7 +58,7 @@ btScalar PairMotion::sinceBefore(const ContactBody& first, const ContactBody& se
   return measure(first, second, before, now);
 }
 
-/// Samples touch what they will reach in the step to come, up to `kReachCubes`.
+/// Samples already touch what they will reach in the coming step, up to `kReachCubes`.
 btScalar PairMotion::inNextStep(const ContactBody& first, const ContactBody& second, btScalar dt) {
   const btScalar cube = second.data().grid.spacing();
   const btScalar all = dt * (first.data().largestSpread * first.fastest + second.fastest);
@@ -70,7 +70,7 @@ btScalar PairMotion::inNextStep(const ContactBody& first, const ContactBody& sec
   return std::min(measure(first, second, now, next), (kReachCubes - kNearCubes) * cube);
 }
 
-/// What the nodes near the other body deviate by from a rigid motion of the second one's.
+/// The deviation of the nodes near the other body from a rigid motion of the second body.
 template <class From, class To>
 btScalar PairMotion::measure(const ContactBody& first, const ContactBody& second, const From& from, const To& to) {
   if (near_[0].empty()) listNear(first, second);
@@ -88,7 +88,7 @@ btScalar PairMotion::measure(const ContactBody& first, const ContactBody& second
   return first.data().largestSpread * largest(first, near_[0]) + largest(second, near_[1]);
 }
 
-/// Tets near the other body may have nodes beside it.
+/// Tets near the other body may have nodes outside of the box.
 void PairMotion::listNear(const ContactBody& first, const ContactBody& second) {
   const btScalar beside = std::max(first.data().edge, second.data().edge);
   listNodesIn(second.box.grownBy(beside), first, near_[0]);

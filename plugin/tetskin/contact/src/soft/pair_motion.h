@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftContacts: how far two bodies have moved relative to each other since the touches between them were
-// searched for. Steps to come depend on it, so that it depends on nothing but the bodies: not on the candidates.
+// Internal to SoftContacts: how far two bodies have moved relative to each other since contacts between them were last
+// searched for. Later steps depend on it, so it depends only on the bodies, not on the candidates.
 #pragma once
 
 #include <tetskin/contact/src/soft/contact_body.h>
@@ -15,15 +15,16 @@ namespace tetskin::contact_detail {
 class PairMotion {
  public:
   /// Called once in each step. True if, since `markSearched`, no sample and no tet near the other body have approached
-  /// each other by more than `maximum`, nor will in the step to come by more than they would have then. Both bodies
-  /// have been read; they may be the same one. False if they have been read more than once since it was called before.
+  /// each other by more than `maximum`, and if they will not do so in the coming step by more than was expected then.
+  /// Both bodies have been read; they may be the same one. False if they have been read more than once since the last
+  /// call.
   /// Cost  O(1) while they hardly move, else O(nodes)
   bool isStill(const ContactBody& first, const ContactBody& second, btScalar dt, btScalar maximum);
   /// Called after `isStill`, in the same step.
   void markSearched();
   void visitState(StateStream& stream);
   btScalar sinceSearch() const { return path_; }
-  /// False if touches are searched for in the next step whatever happens.
+  /// False if the next step searches for contacts in any case.
   bool goesOn(const ContactBody& first, const ContactBody& second) const {
     return searched_ && reads_[0] == first.reads && reads_[1] == second.reads;
   }
@@ -37,10 +38,10 @@ class PairMotion {
 
   int reads_[2] = {-1, -1};  ///< by body: `reads` when last called
   bool searched_ = false;
-  btScalar path_ = 0;            ///< since touches were searched for
-  btScalar coming_ = 0;          ///< in the step to come
-  btScalar searchedComing_ = 0;  ///< the same when touches were searched for
-  std::vector<int> near_[2];     ///< nodes of the bodies near each other, while it is measured
+  btScalar path_ = 0;            ///< since the last search
+  btScalar coming_ = 0;          ///< in the coming step
+  btScalar searchedComing_ = 0;  ///< the same at the last search
+  std::vector<int> near_[2];     ///< nodes of the bodies near each other, during a measurement
 };
 
 }  // namespace tetskin::contact_detail

@@ -11,9 +11,9 @@ namespace tetskin::contact_detail {
 /// moment   sum of the cross products of positions before and after, relative to the centres
 /// inertia  about the centre, before
 void RigidMotion::turn(const btVector3& moment, const btMatrix3x3& inertia) {
-  /// Angles below this are left to the deviations: they are smaller than what rounding makes of them.
+  /// Smaller angles are left to the deviations: rounding is larger.
   constexpr btScalar kMinAngle = btScalar(1e-5);
-  /// Of the trace, added to the inertia: of nodes on a line, none about it is known.
+  /// Fraction of the trace that is added to the inertia: nodes on a line have no inertia about it.
   constexpr btScalar kRegular = btScalar(1e-3);
   const btScalar more = kRegular * (inertia[0][0] + inertia[1][1] + inertia[2][2]);
   if (!(more > 0)) return;

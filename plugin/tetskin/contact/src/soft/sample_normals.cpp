@@ -9,11 +9,11 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Cosine between the normal of a sample and those of the triangles around it, below which it is that of a tip. At the
+/// Cosine between a sample's normal and those of the triangles around it: below this, the sample is on a tip. At the
 /// corner of a box it is 0.58.
 constexpr btScalar kAround = btScalar(0.5);
 
-/// 0 where the grid gives none.
+/// 0 where the grid has none.
 btVector3 gradientAt(const DistanceGrid& grid, const Eigen::Vector3d& point) {
   GridDistance at;
   const bool known = grid.at(toBullet(point), at) && at.gradient.length() > kNoDirection;
@@ -25,10 +25,10 @@ btVector3 normalOf(const TriangleMesh& mesh, const std::array<int, 3>& t) {
   return toBullet((mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized());
 }
 
-/// By vertex: the least product of a normal of the triangles around it and the gradient of the grid.
+/// By vertex: the smallest dot product of the grid's gradient with a normal of the triangles around it.
 std::vector<btScalar> leastAround(const TriangleMesh& mesh, const std::vector<int>& triangles,
                                   const DistanceGrid& grid) {
-  // Seams and tips have several vertices at a position.
+  // At seams and tips, several vertices share a position.
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
   std::vector<btScalar> least(mesh.vertexCount(), 1);
   for (const int t : triangles) {

@@ -10,9 +10,9 @@
 namespace tetskin::contact_detail {
 
 /// By sample: the gradient of the grid, which points outwards and is shorter than 1 on edges. It is 0 where the grid
-/// gives none, and on tips that are finer than its cubes: there it may point anywhere, even inwards, and the sample may
+/// has none, and on tips that are finer than its cubes: there it may point anywhere, even inwards, and the sample may
 /// touch from any side.
-/// triangles  those of the mesh that have been sampled
+/// triangles  those that have been sampled
 /// Cost       O(n) for n triangles and samples
 std::vector<btVector3> sampleNormals(const TriangleMesh& mesh, const std::vector<int>& triangles,
                                      const std::vector<SurfaceSample>& samples, const DistanceGrid& grid);

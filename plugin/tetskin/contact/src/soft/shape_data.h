@@ -18,14 +18,14 @@ namespace tetskin::contact_detail {
 
 using ContactBox = BvhBox<btScalar>;
 
-/// The samples [first, last), which one tet carries.
+/// The samples [first, last), all carried by one tet.
 struct SampleRun {
   int tet = 0;
   int first = 0, last = 0;
 };
 
-/// Which of the 64 cells of a tet, in barycentric weights, belong to the part of the surface that the tet carries; all
-/// of them, unless the tet has duplicates.
+/// Which of a tet's 64 cells, in barycentric weights, belong to the part of the surface that the tet carries; all of
+/// them, unless the tet has duplicates.
 struct CarriedCells {
   std::uint64_t bits = ~std::uint64_t{0};
   bool holdsAll() const { return bits == ~std::uint64_t{0}; }
@@ -35,25 +35,25 @@ struct CarriedCells {
 
 /// Distance from the surface up to which a sample counts, in cubes of the grid.
 constexpr btScalar kReachCubes = btScalar(1.5);
-/// Contacts whose gap the step will not close are left out, if the gap is larger than this many cubes.
+/// Contacts whose gap the step will not close are left out if the gap is larger than this many cubes.
 constexpr btScalar kNearCubes = btScalar(0.1);
 
-/// In cubes of the grid: a motion within a step so small that it is not worth finding out what part of it is relative.
+/// In cubes of the grid: a motion this small within a step is not worth splitting into common and relative motion.
 constexpr btScalar kStillCubes = btScalar(0.02);
 
-/// Least weight with which a point counts as inside a tet: rounding must lose no point between two tets, and just
+/// Smallest weight with which a point counts as inside a tet: rounding must not lose a point between two tets, and just
 /// outside of the cage the surface is near.
 constexpr btScalar kMinWeight = btScalar(-0.02);
 /// How much farther than its nodes a point inside a tet can move: the sum of its weights' magnitudes.
 constexpr btScalar kInsideSpread = 1 - 6 * kMinWeight;
 
-/// The part of a tet that may hold something inside, or near it: where each weight is at least this. It has the shape
-/// of the tet, so that it deforms with it.
+/// The part of a tet that may contain, or be near to, the inside: where each weight is at least this. It has the shape
+/// of the tet, and deforms with it.
 struct TetSubregion {
   btScalar minimum[4] = {};
   btScalar left = 1;  ///< 1 minus their sum
 
-  /// How much farther than its nodes a point of the part can move: above 1 if weights are below 0.
+  /// How much farther than its nodes a point of the part can move: above 1 if weights are negative.
   btScalar spread() const {
     btScalar sum = left;
     for (const btScalar weight : minimum) sum += std::abs(weight);
@@ -64,20 +64,20 @@ struct TetSubregion {
 /// Number of tets that are tested at once: those of a leaf of their tree.
 constexpr int kLanes = 4;
 
-/// The tets of a leaf; -1 in lanes that are left over.
+/// The tets of a leaf; -1 in unused lanes.
 using TetGroup = std::array<int, kLanes>;
 
-/// A group with tets that are neighbours of a run: these do not collide with it.
+/// A group with tets that are neighbours of a run; they do not collide with it.
 struct NearGroup {
   int group = 0;
   std::array<bool, kLanes> near{};
 };
 
-/// A tree of items that is walked without a stack.
+/// A tree of items, walked without a stack.
 struct SearchTree {
   Bvh tree;
-  std::vector<int> past;    ///< by node: the first one after it that is not below it
-  std::vector<int> leafOf;  ///< by node: the number of the leaf, in the order of the items; -1: none
+  std::vector<int> past;    ///< by node: the next node that is not a descendant
+  std::vector<int> leafOf;  ///< by node: the number of the leaf, in the order of the items; -1: not a leaf
 
   SearchTree() = default;
   explicit SearchTree(Bvh from);
@@ -103,18 +103,18 @@ struct ShapeData {
   DistanceGrid grid;
   std::vector<SampleRun> runs;                   ///< ascending by tet
   std::vector<EmbeddedPoint<btScalar>> samples;  ///< of the surface
-  // Separate arrays of those values that are read for many samples in sequence.
+  // Separate arrays for values that are read for many samples in sequence.
   std::vector<btVector3> sampleRest;
   std::vector<btVector3> sampleNormals;            ///< outwards; see sampleNormals()
   std::vector<int> sampleNodes;                    ///< the node with the largest clamped weight
-  std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet; some more at the end
+  std::vector<btScalar> weights[4];                ///< the weights again, by node of the tet; padded at the end
   std::vector<CarriedCells> carried;               ///< by tet; empty unless the cage is split
   std::vector<TetSubregion> filled;                ///< by tet
   std::vector<TetSubregion> runRegions;            ///< by run: the part of the tet that holds its samples
   btScalar largestSpread = 1;                      ///< of the runs' parts
   std::vector<std::vector<int>> otherComponents;   ///< by run: see tetsOfOtherComponents
   SearchTree runTree;                              ///< over all runs
-  SearchTree tetTree;                              ///< over the tets that hold, or are near, something inside
+  SearchTree tetTree;                              ///< over the tets that contain, or are near to, the inside
   std::vector<TetGroup> groups;                    ///< by leaf of `tetTree`
   std::vector<std::vector<NearGroup>> nearGroups;  ///< by run, ascending
 };
@@ -135,7 +135,7 @@ struct Access<ContactShape> {
 
 namespace tetskin::contact_detail {
 
-/// What a shape holds, valid as long as it.
+/// The contents of a shape, valid as long as the shape.
 inline const ShapeData& dataOf(const ContactShape& shape) {
   return Access<ContactShape>::data(shape);
 }

@@ -13,29 +13,28 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Depth, in sizes of the smaller body, from which on two bodies overlap.
+/// Depth above which two bodies overlap, in sizes of the smaller body.
 constexpr btScalar kDeep = btScalar(0.03);
-/// Least length of the mean normal of the samples inside that has a direction: a body that lies wholly within another
-/// one has none.
+/// A shorter mean normal of the samples inside has no direction, as for a body that lies wholly inside another one.
 constexpr btScalar kMinGradient = btScalar(0.05);
-/// Fraction of a body's samples that are at or below another's surface with agreeing normals, from which on the two
-/// bodies coincide.
+/// Fraction of a body's samples that are at or below another's surface with agreeing normals: above it, the two bodies
+/// coincide.
 constexpr double kInOnePlace = 0.3;
-/// Most tasks among which pairs are divided: several for each of many threads, as pairs differ.
+/// Largest number of tasks among which pairs are divided: several per thread, because pairs differ in cost.
 constexpr std::size_t kMaxTasks = 64;
 /// Numbers of points begin here, so that they differ from those of contacts with rigid bodies.
 constexpr std::uint32_t kFirstPoint = 0x40000000U;
-/// First number for points of the other body, where the body that is met reports the contact.
+/// First number for points of the other body, if the body that is touched reports the contact.
 constexpr std::uint32_t kFirstTurned = 0xC0000000U;
 
-/// The velocity of the point relative to the body that it meets.
+/// The velocity of the point relative to the body that it touches.
 btVector3 velocityOf(const PointContact& contact) {
   const btVector3 v = contact.at.velocity(*contact.body);
   const btSoftBody& object = *btSoftBody::upcast(contact.object);
   return object.isActive() ? v - contact.onObject.velocity(object) : v;
 }
 
-/// The same contact as one of the other body: a sleeping body has no rows itself.
+/// The same contact, as a contact of the other body: a sleeping body has no rows itself.
 PointContact swapRoles(const PointContact& from) {
   assert(btSoftBody::upcast(from.object));
   PointContact contact = from;
@@ -51,7 +50,7 @@ bool sleeps(const PointContact& contact) {
   return !contact.body->isActive() && !contact.object->isActive();
 }
 
-/// True unless the body waits to fall asleep.
+/// True unless the body is waiting to fall asleep.
 bool moves(const btSoftBody& body) {
   return body.isActive() && !(body.getDeactivationTime() > 0);
 }
@@ -120,7 +119,7 @@ std::unique_ptr<ContactBody> SoftContactRows::take(const btSoftBody& body) {
   return taken;
 }
 
-/// Afterwards nothing stored in the step before refers to the body.
+/// Afterwards nothing stored in the last step refers to the body.
 void SoftContactRows::forgetPairs(const ContactBody& body) {
   for (auto* contacts : {&contacts_, &sleeping_}) {
     const auto isOf = [&](const auto& contact) { return contact.body == body.body || contact.object == body.body; };
@@ -132,7 +131,7 @@ void SoftContactRows::forgetPairs(const ContactBody& body) {
   }
 }
 
-/// Bodies that were taken out of the world, and are in it again.
+/// Bodies that were taken out of the world and are back.
 void SoftContactRows::includeReturned() {
   for (std::size_t k = away_.size(); k-- > 0;) {
     if (away_[k]->lives() && !away_[k]->isInWorld()) continue;
@@ -194,7 +193,7 @@ PointContacts* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads)
     if (first->awake || second->awake) pairs.push_back({first, second, &pairStates_[{first->id, second->id}]});
   }
   findInPairs(pairs, seconds, threads);
-  // In the order of the pairs: contacts wake bodies, on which those that follow depend.
+  // In the order of the pairs: contacts wake bodies, and later contacts depend on that.
   for (const auto& [first, second, state] : pairs) {
     for (const Touch& touch : state->touches[0]) addContact(*first, *second, touch, seconds);
     for (const Touch& touch : state->touches[1]) addContact(*second, *first, touch, seconds);
@@ -202,7 +201,7 @@ PointContacts* SoftContactRows::contacts(btScalar seconds, ParallelFor* threads)
   return &contacts_;
 }
 
-/// Contacts between bodies that sleep stay as they are.
+/// Contacts between sleeping bodies stay as they are.
 void SoftContactRows::keepSleeping() {
   const auto last = std::remove_if(sleeping_.begin(), sleeping_.end(), [](const auto& c) { return !sleeps(c); });
   sleeping_.erase(last, sleeping_.end());
@@ -210,8 +209,8 @@ void SoftContactRows::keepSleeping() {
   contacts_.clear();
 }
 
-/// The pairs that may collide. Other pairs are forgotten: their relative position is a different one when they may
-/// collide again.
+/// The pairs that may collide. Other pairs are forgotten: if they may collide again, their relative position will
+/// differ.
 SoftContactRows::BodyPairs SoftContactRows::overlappingPairs() {
   std::vector<ContactBody*> readable;
   std::vector<ContactBox> boxes;
@@ -256,7 +255,7 @@ void SoftContactRows::findInPair(const SearchedPair& pair, btScalar seconds, Pai
   if (before.isZero() && !pair.state->apart.isZero()) search(pair, seconds, finder);
 }
 
-/// Returns the direction in which the first body is to leave the second, if they overlap: down the gradient of their
+/// Returns the direction in which the first body must leave the second, if they overlap: down the gradient of their
 /// common volume, which is the integral of either body's normal over the part of its surface within the other.
 btVector3 SoftContactRows::search(const SearchedPair& pair, btScalar seconds, PairSearch& finder) {
   ContactBody &first = *pair.first, &second = *pair.second;
@@ -300,7 +299,7 @@ void SoftContactRows::addContact(const ContactBody& first, const ContactBody& se
                                        : btSqrt(first.body->m_cfg.kDF * second.body->m_cfg.kDF);
   const btVector3 velocity = velocityOf(contact);
   const btScalar near = kNearCubes * second.data().grid.spacing();
-  // Also if it leaves now: within a step, a stiff body may throw a light node back by as much as it came.
+  // Even if it is leaving now: within a step, a stiff body may throw a light node back as fast as it came.
   if (touch.distance - seconds * std::abs(velocity.dot(touch.normal)) > near) return;
   if (first.awake != second.awake && (moves(*first.body) || moves(*second.body))) {
     first.body->activate();

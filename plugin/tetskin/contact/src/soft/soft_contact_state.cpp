@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What contacts among soft bodies remember from step to step, in a snapshot.
+// The state of contacts among soft bodies from step to step, in a snapshot.
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
@@ -38,7 +38,7 @@ constexpr const char* kOtherBodies = "contacts among other soft bodies were ther
 
 }  // namespace
 
-/// In the order of the world's objects: they may have been added in another one.
+/// In the order of the world's objects: they may have been added here in another order.
 void SoftContactRows::checkState(WorldStream& stream) {
   updateBodies();
   stream.same(bodies_.size(), kOtherBodies);
@@ -62,7 +62,7 @@ void SoftContactRows::visitState(WorldStream& stream) {
   visitSleeping(stream);
 }
 
-/// The bodies get the order and the ids that they had: pairs are searched in this order, and ids tell directions.
+/// The bodies get back their order and their ids: pairs are searched in this order, and directions depend on ids.
 void SoftContactRows::visitBodies(WorldStream& stream) {
   updateBodies();
   stream.same(bodies_.size(), kOtherBodies);
@@ -78,7 +78,7 @@ void SoftContactRows::visitBodies(WorldStream& stream) {
   }
 }
 
-/// Also of pairs whose touches are not followed: the next step measures their motion all the same.
+/// Also for pairs whose contacts are not followed: the next step measures their motion anyway.
 bool SoftContactRows::motionMatters(const ContactBody& body) const {
   return std::any_of(pairStates_.begin(), pairStates_.end(), [&](const auto& entry) {
     const auto [a, b] = entry.first;

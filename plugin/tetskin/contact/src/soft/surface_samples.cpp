@@ -15,7 +15,7 @@ namespace {
 
 /// Number of cubes that a flat surface passes through, per face area of a cube: 1 along the axes, 1.73 diagonally.
 constexpr double kCubesPerFace = 1.3;
-/// Largest number of divisions of a triangle's edges, enough for a triangle as long as the whole model.
+/// Largest number of divisions of a triangle's edges: enough for a triangle as long as the whole model.
 constexpr int kMaxDivisions = 256;
 
 /// Keeps the first point in each cube of a lattice.
@@ -25,7 +25,7 @@ class CubeSieve {
   bool takes(const Eigen::Vector3d& p) {
     std::uint64_t key = 0;
     for (int k = 0; k < 3; ++k) {
-      // 21 bits per coordinate: with more, cubes would share a key, and lose a sample.
+      // 21 bits per coordinate: with more cubes than that, some would share a key, and lose a sample.
       const auto cube = static_cast<std::int64_t>(std::floor(p[k] * inverse_));
       key = (key << 21) | (static_cast<std::uint64_t>(cube) & 0x1FFFFF);
     }
@@ -56,7 +56,7 @@ void sampleTriangle(const TriangleMesh& mesh, const std::array<int, 3>& t, doubl
 
 /// By vertex: its height above its neighbours in these triangles, relative to their distance.
 std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
-  // Seams and tips have several vertices at a position.
+  // At seams and tips, several vertices share a position.
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
   std::vector<Eigen::Vector3d> direction(mesh.vertexCount(), Eigen::Vector3d::Zero());
   std::vector<Eigen::Vector3d> area(mesh.vertexCount(), Eigen::Vector3d::Zero());
@@ -83,7 +83,7 @@ std::vector<double> prominence(const TriangleMesh& mesh, const std::vector<int>&
   return out;
 }
 
-/// Tips come first: they touch before anything around them does.
+/// Tips come first: they touch before their surroundings do.
 std::vector<SurfaceSample> verticesByProminence(const TriangleMesh& mesh, const std::vector<int>& triangles) {
   const std::vector<double> out = prominence(mesh, triangles);
   std::vector<SurfaceSample> vertices;

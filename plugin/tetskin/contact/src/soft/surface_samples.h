@@ -19,8 +19,8 @@ struct SurfaceSample {
   std::array<int, 3> corners{-1, -1, -1};  ///< vertices of a triangle that it is on
 };
 
-/// About this many points of these triangles, evenly distributed: vertices if there are enough, and of vertices that
-/// are near to each other those that stand out most.
+/// About `count` points of these triangles, evenly distributed: vertices if there are enough; among neighbouring
+/// vertices, those that protrude most.
 /// mesh   indices in range
 /// Cost   O(n log n + count) for n triangles
 std::vector<SurfaceSample> sampleSurface(const TriangleMesh& mesh, const std::vector<int>& triangles,

@@ -10,12 +10,13 @@
 namespace tetskin::contact_detail {
 namespace {
 
-/// Places at which the thickness of a body is measured; and the part of its surface that may be thinner: fins and horns
-/// do not make a body thin.
+/// Number of places at which the thickness of a body is measured, and the part of its surface that may be thinner: fins
+/// and horns do not make a body thin.
 constexpr int kThicknessPlaces = 500;
 constexpr double kThinPart = 0.5;
 
-/// The thickness of the body behind the middle of a triangle, up to a bound: twice the depth at which its middle lies.
+/// The thickness of the body behind the middle of a triangle, up to a bound: twice the depth of the middle of the body
+/// there.
 double thicknessAt(const Eigen::Vector3d& middle, const Eigen::Vector3d& inwards, const TriangleBvh& surface,
                    double most) {
   constexpr double kStep = 0.8, kSame = 0.95;
@@ -29,7 +30,7 @@ double thicknessAt(const Eigen::Vector3d& middle, const Eigen::Vector3d& inwards
 
 }  // namespace
 
-/// Triangles are taken evenly by their areas.
+/// Triangles are sampled evenly by area.
 double usualThickness(const TriangleMesh& mesh, const std::vector<int>& triangles, const TriangleBvh& surface,
                       double most) {
   assert(most > 0.0);

@@ -8,7 +8,7 @@
 
 namespace tetskin {
 
-/// Memory that begins where a line of the cache does, and with it every register in it.
+/// Memory that begins at a cache line, which also aligns every register in it.
 template <class T>
 struct LineAllocator {
   using value_type = T;
@@ -25,7 +25,7 @@ struct LineAllocator {
   friend bool operator!=(const LineAllocator&, const LineAllocator&) { return false; }
 };
 
-/// Private to the libraries: its allocator must not meet an application's flags.
+/// Private to the libraries: application code compiled with other flags must not see its allocator.
 template <class T>
 using AlignedVector = std::vector<T, LineAllocator<T>>;
 

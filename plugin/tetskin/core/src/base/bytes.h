@@ -16,7 +16,7 @@
 
 namespace tetskin {
 
-/// A hash of the nodes' positions and the tets' nodes, in their order. 0 and -0 are the same position.
+/// A hash of the nodes' positions and the tets' nodes, in order. 0 and -0 are the same position.
 inline std::uint64_t hashOf(const TetMesh& tets) {
   Hash hash;
   hash.add(std::uint64_t{tets.nodeCount()});
@@ -45,7 +45,7 @@ inline std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
   return hash.value();
 }
 
-/// Numbers with the bits of a float or a double.
+/// An integer with the bits of a float or a double.
 template <class Scalar>
 using BitsOf = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
 
@@ -78,7 +78,7 @@ class ByteWriter {
   std::vector<unsigned char> bytes_;
 };
 
-/// Reads bytes whose number has been checked before.
+/// Reads bytes whose count has already been checked.
 class ByteReader {
  public:
   explicit ByteReader(const unsigned char* at) : at_(at) {}
@@ -108,12 +108,12 @@ class ByteReader {
 
 /// Size of the hash that `ByteWriter::take` appends.
 constexpr std::size_t kHashBytes = 8;
-/// True if the bytes are as `take` has returned them.
+/// True if the bytes are unchanged since `take` returned them.
 inline bool hashIsRight(const unsigned char* bytes, std::size_t count) {
   return count >= kHashBytes && ByteReader(bytes + count - kHashBytes).u64() == hashOf(bytes, count - kHashBytes);
 }
 
-/// What is saved in bytes: eight letters and the version, the rest of a header, anything, and the hash.
+/// The format of saved bytes: eight letters and the version, the rest of a header, anything, and the hash.
 struct SavedFormat {
   const char* letters;
   std::uint64_t version;
@@ -123,7 +123,7 @@ struct SavedFormat {
   Status damaged(const std::string& how) const {
     return {StatusCode::Malformed, std::string(name) + " " + how + "; " + cure};
   }
-  /// Ok if there is a header of this format.
+  /// Ok if the bytes begin with a header of this format.
   Status check(const unsigned char* bytes, std::size_t count) const {
     if (count < 8 || std::memcmp(bytes, letters, 8) != 0) {
       return {StatusCode::UnsupportedFormat, std::string("these bytes are not ") + what + " saved by tetskin"};

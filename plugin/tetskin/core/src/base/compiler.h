@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal: what GCC and clang offer beyond the standard, and what is done without it. With TETSKIN_PORTABLE, which is
-// there for tests, every compiler counts as one that has nothing of it. Nothing but macros, and functions that
-// are always inlined: kernels include this, and are compiled for processors that not everyone has.
+// Internal: extensions of GCC and clang, and replacements for other compilers. With TETSKIN_PORTABLE, which is for
+// tests, every compiler counts as having none of them. Only macros and functions that are always inlined: kernels
+// include this, and are compiled for processors that not everyone has.
 #pragma once
 
 #if defined(__GNUC__) && !defined(TETSKIN_PORTABLE)
@@ -18,28 +18,28 @@
 #define TETSKIN_INLINE inline
 #endif
 
-// GCC 12 would read a number that is used several times from memory again for each use; unaligned, that is slow.
+// GCC 12 would reload a number that is used several times from memory for each use; unaligned, that is slow.
 #if defined(TETSKIN_GNU) && !defined(__clang__) && defined(__x86_64__)
 #define TETSKIN_ONE_LOAD(v) asm("" : "+v"(v))
 #else
 #define TETSKIN_ONE_LOAD(v)
 #endif
 
-// From here on, GCC does not warn of templates that have a friend each, which is no template.
+// From here on, silences GCC's warning about a template with a non-template friend.
 #if defined(__GNUC__) && !defined(__clang__)
 #define TETSKIN_FRIENDS_OF_TEMPLATES _Pragma("GCC diagnostic ignored \"-Wnon-template-friend\"")
 #else
 #define TETSKIN_FRIENDS_OF_TEMPLATES
 #endif
 
-// Vectors of a compiler without this operator are put together number by number.
+// For a compiler without this operator, vectors are built element by element.
 #if defined(TETSKIN_GNU) && (defined(__clang__) || __GNUC__ >= 12)
 #define TETSKIN_SHUFFLE(...) __builtin_shufflevector(__VA_ARGS__)
 #endif
 
 namespace tetskin {
 
-/// Reads memory into the caches that will be used soon.
+/// Prefetches memory that will be needed soon.
 TETSKIN_INLINE void prefetch(const void* where) {
 #ifdef TETSKIN_GNU
   __builtin_prefetch(where);
@@ -48,7 +48,7 @@ TETSKIN_INLINE void prefetch(const void* where) {
 #endif
 }
 
-/// Called while waiting in a loop: saves power, and leaves more to a thread on the same core.
+/// Called while waiting in a loop: saves power, and leaves more to the other thread of the core.
 TETSKIN_INLINE void pauseThread() {
 #if defined(TETSKIN_GNU) && (defined(__x86_64__) || defined(__i386__))
   __builtin_ia32_pause();

@@ -6,7 +6,7 @@
 
 namespace tetskin {
 
-/// The matrix of the cross product with a vector from the left.
+/// The matrix of the cross product with `a` on the left.
 inline Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
   Eigen::Matrix3d m;
   m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;

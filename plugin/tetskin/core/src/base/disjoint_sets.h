@@ -18,7 +18,7 @@ class DisjointSets {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  /// Up to `count` members; the new ones each in a set of its own.
+  /// Up to `count` members; each new one is a set of its own.
   void grow(std::size_t count) {
     assert(count >= parent_.size());
     const std::size_t before = parent_.size();
@@ -56,7 +56,7 @@ class DisjointSets {
     return odd;
   }
 
-  /// Joins the sets of a and b; `differ` is 1 if a and b differ. Nothing happens if they are joined already.
+  /// Joins the sets of a and b; `differ` is 1 if a and b differ. Nothing happens if they are already joined.
   void unite(int a, int b, int differ = 0) {
     const int odd = parity(a) ^ parity(b) ^ differ;
     int rootA = find(a), rootB = find(b);

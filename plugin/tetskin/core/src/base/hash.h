@@ -7,9 +7,9 @@
 
 namespace tetskin {
 
-/// A hash of a sequence of words. Every step is one-to-one in the hash so far and in the word, so that a change of one
-/// word never goes unnoticed (the multiplier is the golden ratio's, after Knuth, "The Art of Computer Programming" 3,
-/// section 6.4). Saved embeddings hold such hashes.
+/// A hash of a sequence of words. Every step is one-to-one in the previous hash and in the word, so that a change of a
+/// single word never goes unnoticed (the multiplier is the golden ratio's, after Knuth, "The Art of Computer
+/// Programming" 3, section 6.4). Saved embeddings contain such hashes.
 class Hash {
  public:
   void add(std::uint64_t word) {

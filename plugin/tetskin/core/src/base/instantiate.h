@@ -5,7 +5,7 @@
 #pragma once
 
 #define TETSKIN_FOR_SCALARS(of) of(float) of(double)
-/// The same of a class template.
+/// The same for a class template.
 #define TETSKIN_INSTANTIATE_CLASS(name)                                             \
   template class name<float>;  /* NOLINT(bugprone-macro-parentheses): a template */ \
   template class name<double>; /* NOLINT(bugprone-macro-parentheses): a template */

@@ -8,8 +8,8 @@
 
 namespace tetskin {
 
-/// Reads a view of float or double points, as double: code that is not a template works on the caller's array where it
-/// lies, without a copy in double. It does not own its memory.
+/// Reads a view of float or double points as double: code that is not a template can use the caller's array in place,
+/// without a copy in double. It does not own its memory.
 class PointReader {
  public:
   PointReader(PointView<const double> points)  // NOLINT: implicit by design

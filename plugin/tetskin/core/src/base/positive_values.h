@@ -11,8 +11,8 @@
 namespace tetskin {
 
 /// Checks one value per element, or none at all. Returns Ok, or reports a wrong number of values, or the first value
-/// that is not above 0, or is out of the range of Scalar, or whose inverse is.
-/// name, label  of the values, and of one of the elements: "stiffnessScale", "tet"
+/// that is not above 0, or that is out of the range of Scalar itself or by its inverse.
+/// name, label  of the values, and of one element: "stiffnessScale", "tet"
 /// times        a factor of the values; the product must be in range, too
 template <class Scalar>
 Status checkPositive(const std::vector<double>& values, std::size_t count, const char* name, const char* label,

@@ -8,10 +8,10 @@
 namespace tetskin {
 namespace {
 
-/// Often enough for whoever waits.
+/// Often enough for someone who waits.
 constexpr std::chrono::milliseconds kAskedEach{200};
 
-/// The progress of this thread, or null.
+/// This thread's current progress, or null.
 Progress*& current() {
   thread_local Progress* progress = nullptr;
   return progress;
@@ -28,7 +28,7 @@ Progress::~Progress() {
   current() = outer_;
 }
 
-/// What an application computes in its callback is no part of the progress: it would be reported without end, and
+/// What an application computes in its callback is not part of the progress: otherwise it would report endlessly, and
 /// cancel the wrong computation.
 class Progress::Pause {
  public:

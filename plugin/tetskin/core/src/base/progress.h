@@ -10,11 +10,11 @@
 
 namespace tetskin {
 
-/// Thrown by `Progress::goOn`: caught by the computation that has a Progress.
+/// Thrown by `Progress::goOn`, and caught by the computation that has a Progress.
 struct TETSKIN_CORE_API Cancellation {};
 
-/// Tells an application how much of a long computation is done, and learns whether to go on. Of several in a
-/// thread, the last one begun is asked; while it is, none of them is.
+/// Reports to an application how much of a long computation is done, and asks whether to continue. If a thread has
+/// begun several, only the last one is asked; during the application's callback, none is.
 class TETSKIN_CORE_API Progress {
  public:
   /// tell  returns false to cancel; may be empty; must outlive this
@@ -23,16 +23,16 @@ class TETSKIN_CORE_API Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Tells the fraction, unless the application has cancelled. Returns false if it has, now or before.
+  /// Reports the fraction, unless the application has cancelled. Returns false if it has, now or before.
   bool reach(double fraction);
   bool cancelled() const { return cancelled_; }
 
-  /// For whatever takes part in the computation of this thread, in round k of a loop: asks the application, some times
-  /// in a second. Throws Cancellation if it cancels. Where no computation has begun, nothing happens.
+  /// Call it in round k of a loop in any part of this thread's computation: asks the application a few times per
+  /// second. Throws Cancellation if it cancels. Does nothing if no computation has begun.
   static void goOn(std::size_t k) {
     if (k % kRoundsPerClock == 0) goOnWithRound();
   }
-  /// The same for rounds of milliseconds: each looks at the clock.
+  /// The same for rounds that take milliseconds: checks the clock in each.
   static void goOnWithRound();
 
  private:
@@ -43,13 +43,12 @@ class TETSKIN_CORE_API Progress {
   using Clock = std::chrono::steady_clock;
 
   const std::function<bool(double)>& tell_;
-  double fraction_ = 0.0;  ///< told last
+  double fraction_ = 0.0;  ///< last reported
   Clock::time_point told_ = Clock::now();
-  Progress* outer_;  ///< in whose midst this one has begun; null: none
+  Progress* outer_;  ///< the one during which this one has begun; null: none
   bool cancelled_ = false;
 };
 
-/// The status of a computation that was cancelled.
 inline Status cancelledStatus(const char* what) {
   return {StatusCode::Cancelled, std::string(what) + " was cancelled by its progress function"};
 }

@@ -11,11 +11,11 @@
 
 namespace tetskin {
 
-/// A task that takes more than this fraction of the work of all would keep the others waiting.
+/// A task with more than this fraction of the total work would keep the others waiting.
 constexpr double kMaxShareOfTask = 0.25;
 
-/// Calls call(k, inner) for every k: where a task is large and can be divided, by itself, with `threads` as `inner`;
-/// the others side by side, with null.
+/// Calls call(k, inner) for every k: large divisible tasks one by one, with `threads` as `inner`; the others in
+/// parallel, with null.
 /// sizes        by task: its work, in any unit
 /// isDivisible  bool(std::size_t k): whether a task has enough parts for several threads
 template <class IsDivisible, class Call>

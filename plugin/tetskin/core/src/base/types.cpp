@@ -10,7 +10,7 @@ namespace tetskin {
 
 namespace {
 
-/// By their codes.
+/// By code.
 constexpr const char* kWords[] = {
     "ok",
     "file not found",

@@ -37,8 +37,8 @@ Status tooLarge(const char* point, const char* owner, PointReader points) {
   return {StatusCode::NonFinite, text};
 }
 
-/// All checks that are possible before the search. The boxes are computed as well, so that they are reported even for a
-/// mesh that fails.
+/// All checks that are possible before the search. Also computes the boxes, so that they are reported even for a mesh
+/// that fails.
 Status checkInputs(const TetMesh& cage, PointReader vertices, const EmbedOptions& options, EmbedReport& report) {
   report.vertexCount = report.unbound = vertices.size();
   if (!(options.maxDistance >= 0.0)) {
@@ -68,7 +68,7 @@ void reportFit(const EmbeddingFit& fit, EmbedReport& report) {
   report.maxWeight = fit.largestWeight;
   report.maxBarycentricDistance = fit.worstBarycentric;
   const double diagonal = report.meshBox.diagonal().norm(), restError = std::sqrt(fit.restErrorSquared);
-  // With one point, or all points at one position, the error is relative to the cage: the mesh's own diagonal is 0.
+  // If all points have one position, the error is relative to the cage: the mesh's own diagonal is 0.
   report.restErrorMax = restError / (diagonal > 0.0 ? diagonal : report.cageBox.diagonal().norm());
 }
 
@@ -83,8 +83,8 @@ Status tooFar(const EmbedReport& report, double maxDistance) {
   return {StatusCode::OutsideCage, text};
 }
 
-/// The tet of every vertex, by the convention of `fromTets`, and the search's entries of the report.
-/// triangles  of the mesh, or null if they are not known
+/// The tet of every vertex, in the convention of `embeddingFromTets`, and the search's entries of the report.
+/// triangles  of the mesh, or null if unknown
 std::vector<std::int32_t> tetsOf(const TetMesh& mesh, PointReader vertices, const Triangles* triangles,
                                  OutsideRule rule, EmbedReport& report) {
   const std::vector<std::uint32_t> first = weldCoincident(vertices);

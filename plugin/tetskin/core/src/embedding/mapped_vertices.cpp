@@ -12,8 +12,8 @@
 namespace tetskin {
 namespace {
 
-/// Barycentric distance from which on a vertex is not the one that the map was made for: rounding to float is a hundred
-/// times less in any cage whose tets are at least a thousandth of its distance from the origin.
+/// Barycentric distance above which a vertex is not the one for which the map was made: rounding to float gives a
+/// hundredth of this in any cage whose tets are at least a thousandth of its distance from the origin.
 constexpr double kNotMapped = 0.02;
 
 Status notMapped(const TriangleMesh& mesh, std::size_t vertex, int tet) {
@@ -51,7 +51,7 @@ Result<std::vector<std::int32_t>> mappedTets(const Cage& cage, const TriangleMes
     const Eigen::Vector4d weights = BarycentricMap(corners)(mesh.positions[v]);
     const double barycentric = barycentricDistance(weights);
     if (barycentric <= 0.0) continue;
-    if (!used[v]) {  // only carried: no tets were made for it
+    if (!used[v]) {  // not drawn: no tets were made for it
       tetOf[v] = ~tet;
       continue;
     }

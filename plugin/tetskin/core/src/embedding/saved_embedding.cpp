@@ -73,7 +73,6 @@ Status checkCage(const Header& header, const TetMesh& cage) {
   return validate(cage);
 }
 
-/// True if the runs are consistent.
 bool runsAreSound(const EmbeddingData& d) {
   assert(!d.runs.empty() && d.insideRunCount < d.runs.size());
   if (d.runs.front().firstSlot != 0 || d.runs[d.insideRunCount].firstSlot != d.insideCount) return false;

@@ -89,7 +89,7 @@ void bindRun(std::size_t run, const TetCorners& corners, PointReader vertices, E
   }
 }
 
-/// Makes two lists per tet: the vertices inside, and, after those of all tets, the ones outside.
+/// Makes two lists per tet: the vertices inside and, after the inside lists of all tets, the vertices outside.
 void sortByTet(const TetMesh& cage, const std::vector<std::int32_t>& tetOf, EmbeddingData& data) {
   const std::size_t tets = cage.tetCount();
   Lists<> lists = packLists(2 * tets, [&](auto&& add) {

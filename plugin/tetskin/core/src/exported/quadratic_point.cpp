@@ -33,7 +33,7 @@ struct TetEdges {
   double shortest = 0.0;
 };
 
-/// origin  near the nodes, so that differences to it are exact
+/// origin  near the nodes, so that differences from it are exact
 template <class Scalar>
 Eigen::Matrix3d gradientAt(const QuadraticStencils<Scalar>& stencils, std::size_t gradient, const Vector3d& origin,
                            const NodePositions<Scalar>& positionOf) {
@@ -101,7 +101,7 @@ Vector3d bendAlong(const TetEdges& edges, const Weights<Scalar>& b, const Weight
   return sum;
 }
 
-/// Outside, it is continued to first order from the closest point, and is no longer than an edge.
+/// Outside, it is continued to first order from the closest point, and limited to the length of an edge.
 template <class Scalar>
 Vector3d bendOf(const EmbeddedPoint<Scalar>& point, const TetEdges& edges) {
   if (point.inside) return bendAt(edges, point.weights);

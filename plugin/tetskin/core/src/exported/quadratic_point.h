@@ -15,9 +15,9 @@ namespace tetskin {
 template <class Scalar>
 using NodePositions = std::function<Eigen::Matrix<Scalar, 3, 1>(int node)>;
 
-/// The position that `skinPoints` gives a point, up to rounding: edge vectors are summed in double here.
-/// embedding  that of the stencils. The point may belong to another embedding of the same cage: in a tet without
-///            vertices of this embedding, there are no edge vectors, and the position is that of linear skinning
+/// The position that `skinPoints` gives a point, except for rounding: edge vectors are summed in double here.
+/// embedding  that of the stencils. The point may belong to another embedding of the same cage: a tet without vertices
+///            of this embedding has no edge vectors, so the position is that of linear skinning
 /// Cost       reads some 100 nodes, no allocation
 template <class Scalar>
 TETSKIN_CORE_API Eigen::Matrix<Scalar, 3, 1> quadraticPosition(const EmbeddedPoint<Scalar>& point,

@@ -67,7 +67,7 @@ Status addQuadratic(const Cage& cage, SkinData<Scalar>& data) {
   return {};
 }
 
-/// Computes what the options ask for in addition to the embedding.
+/// Computes what the options request in addition to the embedding.
 template <class Scalar>
 Result<std::unique_ptr<const SkinData<Scalar>>> makeSkinData(const Cage& cage, const TriangleMesh& mesh,
                                                              const BindingOptions& options,

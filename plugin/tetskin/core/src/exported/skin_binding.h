@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The data of a SkinBinding, and the checks that skins share.
+// The data of a SkinBinding, and checks that skins share.
 #pragma once
 
 #include <tetskin/core/mesh_skin.h>
@@ -31,13 +31,13 @@ struct Access<SkinBinding<Scalar>> {
   static const SkinData<Scalar>& data(const SkinBinding<Scalar>& binding) { return *binding.data_; }
 };
 
-/// What a binding holds, valid as long as it.
+/// The contents of a binding, valid as long as the binding.
 template <class Scalar>
 const SkinData<Scalar>& dataOf(const SkinBinding<Scalar>& binding) {
   return Access<SkinBinding<Scalar>>::data(binding);
 }
 
-/// Ok if a surface can follow these nodes: NonFinite names the first that is not finite, or beyond
+/// Ok if a surface can follow these nodes. NonFinite names the first node that is not finite or beyond
 /// Limits::kMaxCoordinate.
 template <class Scalar>
 TETSKIN_CORE_API Status checkNodes(PointView<const Scalar> nodes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: the nodes' bones, from their gradients: see bone_palette.h.
+// Internal to the kernels: the nodes' bones, computed from their gradients: see bone_palette.h.
 #pragma once
 
 #include <tetskin/core/src/kernels/points.h>
@@ -9,7 +9,7 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// A matrix [ A | t ]: its three columns, and its translation; the fourth numbers have no meaning.
+/// A matrix [ A | t ]: its three columns, and its translation; the fourth numbers are meaningless.
 template <class S>
 struct BoneColumns {
   Lanes<S, 4> item[4];

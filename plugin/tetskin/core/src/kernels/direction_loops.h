@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: unit vectors carried by the map's gradient.
+// Internal to the kernels: unit vectors transformed by the map's gradient.
 #pragma once
 
 #include <tetskin/core/src/kernels/tet_maps.h>
@@ -49,15 +49,15 @@ struct QuadraticDirections {
   }
 };
 
-/// A shorter sum is rounding, and has no direction; at rest its length is 1.
+/// A shorter sum is only rounding, and has no direction; at rest the length is 1.
 template <class S>
 constexpr S kMinSquared = S(1e-20);
-/// The square of a longer one overflows.
+/// Beyond this the square overflows.
 template <class S>
 constexpr S kMaxSquared = S(sizeof(S) == sizeof(float) ? 1e38 : 1e300);
 
-/// Writes the first `count` of four times P unit vectors, skipping those without a direction. It is not inlined, and
-/// its arguments are in registers: if their addresses were taken, the loop around the call would store them each time.
+/// Writes the first `count` of four times P unit vectors, skipping those without a direction. Not inlined, with its
+/// arguments in registers: if their addresses were taken, the loop around the call would store them each time.
 template <class S, int P>
 TETSKIN_NOINLINE void storeChosen(const S* sums, Points<S, P> squared, Points<S, P> inverse, std::size_t count,
                                   float* out) {
@@ -97,7 +97,7 @@ template <class S, int P, class Directions>
 void directionsOf(const Work<S>& given, const DirectionPlanes& givenPlanes, float* out) {
   const Work<S> work = given;  // copied, as in positionsOf
   const DirectionPlanes planes = givenPlanes;
-  // Runs are short: their sums are collected, and normalised four registers at a time.
+  // Runs are short, so their sums are collected, and normalised four registers at a time.
   constexpr std::size_t kMaxSums = 64 * P;
   alignas(64) S sums[4 * (kMaxSums + 4 * P)] = {};
   std::size_t first = work.runs[work.firstRun].firstSlot;  // first slot for which there is a sum

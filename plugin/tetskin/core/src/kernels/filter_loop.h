@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: the filter of the search.
+// Internal to the kernels: the search's filter.
 #pragma once
 
 #include <tetskin/core/src/kernels/points.h>
@@ -15,8 +15,8 @@ struct WidePlane {
   Lanes<float, W> at(const Lanes<float, W> p[3]) const { return (x * p[0] + y * p[1]) + (z * p[2] + constant); }
 };
 
-/// Appends first + k for every lane k < count that is not below 0; returns the new end. No branch, which would be
-/// mispredicted at every hit.
+/// Appends first + k for every lane k < count that is not negative; returns the new end. Without a branch, which would
+/// be mispredicted at every hit.
 template <int W>
 TETSKIN_INLINE std::uint32_t* appendNotNegative(const Lanes<float, W>& v, std::uint32_t first, std::uint32_t count,
                                                 std::uint32_t* out) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: the nodes' gradients, and the edges' vectors that follow from them.
+// Internal to the kernels: the nodes' gradients, and the edge vectors that follow from them.
 #pragma once
 
 #include <tetskin/core/src/kernels/points.h>
@@ -28,7 +28,7 @@ template <class S, int P>
 void gradients(const GradientWork<S>& given) {
   const GradientWork<S> work = given;
   for (std::size_t n = work.firstNode; n < work.lastNode; ++n) {
-    // Two sums are used, as an addition has to wait for the one before.
+    // Two sums, because an addition has to wait for the previous one.
     Columns<S, P> even, odd;
     std::size_t e = work.starts[n];
     const std::size_t end = work.starts[n + 1];
@@ -54,7 +54,7 @@ template <class S>
 void storeEdge(Lanes<S, 4> e, S limit, S* out) {
   const S length = squaredLength<S>(e);
   if (!(length <= limit)) {
-    // For nodes so far apart that the length overflows, the vector is 0.
+    // If nodes are so far apart that the length overflows, the vector is 0.
     if (length * 0 == 0) {
       e = e * (squareRoot(limit) / squareRoot(length));
     } else {

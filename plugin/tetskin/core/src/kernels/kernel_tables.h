@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal: the kernels for this processor, those of `instructionSet()`.
+// Internal: the kernels of `instructionSet()`, for this processor.
 #pragma once
 
 #include <tetskin/core/src/kernels/search_kernels.h>

@@ -67,7 +67,8 @@ void writeUnit(const PathWork<S>& work, std::size_t group, const Lanes<S, 4>& su
   writeToPositions(work, group + K, toFloats<S, 1>(sum * turned<K, K, K, K, S, 1>(inverse)));
 }
 
-/// The same bits for a group as among four: which groups are together depends on the order of the vertices.
+/// One group at a time, with the same bits as in fours: the order of the vertices determines which groups are processed
+/// together.
 template <class S>
 TETSKIN_NOINLINE void pathNormalsOneByOne(const PathWork<S>& work, std::size_t firstGroup, std::size_t lastGroup) {
   for (std::size_t group = firstGroup; group < lastGroup; ++group) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: points as they are read, computed and written. A point is four numbers, x y z and one
-// without meaning; P of them fill a register. A tet's coefficients are then used in the layout that they have in
-// memory, and a run of few vertices, as most are, costs little more than its vertices.
+// Internal to the kernels: points as they are read, computed and written. A point is four numbers, x y z and a
+// meaningless one; P of them fill a register. A tet's coefficients are then used in their memory layout, and a run of
+// few vertices, as most are, costs little more than its vertices.
 #pragma once
 
 #include <tetskin/core/src/base/kernels/lanes.h>
@@ -49,7 +49,7 @@ TETSKIN_INLINE Points<S, P> repeated(const S* from) {
   return repeated<S, P>(loadPadded(from));
 }
 
-/// P floats from memory as S, each in the four lanes of its point.
+/// Loads P floats as S, each into the four lanes of its point.
 template <class S, int P>
 TETSKIN_INLINE Points<S, P> spread(const float* from) {
 #if defined(__AVX512F__)
@@ -88,7 +88,7 @@ template <int A, int B, int C, int D, class S, int P>
 TETSKIN_INLINE Points<S, P> mixed(const Points<S, P>& v, const Points<S, P>& w) {
 #if defined(__SSE2__) && defined(TETSKIN_VECTOR_TYPES)
   if constexpr (sizeof(S) == sizeof(float)) {
-    // As the processor's shuffle wants it: two bits for each lane.
+    // In the encoding of the processor's shuffle: two bits for each lane.
     constexpr int kOrder = A | B << 2 | C << 4 | D << 6;
 #if defined(__AVX512F__)
     if constexpr (P == 4) return _mm512_shuffle_ps(v, w, kOrder);
@@ -184,7 +184,7 @@ template <class S, int P>
 TETSKIN_INLINE Points<S, P> inverseSquareRoots(const Points<S, P>& v) {
 #if defined(__SSE2__) && defined(TETSKIN_VECTOR_TYPES)
   if constexpr (sizeof(S) == sizeof(float)) {
-    // The processor's estimate, good to 12 bits, and one step of Newton's: to some 1e-7, in a fifth of the time.
+    // The processor's estimate, accurate to 12 bits, and one Newton step: error some 1e-7, in a fifth of the time.
     Points<S, P> y;
 #if defined(__AVX512F__)
     if constexpr (P == 4) y = _mm512_rsqrt14_ps(v);
@@ -201,7 +201,7 @@ TETSKIN_INLINE Points<S, P> inverseSquareRoots(const Points<S, P>& v) {
   return inverse;
 }
 
-/// x0 y0 z0 x1 y1 z1 ... and P numbers without meaning.
+/// x0 y0 z0 x1 y1 z1 ... and P meaningless numbers.
 template <class S, int P>
 TETSKIN_INLINE Points<S, P> sideBySide(const Points<S, P>& v) {
 #if defined(__AVX512F__)
@@ -217,7 +217,7 @@ TETSKIN_INLINE Points<S, P> sideBySide(const Points<S, P>& v) {
   if constexpr (P == 1) return v;
 }
 
-/// Writes P points contiguously; up to P further numbers may be overwritten.
+/// Writes P points contiguously; may overwrite up to P further numbers.
 template <class S, int P>
 TETSKIN_INLINE void storePoints(const Points<S, P>& v, S* out) {
   const Points<S, P> points = sideBySide<S, P>(v);
@@ -230,7 +230,7 @@ TETSKIN_INLINE void storePoints(const Points<S, P>& v, S* out) {
 #endif
   ::memcpy(out, &points, sizeof points);
 }
-/// First slot from which on storePoints may write past the points.
+/// First slot from which storePoints may write past the points.
 template <int P>
 constexpr std::uint32_t kSlotsTouched = (4 * P + 2) / 3;
 
@@ -255,7 +255,7 @@ int atMost(std::size_t count) {
   return count < static_cast<std::size_t>(P) ? static_cast<int>(count) : P;
 }
 
-/// Writes P points, or the first `count` if these are fewer, and nothing else.
+/// Writes P points, or the first `count` if that is fewer, and nothing else.
 template <class S, int P>
 void storeFirst(const Points<S, P>& v, std::size_t count, S* out) {
   for (int i = 0; i < atMost<P>(count); ++i) {

@@ -39,7 +39,7 @@ struct WideExtent {
   }
 };
 
-/// kSpill  points past a run's end are written into slots that the next run overwrites: cheaper than masking them
+/// kSpill  writes points past a run's end into slots that the next run overwrites: cheaper than masking them
 template <class S, int P, class Tet, bool kExtent, bool kSpill>
 TETSKIN_NOINLINE void positionsOfRuns(const Work<S>& given, std::size_t firstRun, std::size_t lastRun, const S shift[4],
                                       S* out, WideExtent<S, P>& extent) {

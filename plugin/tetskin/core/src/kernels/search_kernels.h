@@ -17,7 +17,7 @@ struct EntryRange {
   std::uint32_t first, last;
 };
 
-/// Input of the filter that finds the entries that are not beyond any of four planes.
+/// Input of the filter that keeps the entries that are beyond none of four planes.
 struct FilterWork {
   const EntryRange* ranges = nullptr;
   std::size_t rangeCount = 0;
@@ -29,8 +29,8 @@ struct FilterWork {
 /// Floats in the widest register, that of AVX-512: loops may read and write this many beyond the end.
 constexpr std::size_t kMaxLanes = 16;
 
-/// Writes the entries for which no normal . point + constant + limit is below 0, in order, and returns their number.
-/// kMaxLanes more may be written.
+/// Writes the entries for which no normal . point + constant + limit is negative, in order, and returns their number.
+/// May write kMaxLanes more.
 using SelectEntries = std::size_t (*)(const FilterWork&, std::uint32_t* selected);
 
 TETSKIN_FOR_EACH_INSTRUCTION_SET(extern const SelectEntries select;)

@@ -3,9 +3,9 @@
 //
 // Internal to skinning: the inner loops, compiled once for each instruction set and chosen at run time.
 //
-// This header and what it includes are compiled with flags that not every processor can run, so they use nothing but
-// plain types: an inline function of Eigen or of the standard library, compiled here, might be the copy that the
-// linker keeps for everyone.
+// This header and what it includes are compiled with flags that not every processor supports, so they use only plain
+// types: if an inline function of Eigen or of the standard library were compiled here, the linker might keep this copy
+// for everyone.
 #pragma once
 
 #include <tetskin/core/src/base/kernels/dispatch.h>
@@ -23,7 +23,7 @@ enum class Surface {
   QuadraticOutside,  ///< continued to first order from the closest point
 };
 
-/// Some consecutive runs, all inside or all outside, with everything that their vertices depend on.
+/// Some consecutive runs, all inside or all outside, with all data that their vertices depend on.
 template <class Scalar>
 struct Work {
   Surface surface = Surface::Linear;
@@ -31,7 +31,7 @@ struct Work {
   std::size_t firstRun = 0;
   std::size_t lastRun = 0;                  ///< one past
   const float* weights[3] = {};             ///< one array per weight, by slot
-  const float* closest[3] = {};             ///< one array per weight, by slot - closestBase; QuadraticOutside only
+  const float* closest[3] = {};             ///< one past the end
   std::uint32_t closestBase = 0;            ///< the first slot outside
   const Scalar* nodes = nullptr;            ///< current positions, 4 scalars per node, relative to some point nearby
   const Scalar* edges = nullptr;            ///< 4 scalars per cage edge: its vector, and its rest length
@@ -45,7 +45,7 @@ struct Extent {
   Scalar high[3];
 };
 
-/// Scalars of a gradient: three columns of 4, and 4 without meaning.
+/// Scalars of a gradient: three columns of 4, and 4 meaningless ones.
 constexpr std::size_t kGradientStride = 16;
 
 /// One node's gradient is the sum of neighbour positions times `factors`: see quadratic_skinning.h.
@@ -80,7 +80,7 @@ struct BendWork {
   Scalar* edges = nullptr;
 };
 
-/// What a bone's matrix [ A | t ] holds: half the node's gradient, or the whole gradient beside the displacement.
+/// What a bone's matrix [ A | t ] contains: half the node's gradient, or the whole gradient beside the displacement.
 enum class BoneContent { HalfGradient, Gradient };
 
 template <class Scalar>
@@ -97,8 +97,8 @@ struct BoneWork {
   std::size_t strideBytes = 0;
 };
 
-/// Directions carried by the map's gradient. A normal is the sum of factor k times the cross product of the other two
-/// columns; a tangent is the sum of factor k times column k.
+/// Directions transformed by the map's gradient. A normal is the sum of factor k times the cross product of the other
+/// two columns; a tangent is the sum of factor k times column k.
 enum class Direction { Normal, Tangent };
 struct DirectionPlanes {
   Direction kind = Direction::Normal;
@@ -118,9 +118,9 @@ struct PathWork {
   std::size_t outStride = 0;                      ///< in bytes
 };
 
-/// The loops of one instruction set. Points are written contiguously in the order of the slots: slot s at out + 3 s. If
-/// there is an extent, `positions` extends it. `directions` and `pathNormals` write unit vectors, and leave the
-/// previous value where there is no direction.
+/// The loops of one instruction set. Points are written contiguously in slot order: slot s at out + 3 s. If there is an
+/// extent, `positions` extends it. `directions` and `pathNormals` write unit vectors, and leave the previous value
+/// where there is no direction.
 template <class Scalar>
 struct Table {
   void (*positions)(const Work<Scalar>&, const Scalar shift[3], Scalar* out, Extent<Scalar>*);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal: all loops behind skinning_kernels.h, P points at a time. Included once for each instruction set, with
+// Internal: all loops behind skinning_kernels.h, P points at a time. Included once per instruction set, with
 // TETSKIN_KERNELS, its namespace, and TETSKIN_LANES, the number of floats in a register.
 #pragma once
 
-#ifndef TETSKIN_LANES  // compiled by itself, as a check
+#ifndef TETSKIN_LANES  // compiled on its own, as a check
 #define TETSKIN_KERNELS plain
 #define TETSKIN_LANES 1
 #endif

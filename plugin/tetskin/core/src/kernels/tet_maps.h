@@ -44,9 +44,9 @@ struct Weights {
   const Points<S, P>& operator[](int k) const { return item[k]; }
 };
 
-// One tet under each kind of surface: computed once per run, then x(b) - x3 of its points, and the columns of the
-// gradient (derivatives by b0, b1 and b2) for normals and tangents. The differences are summed before x3 is added,
-// which may be far from the origin.
+// A tet with each kind of surface: computed once per run; then gives x(b) - x3 of its points, and the columns of the
+// gradient (derivatives by b0, b1 and b2) for normals and tangents. The differences are summed before x3, which may be
+// far from the origin, is added.
 
 /// x(b) of the linear map, without the edges' vectors.
 template <class S, int P>
@@ -123,7 +123,7 @@ struct QuadraticTetOutside : QuadraticMap<S, P> {
   }
 
   /// The quadratic part, with its derivatives, is evaluated at the closest point, and continued to first order. On a
-  /// crumpled cage it would become very long: it is limited to the length of the tet's shortest edge at rest.
+  /// crumpled cage it would become very long, so it is limited to the length of the tet's shortest edge at rest.
   Points<S, P> fromLast(const Work<S>& work, std::size_t slot) const {
     const Weights<S, P> b(work.weights, slot), c(work.closest, slot - work.closestBase);
     Points<S, P> linear = {}, added = QuadraticMap<S, P>::fromLast(c);
@@ -142,7 +142,7 @@ struct QuadraticTetOutside : QuadraticMap<S, P> {
   }
 
  private:
-  /// For nodes so far apart that the length overflows, the correction is 0.
+  /// If nodes are so far apart that the length overflows, the correction is 0.
   TETSKIN_NOINLINE Points<S, P> shortened(Points<S, P> added, Points<S, P> squared) const {
     for (int i = 0; i < 4 * P; ++i) {
       const S q = squared[i];

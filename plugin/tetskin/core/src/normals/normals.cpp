@@ -23,8 +23,8 @@ DirectionFactors::DirectionFactors(const TetMesh& cage, const Embedding& embeddi
 }
 
 /// With E the current and P the rest edges (p0-p3, p1-p3, p2-p3), the gradient is G = E P^-1, and its cofactor matrix
-/// cof(E) P^T / det(P): so a normal is cof(E) times the factors P^T n / det(P), whose columns are cross products of
-/// E's.
+/// cof(E) P^T / det(P). So a normal is cof(E) times the factors P^T n / det(P); the columns of cof(E) are cross
+/// products of E's.
 DirectionFactors DirectionFactors::ofNormals(const TetMesh& cage, const Embedding& embedding,
                                              const std::vector<Eigen::Vector3d>& normals) {
   assert(normals.size() == embedding.vertexCount());

@@ -12,8 +12,8 @@
 
 namespace tetskin {
 
-/// Directions on the rest surface, prepared to be carried by the map's gradient G: normals by its cofactor matrix (not
-/// its inverse transpose: no division, and the right side out when a tet is inverted), tangents by G itself. Immutable,
+/// Directions on the rest surface, prepared for the map's gradient G: it transforms normals by its cofactor matrix (not
+/// its inverse transpose: no division, and the correct side when a tet is inverted), tangents by G itself. Immutable,
 /// shared like an Embedding. Memory: 12 bytes per vertex.
 class DirectionFactors {
  public:
@@ -27,7 +27,7 @@ class DirectionFactors {
                                      const std::vector<Eigen::Vector3d>& tangents);
 
   bool areNormals() const { return normals_; }
-  /// By slot, padded as the weights are.
+  /// By slot, with the padding of the weights.
   const float* plane(int k) const { return planes_[static_cast<std::size_t>(k)].data(); }
 
  private:
@@ -38,14 +38,14 @@ class DirectionFactors {
   std::array<std::vector<float>, 3> planes_;
 };
 
-/// Writes the current unit normal (or tangent) of every vertex, for a linear surface or a quadratic one; outside, the
-/// gradient is that of the closest point. A direction that has collapsed to nothing leaves what is there, so the
-/// caller's memory should hold unit vectors to begin with.
+/// Writes the current unit normal (or tangent) of every vertex, for a linear or a quadratic surface; outside, the
+/// gradient is that of the closest point. If a direction has collapsed to zero, its memory keeps the old value, so the
+/// caller's memory should initially hold unit vectors.
 ///
 /// out              vertexCount x 3, caller-owned, any stride; world space
-/// scratch          scratchSize(vertexCount) floats of the caller's, unit vectors to begin with, which nobody else
-///                  writes; not needed for `out` side by side in sorted order; without it, some is allocated, and `out`
-///                  is read
+/// scratch          scratchSize(vertexCount) floats of the caller's, initially unit vectors, which nobody else writes;
+///                  not needed if `out` is contiguous and in sorted order; without it, some is allocated, and `out` is
+///                  read
 /// Cost             O(vertexCount), no allocation
 template <class Scalar>
 void transformDirections(const Embedding& embedding, const DirectionFactors& factors, const Bends<Scalar>& bends,

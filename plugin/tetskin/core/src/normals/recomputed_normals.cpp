@@ -18,19 +18,19 @@ namespace {
 using skin_tasks::firstItem;
 using skin_tasks::taskCount;
 
-/// Enough work that handing it out costs little.
+/// Enough work to make the cost of scheduling it small.
 constexpr std::size_t kGroupsPerTask = 8192;
-/// Groups that are sorted at a time: all of them at once would take their vertices from memory in disorder.
+/// Groups that are sorted at a time: sorting all at once would read their vertices in random order.
 constexpr std::size_t kWindow = 256;
 /// In radians.
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
-/// A vertex that has no group so far.
+/// A vertex without a group so far.
 constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 
 /// Rounding of the cosine of an angle between two directions given as floats.
 constexpr double kRounding = 1e-12;
 
-/// The direction of the rest normal, whatever its length; zero if there is none, or it has no direction.
+/// The direction of the rest normal, whatever its length; zero if there is none.
 Eigen::Vector3d restDirection(const TriangleMesh& mesh, std::uint32_t v) {
   if (mesh.normals.size() != mesh.vertexCount()) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d normal = mesh.normals[v].cast<double>();
@@ -63,27 +63,26 @@ std::vector<std::uint32_t> smoothGroups(const TriangleMesh& mesh, const std::vec
   }
   for (std::uint32_t v = 0; v < mesh.vertexCount(); ++v) {
     if (groupOf[v] == kNoGroup)
-      join(v, [](std::uint32_t) { return true; });  // processed after those with a normal, which determine the groups
+      join(v, [](std::uint32_t) { return true; });  // after those with a normal, which determine the groups
   }
   return groupOf;
 }
 
-/// The far side of a triangle, as seen from one of its corners: two vertices, and their positions' numbers.
+/// The far side of a triangle, as seen from one of its corners: two vertices, and the numbers of their positions.
 struct FarSide {
   std::uint32_t from, to;
   std::uint32_t fromPosition, toPosition;
 };
 
 /// Appends the sides as one path, in which each side is followed by one that begins where it ends; `centre` is inserted
-/// where there is none. The path begins with the first side, and prefers earlier ones: it does not depend on the
+/// where there is none. The path begins with the first side, and prefers earlier ones, so it does not depend on the
 /// numbering of the vertices.
 void appendPath(const std::vector<FarSide>& sides, std::uint32_t centre, std::vector<std::uint32_t>& path) {
   std::vector<std::size_t> byStart(sides.size());
   std::iota(byStart.begin(), byStart.end(), std::size_t{0});
   std::stable_sort(byStart.begin(), byStart.end(),
                    [&](auto a, auto b) { return sides[a].fromPosition < sides[b].fromPosition; });
-  // Of the sides that begin at one position, the first is used first; this counts how many have been used, at the first
-  // one's index.
+  // Sides that begin at one position are used in order; this counts the used ones, at the first one's index.
   std::vector<std::size_t> taken(sides.size(), 0);
   std::vector<bool> used(sides.size(), false);
   const auto take = [&](std::uint32_t position) -> const FarSide* {
@@ -108,8 +107,8 @@ void appendPath(const std::vector<FarSide>& sides, std::uint32_t centre, std::ve
 }
 
 /// Numbers groups in the order of their indices in the output, so that neighbours in memory are mostly neighbours on
-/// the surface. Within a window they are sorted by their number of triangles, as the branch at the end of a loop is
-/// mispredicted whenever its length changes.
+/// the surface. Within a window they are sorted by their number of triangles, because the branch at the end of a loop
+/// is mispredicted whenever the loop's length changes.
 void renumber(const std::vector<std::uint32_t>& vertexAt, const TriangleMesh& mesh, std::size_t groups,
               std::vector<std::uint32_t>& groupOf) {
   assert(vertexAt.size() == mesh.vertexCount() && groupOf.size() == mesh.vertexCount());

@@ -23,7 +23,7 @@ struct OutsideEdges {
   Lists<> ends;  ///< by index in `vertices`: the other ends of its edges, each from either triangle
   std::vector<std::uint32_t> indexOf;  ///< by vertex: its index in `vertices`; kInside if it is not outside
 
-  /// No index of a vertex outside.
+  /// Not an index of a vertex outside.
   static constexpr std::uint32_t kInside = 0xFFFFFFFFu;
 
   OutsideEdges(const std::vector<std::uint32_t>& first, const std::vector<std::array<int, 3>>& triangles,
@@ -57,12 +57,12 @@ struct Seen {
   double weight;  ///< largest absolute weight
 };
 
-/// One vertex and the tets around it that are connected to its neighbours'.
+/// One vertex, and the tets around it that are connected to its neighbours'.
 class LocalSearch {
  public:
   explicit LocalSearch(const TetMesh& cage) : cage_(cage), visited_(cage.tetCount(), 0) {}
 
-  /// The tet for a vertex that the nearest rule gives to `nearest`, with neighbours in the tets `others`, at most
+  /// The tet for a vertex to which the nearest rule gives `nearest`, with neighbours in the tets `others`, at most
   /// `reach` away.
   std::int32_t tetFor(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
                       double reach) {
@@ -84,7 +84,7 @@ class LocalSearch {
     return {tet, tetSize(corners), distanceToTet(v, corners, weights), largestWeight(weights)};
   }
 
-  /// Visits the tets that are connected to `others` within a radius. Returns true if these include `nearest`; if not,
+  /// Visits the tets that are connected to `others` within a radius. Returns true if `nearest` is among them; if not,
   /// all of them are in `seen_`.
   bool connects(const Eigen::Vector3d& v, std::int32_t nearest, const std::vector<std::int32_t>& others,
                 double radius) {
@@ -156,7 +156,7 @@ class Walk {
         search_(cage),
         state_(edges_.vertices.size(), State::Untouched) {}
 
-  /// Proceeds from the settled vertices outwards, to all that are connected. Returns how many vertices changed their
+  /// Proceeds outwards from the settled vertices to all that are connected. Returns how many vertices changed their
   /// tet.
   std::size_t run() {
     for (std::uint32_t index = 0; index < state_.size(); ++index) {
@@ -170,7 +170,7 @@ class Walk {
     return changed;
   }
 
-  /// Settles the vertices that no run has reached, with their present tets, except for some of them.
+  /// Settles the vertices that no run has reached with their present tets, except for some of them.
   void settleAllBut(const std::vector<bool>& excepted) {
     assert(excepted.size() == tetOf_.size());
     for (std::size_t index = 0; index < state_.size(); ++index) {
@@ -190,7 +190,7 @@ class Walk {
     queue_.push(index);
   }
 
-  /// Returns whether the vertex changes its tet.
+  /// Returns true if the vertex changes its tet.
   bool settle(std::uint32_t index) {
     const std::uint32_t v = edges_.vertices[index];
     assert(tetOf_[v] < 0 && state_[index] != State::Settled);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Searches with growing boxes: a point is settled once its best tet is nearer than the border already searched, because
-// every tet that could be better has then been tested. The result is that of testing all pairs.
+// Searches with growing boxes: a point is settled once its best tet is nearer than the searched border, because every
+// tet that could be better has then been tested. The result is the same as that of testing all pairs.
 #include <tetskin/core/src/search/outside_search.h>
 #include <tetskin/core/src/search/spatial_hash.h>
 #include <tetskin/core/src/search/tet_filter.h>
@@ -17,13 +17,12 @@ namespace {
 /// outside are near, and each round has to visit all tets.
 constexpr double kFirstBorder = 0.2;
 constexpr double kGrowth = 4.0;
-/// A barycentric distance d that makes no weight larger than kMaxWeight: no weight is below -d, so none is above
-/// 1 + 3 d, either.
+/// A barycentric distance d that keeps all weights within kMaxWeight: no weight is below -d, so none is above 1 + 3 d.
 constexpr double kSafeDistance = 0.999 * (kMaxWeight - 1.0) / 3.0;
-/// First barycentric border, which is doubled in each round.
+/// First barycentric border; it is doubled in each round.
 constexpr double kFirstBarycentricBorder = 0.25;
-/// Points are searched this many at a time, or an eighth of all if that is more: the data of a point that is not
-/// settled takes many times the memory of its result.
+/// Points are searched this many at a time, or an eighth of all if that is more: an unsettled point takes many times
+/// the memory of its result.
 constexpr std::size_t kMinBatch = 65536;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -41,7 +40,7 @@ struct OpenPoints {
   }
 };
 
-/// Keeps the points whose best exceeds the limit.
+/// The points whose best exceeds the limit.
 OpenPoints above(const OpenPoints& open, double limit) {
   OpenPoints rest;
   for (std::size_t k = 0; k < open.size(); ++k) {
@@ -50,12 +49,12 @@ OpenPoints above(const OpenPoints& open, double limit) {
   return rest;
 }
 
-/// No open point can have its tet farther away than this; infinite while a point has met no tet at all.
+/// No open point can have its tet farther away than this; infinite while a point has not met any tet.
 double farthestBest(const OpenPoints& open) {
   return open.best.empty() ? 0.0 : *std::max_element(open.best.begin(), open.best.end());
 }
 
-/// A point whose tet was found outside of it is inside if it is as near as rounding errors are large.
+/// A point whose tet was found outside of it counts as inside if the distance is within rounding.
 void settle(const SearchCage& cage, std::uint32_t point, double distance, TetSearch& search) {
   assert(search.tetOf[point] < 0 && search.tetOf[point] != TetSearch::kNone);
   if (distance <= kInsideTolerance * maxCoordinate(cage.box())) {
@@ -129,7 +128,7 @@ class DistanceRound {
 struct NearTet {
   std::uint32_t open;
   int tet;
-  double tie;  ///< distances that exceed this one by no more count as equal
+  double tie;  ///< distances up to this much longer count as equal
   double barycentric;
   double distance;
 };
@@ -177,7 +176,8 @@ OpenPoints settleNearest(const SearchCage& cage, const OpenPoints& open, double 
   return extrapolated;
 }
 
-/// Points whose nearest tets would extrapolate them too far get, of the tets near them, those that extrapolate least.
+/// Among the tets near them, chooses those that extrapolate least, for points whose nearest tets would extrapolate too
+/// far.
 void reassignByWeight(const SearchCage& cage, const OpenPoints& points, double cellSize, std::size_t tableSize,
                       TetSearch& search) {
   if (points.size() == 0) return;
@@ -212,14 +212,14 @@ void findNearest(const SearchCage& cage, OpenPoints open, double cellSize, std::
     open = above(open, searched);
     reassignByWeight(cage, extrapolated, cellSize, tableSize, search);
     // If all remaining points are far away, the border grows to them at once; if they are known to be near, it grows no
-    // farther.
+    // further.
     double nearestLeft = kInfinity;
     for (const Eigen::Vector3d& v : open.positions) nearestLeft = std::min(nearestLeft, cage.box().exteriorDistance(v));
     border = std::min(std::max(kGrowth * border, nearestLeft), farthestBest(open) + 2.0 * widestTie);
   }
 }
 
-/// Tests one tet against the open points in the box of the tet scaled by 1 + 4 delta about its centroid, which holds
+/// Tests one tet against the open points in the box of the tet scaled by 1 + 4 delta about its centroid, which contains
 /// all points of barycentric distance up to delta: b_i >= -delta means b_i - 1/4 >= -(1 + 4 delta) / 4.
 void testBarycentric(const SearchTet& tet, double delta, const SpatialHash& hash, OpenPoints& open, TetSearch& search) {
   const BarycentricMap map(tet.corners);

@@ -8,7 +8,7 @@
 
 namespace tetskin {
 
-/// Finds the tet of every point that the first pass left without one and that is its own first. Arguments as in
+/// Finds the tet of every point that is its own first and that the first pass has left without one. Arguments as in
 /// `findTets`; `cellSize` is the first pass's.
 void findOutside(const SearchCage& cage, PointReader points, const std::vector<std::uint32_t>& first, OutsideRule rule,
                  double cellSize, std::size_t tableSize, TetSearch& search);

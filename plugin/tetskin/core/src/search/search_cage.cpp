@@ -9,7 +9,7 @@
 namespace tetskin {
 namespace {
 
-/// Number of tets whose median is computed, approximately. It affects only the cost.
+/// Approximate number of tets whose median is computed. It affects only the cost.
 constexpr std::size_t kSample = 1000;
 
 }  // namespace

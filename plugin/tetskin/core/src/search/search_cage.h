@@ -20,7 +20,7 @@ inline Box3 grown(const Box3& box, double border) {
 }
 
 /// Query boxes are larger than the exact ones by this fraction of the sum of their sides, which is at least the tet's
-/// size. A weight of a tet just above kFlatTet can be off by 1e-7, and a vertex that far outside would still test as
+/// size. A weight of a tet just above kFlatTet can be wrong by 1e-7, and a vertex that far outside would still test as
 /// inside.
 constexpr double kBoxSlack = 1e-6;
 
@@ -34,8 +34,8 @@ struct SearchTet {
   double slack() const { return kBoxSlack * box.sizes().sum(); }
 };
 
-/// The tets of a cage that are not flat. They are read from the cage each time, which is no slower than reading a list
-/// of them, and such a list is as large as millions of vertices.
+/// The tets of a cage that are not flat. They are read from the cage each time: this is no slower than reading a list
+/// of them, and such a list would be as large as millions of vertices.
 class SearchCage {
  public:
   /// The cage must be usable and outlive this.
@@ -48,10 +48,9 @@ class SearchCage {
   TetCorners corners(std::int32_t tet) const { return cornersOf(mesh_, mesh_.tets[static_cast<std::size_t>(tet)]); }
 
   const Box3& box() const { return box_; }
-  /// The largest size of all tets.
   double largestSize() const { return largestSize_; }
   double largestSlack() const { return largestSlack_; }
-  /// Median of the longest sides of the tets' boxes, of a sample if there are many.
+  /// Median of the longest sides of the tets' boxes; of a sample if there are many.
   double medianSide() const { return medianSide_; }
 
  private:

@@ -16,17 +16,17 @@ namespace tetskin {
 
 /// A grid of the points in a box: which of them may lie in a smaller box? Built once by a counting sort, as in the
 /// tutorial. The tutorial's hash scatters neighbouring cells over the table; here the table is a block of cells that
-/// repeats through space, so that neighbours stay neighbours in memory: a row of cells along x is one contiguous range
-/// of entries, and a mesh of millions of vertices, whose order is mostly that of space, is read and written almost
+/// repeats through space, so that neighbours stay neighbours in memory. A row of cells along x is one contiguous range
+/// of entries, and a mesh of millions of vertices, whose order mostly follows space, is read and written almost
 /// sequentially. If all cells fit the table, no two share a place; otherwise the table's edges are halved, the longest
-/// first, until it is small enough, and cells whole tables apart share one. Memory is so proportional to the points,
-/// however far apart they are. An *entry* is a point in table order.
+/// first, until it is small enough, and cells that are whole tables apart share a place. So memory is proportional to
+/// the number of points, however far apart they are. An *entry* is a point in table order.
 ///
 /// Example: 4 points in the box [0, 4] x [0, 1] x [0, 1] and a cell size of 1 make a table of 5 x 2 x 2 cells, folded
 /// to 3 x 2 x 2; the box [0.2, 1.5] x [0, 0] x [0, 0] is the one row of cells 0 and 1 and hence one range of entries.
 class SpatialHash {
  public:
-  /// Where entries have their float coordinates: (p - centre) * scale is within [-1, 1] in the box.
+  /// The frame of the entries' float coordinates: (p - centre) * scale is within [-1, 1] in the box.
   struct Frame {
     Eigen::Vector3d centre;
     double scale;
@@ -38,8 +38,9 @@ class SpatialHash {
   /// points     finite, any number
   /// box        points outside of it are left out
   /// cellSize   edge of a cell, in the points' unit, above 0
-  /// first      by point; those that are not their own first are left out, see `weldCoincident`; empty: all are in
-  /// tableSize  most cells of the table; 0 chooses kCellsPerPoint a point, or kMinCells if that is more
+  /// first      by point; those that are not their own first are left out, see `weldCoincident`; empty: all are
+  ///            included
+  /// tableSize  most cells of the table; 0: kCellsPerPoint per point, or kMinCells if that is more
   SpatialHash(PointReader points, const Box3& box, double cellSize, const std::vector<std::uint32_t>& first = {},
               std::size_t tableSize = 0);
 
@@ -47,14 +48,14 @@ class SpatialHash {
   std::size_t tableSize() const { return cellStart_.size() - 1; }
   const Frame& frame() const { return frame_; }
 
-  /// By entry: index of the point, and its coordinates in the frame, correctly rounded but for a double's last bits.
+  /// By entry: index of the point, and its coordinates in the frame, correctly rounded except for a double's last bits.
   const std::uint32_t* ids() const { return ids_.data(); }
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
   const float* z() const { return z_.data(); }
 
-  /// Calls visit(first, last) for disjoint ranges of entries that together hold every point of the hash in the box, and
-  /// others: those in the same cells, and those whose cells share a place with them.
+  /// Calls visit(first, last) for disjoint ranges of entries that together contain every point of the hash in the box,
+  /// and others: those in the same cells, and those whose cells share a place with them.
   template <class Visit>
   void query(const Box3& box, Visit&& visit) const;
   /// Writes these ranges; returns how many entries they have.
@@ -67,7 +68,7 @@ class SpatialHash {
     std::uint32_t first;
     std::uint32_t count;
   };
-  /// Cells of a table: most then hold one point or none; and the fewest.
+  /// Cells of a table per point, so that most hold one point or none; and the smallest number of cells.
   static constexpr std::size_t kCellsPerPoint = 4, kMinCells = 4096;
 
   void chooseTable(std::size_t maxCells);
@@ -89,8 +90,8 @@ class SpatialHash {
 };
 
 inline SpatialHash::Cell SpatialHash::cellOf(const Eigen::Vector3d& p) const {
-  // Far beyond any sensible grid, but it still fits 64 bits. Every step keeps the order of points, so a box covers the
-  // cells of the points in it.
+  // Far beyond any sensible grid, but within 64 bits. Every step keeps the order of points, so a box covers the cells
+  // of the points in it.
   constexpr double kMaxCell = 1e15;
   Cell cell;
   for (int k = 0; k < 3; ++k) {

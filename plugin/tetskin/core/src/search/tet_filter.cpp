@@ -9,12 +9,12 @@
 namespace tetskin {
 namespace {
 
-/// Bounds on |n . x + c| computed in float for |x_k| <= 1, over the sum of the absolute values of n and c: the
-/// coordinates, n and c are rounded once each, three products and three sums as well, which makes less than 8 times
+/// Bound of the error of n . x + c computed in float for |x_k| <= 1, over the sum of the absolute values of n and c:
+/// the coordinates, n and c are rounded once each, as are three products and three sums, which makes less than 8 times
 /// 2^-24. The rest is for planes of tets just above kFlatTet, whose own direction is known to some 1e-7 only.
 constexpr double kFloatError = 0x1p-19;
-/// The same bound for the rounding errors of the decision in double: its fourth weight is 1 minus the others, so that
-/// it has the rounding errors of the largest.
+/// The same bound for the decision in double: its fourth weight is 1 minus the others, so it has the rounding errors of
+/// the largest.
 constexpr double kDoubleError = 0x1p-48;
 /// Planes with larger coefficients could overflow a float; the filter then passes all points.
 constexpr double kMaxCoefficient = 1e30;

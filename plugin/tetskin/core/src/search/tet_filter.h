@@ -15,7 +15,7 @@
 
 namespace tetskin {
 
-/// The planes of a tet's four faces in a hash's frame, each a little too far out.
+/// The planes of a tet's four faces in a hash's frame, each moved slightly outwards.
 class TetFilter {
  public:
   /// A filter whose bound is not below the point's smallest weight in the tet, as `map` computes it.
@@ -23,8 +23,8 @@ class TetFilter {
   /// A filter whose bound, negated, is not above the point's distance to the tet, in the frame's unit.
   static TetFilter ofDistance(const BarycentricMap& map, const SpatialHash::Frame& frame);
 
-  /// Writes those entries in the ranges whose bound is not below -limits[entry], or not below 0 where there are no
-  /// limits. Returns how many; `passed` only ever grows.
+  /// Writes those entries in the ranges whose bound is not below -limits[entry], or not below 0 without limits. Returns
+  /// how many; `passed` only ever grows.
   std::size_t select(const SpatialHash& hash, const std::vector<SpatialHash::Range>& ranges, const float* limits,
                      std::vector<std::uint32_t>& passed) const;
 

@@ -5,7 +5,7 @@
 //   Matthias Müller, "100 x Simulation Speedup with Mesh Embedding", Ten Minute Physics 12, 2022
 //
 // The tutorial searches once, with a border of an absolute length. Here a search with tight boxes settles the vertices
-// inside, and searches with growing boxes (outside_search.cpp) the rest.
+// inside, and a search with growing boxes (outside_search.cpp) the rest.
 #include <tetskin/core/src/search/outside_search.h>
 #include <tetskin/core/src/search/spatial_hash.h>
 #include <tetskin/core/src/search/tet_filter.h>
@@ -18,14 +18,14 @@ namespace tetskin {
 namespace {
 
 /// Cell size over the median side of the tets' boxes: smaller cells test fewer candidates but look up more rows, which
-/// pays the more points there are to a tet.
+/// pays off more with more points per tet.
 constexpr double kFinestCells = 0.4;
 constexpr double kCoarsestCells = 0.7;
 
 double cellSizeFor(const SearchCage& cage, std::size_t pointCount) {
   assert(pointCount > 0 && cage.size() > 0);
-  // In a graded cage the median may be tiny beside the largest tets. Cells finer than this would make a box across the
-  // cage look up more rows than there are points.
+  // In a graded cage the median may be tiny compared with the largest tets. With finer cells than this, a box across
+  // the cage would look up more rows than there are points.
   const double finest = cage.box().sizes().maxCoeff() / (2.0 * std::sqrt(static_cast<double>(pointCount)));
   const double pointsPerTet = static_cast<double>(pointCount) / static_cast<double>(cage.size());
   const double fraction = std::min(std::max(1.0 / std::sqrt(pointsPerTet), kFinestCells), kCoarsestCells);
@@ -49,7 +49,7 @@ class InsideSearch {
   std::size_t overlapping() const { return static_cast<std::size_t>(std::count(deep_.begin(), deep_.end(), kSeveral)); }
 
  private:
-  /// A point counts as ambiguous from its second tet on; further ones are not counted.
+  /// A point counts as ambiguous from its second tet on; further tets are not counted.
   static constexpr std::uint8_t kSeveral = 2;
 
   void decide(int tet, const BarycentricMap& map, std::uint32_t point) {
@@ -66,7 +66,7 @@ class InsideSearch {
   PointReader points_;
   const SpatialHash& hash_;
   TetSearch& search_;
-  std::vector<std::uint8_t> deep_;          ///< by point: in how many tets it is deep, up to kSeveral
+  std::vector<std::uint8_t> deep_;          ///< by point: number of tets in which it is deep, up to kSeveral
   std::vector<SpatialHash::Range> ranges_;  ///< scratch memory, as is the next
   std::vector<std::uint32_t> passed_;
 };

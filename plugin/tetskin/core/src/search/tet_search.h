@@ -24,11 +24,11 @@ struct TetSearch {
   double farthestDistance = 0.0;    ///< longest distance of a point outside to the nearest tet; see `worstDistance`
   std::uint32_t farthest = 0;       ///< index of that point: the first, if there are several
   std::vector<bool> reassigned;     ///< by point: true if it is outside, and not in the nearest tet because of its
-                                    ///< weights; empty if there is none
+                                    ///< weights; empty if there are none
 };
 
 /// Finds the tet of every point by the rule that `embed` states. There must be a tet; points must be finite.
-/// first      by point, see `weldCoincident`: only points that are their own first are searched, the others copied
+/// first      by point, see `weldCoincident`: only points that are their own first are searched; the others copy them
 /// tableSize  of the spatial hash, see there; only the cost depends on it
 TetSearch findTets(const SearchCage& cage, PointReader points, const std::vector<std::uint32_t>& first,
                    OutsideRule rule, std::size_t tableSize = 0);

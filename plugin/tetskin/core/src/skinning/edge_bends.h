@@ -16,14 +16,14 @@ namespace tetskin {
 /// A cage edge by its lower and its higher node.
 using CageEdge = std::array<std::uint32_t, 2>;
 
-/// How far an edge bends, as a sum over nodes of a quadratic tet: e = sum of factor x_node; the factors' sum is 0.
+/// How an edge bends, as a sum over nodes of a quadratic tet: e = sum of factor x_node; the factors' sum is 0.
 struct EdgeBend {
   std::vector<std::uint32_t> nodes;
   std::vector<double> factors;
 };
 
-/// The edges of the eight tets of each quadratic tet. The vector of an edge on a face depends on the nodes of that face
-/// alone, so neighbours agree.
+/// The edges of the eight tets of each quadratic tet. The vector of an edge on a face depends only on the nodes of that
+/// face, so neighbours agree.
 class QuadraticEdges {
  public:
   /// Cost  O(T log T) for T tets

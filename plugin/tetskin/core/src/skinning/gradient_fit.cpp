@@ -17,19 +17,19 @@ namespace {
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-/// Most rings of neighbours among which enough are searched for; and the fewest neighbours, three more than a fit has
+/// Most rings of neighbours to search, and the smallest sufficient number of neighbours: three more than a fit's
 /// unknowns.
 constexpr int kMaxRings = 4;
 constexpr std::size_t kMinNeighbours = 12;
-/// This many of the nearest neighbours are enough if they determine a fit: compared with all nodes of two rings, they
-/// need a third less work per update, and bring the surface a sixth closer to smooth maps, as distant nodes say less
+/// This many nearest neighbours are enough if they determine a fit: compared with all nodes of two rings, they need a
+/// third less work per update, and bring the surface a sixth closer to smooth maps, because distant nodes say less
 /// about the gradient here. All nodes at the same distance are included, so that the stencils of a lattice are as
-/// symmetric as it is.
+/// symmetric as the lattice.
 constexpr std::size_t kNearNeighbours = 18;
 constexpr double kSameDistance = 1.0 + 1e-6;
-/// Smallest over largest singular value from which a fit counts as well conditioned. Where none is, smaller singular
-/// values are taken for 0: kept down to 1e-3, those of an uneven layer one cell thick make errors of four times the
-/// linear surface's; 0.05 would cost regular cages half of their gain.
+/// Ratio of the smallest to the largest singular value above which a fit counts as well conditioned. If no fit is,
+/// smaller singular values count as 0: if kept down to 1e-3, those of an uneven layer one cell thick cause errors four
+/// times those of the linear surface; 0.05 would cost regular cages half of their gain.
 constexpr double kWellConditioned = 0.02;
 /// Below this, the offsets themselves lie in a plane, and there is no linear fit either.
 constexpr double kFlatOffsets = 1e-3;
@@ -80,8 +80,8 @@ struct Fit {
     return factors;
   }
 
-  /// Truncation loses affine exactness, sum_j d_j g_j^T = I; this function restores it by the smallest change. Returns
-  /// false if the offsets lie in a plane.
+  /// Truncation loses affine exactness, sum_j d_j g_j^T = I; this restores it by the smallest change. Returns false if
+  /// the offsets lie in a plane.
   bool makeAffineExact(std::vector<Eigen::Vector3d>& factors) const {
     assert(factors.size() == offsets.size());
     Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero(), moment = Eigen::Matrix3d::Zero();
@@ -101,8 +101,7 @@ struct Fit {
   }
 };
 
-/// By node: a number that is the same for nodes that are the same corner of duplicates of a tet. Empty without
-/// duplicates.
+/// By node: a number shared by nodes that are the same corner of duplicates of a tet. Empty without duplicates.
 std::vector<int> indicesOf(const TetMesh& cage, const std::vector<int>& latticeTets) {
   assert(latticeTets.empty() || latticeTets.size() == cage.tetCount());
   std::map<int, std::size_t> first;  // by lattice tet
@@ -175,7 +174,7 @@ GradientStencil CageNeighbours::stencilOf(std::uint32_t node) {
   return plainStencil(node);
 }
 
-/// The nearest ones of the nodes that were found.
+/// The nearest of the nodes that were found.
 std::vector<std::uint32_t> CageNeighbours::nearNeighbours() const {
   std::vector<std::pair<double, std::uint32_t>> byDistance;
   for (std::size_t k = 1; k < found_.size(); ++k) {
@@ -197,8 +196,8 @@ std::vector<Eigen::Vector3d> CageNeighbours::offsetsOf(const std::vector<std::ui
   return offsets;
 }
 
-/// Appends the nodes that share an edge with those found from index `from` on. A node at the very position of the first
-/// one (a crack) contributes nothing, and is skipped.
+/// Appends the nodes that share an edge with those found from index `from` on. A node at exactly the position of the
+/// first one (a crack) contributes nothing, and is skipped.
 void CageNeighbours::addRing(std::size_t from) {
   const std::uint32_t centre = found_.front();
   for (std::size_t k = from, end = found_.size(); k < end; ++k) {
@@ -211,8 +210,8 @@ void CageNeighbours::addRing(std::size_t from) {
   }
 }
 
-/// Removes, of the nodes found from index `from` on, those whose position another found node has, in this ring or an
-/// earlier one.
+/// Of the nodes found from index `from` on, removes those that have the position of another found node, in this ring or
+/// an earlier one.
 void CageNeighbours::skipDuplicates(std::size_t from) {
   if (indexOf_.empty()) return;
   const auto isCopy = [&](std::size_t k) {

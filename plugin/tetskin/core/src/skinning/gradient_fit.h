@@ -25,14 +25,13 @@ struct GradientStencil {
 };
 
 /// Which nodes share an edge, and which tets share a node, over the tets that are not flat. Where duplicate tets branch
-/// off, neighbours that have the same position in several branches contribute nothing to a node's gradient, and are
-/// skipped.
+/// off, neighbours with the same position in several branches contribute nothing to a node's gradient, and are skipped.
 class CageNeighbours {
  public:
   /// latticeTets  by tet: a number that duplicates share, see Cage; empty: there are none
   explicit CageNeighbours(const TetMesh& cage, const std::vector<int>& latticeTets = {});
 
-  /// The stencil of one node, which must belong to a tet that is not flat. Cost: some fits of 9 unknowns.
+  /// The stencil of one node, which must belong to a tet that is not flat. Cost: some fits with 9 unknowns.
   GradientStencil stencilOf(std::uint32_t node);
 
  private:
@@ -47,7 +46,7 @@ class CageNeighbours {
   Lists<> tets_;                         ///< by node: its tets
   std::vector<int> indexOf_;             ///< by node: a number that duplicates share; empty: there are none
   std::vector<std::uint32_t> found_;     ///< the node, followed by its rings
-  std::vector<std::uint32_t> foundFor_;  ///< by node: the last node for which it was found, plus 1
+  std::vector<std::uint32_t> foundFor_;  ///< by node: the last node whose neighbours included it, plus 1
 };
 
 }  // namespace tetskin

@@ -85,7 +85,7 @@ QuadraticStencils<Scalar>::QuadraticStencils(const TetMesh& cage, const Embeddin
   }
 }
 
-/// gradientOf  by node: kNone where no gradient is needed; otherwise becomes the index of its gradient
+/// gradientOf  by node: kNone if no gradient is needed; otherwise becomes the index of its gradient
 template <class Scalar>
 void QuadraticStencils<Scalar>::addGradients(const TetMesh& cage, const std::vector<int>& latticeTets,
                                              std::vector<std::uint32_t>& gradientOf) {

@@ -12,13 +12,13 @@
 
 namespace tetskin {
 
-/// The data of the rest shape that quadratic skinning needs: computed once, immutable, shared like an Embedding.
+/// The rest-shape data for quadratic skinning: computed once, immutable, shared like an Embedding.
 ///
 ///     x(v) = sum_i b_i x_i + sum_{i<j} b_i b_j e_ij,   e_ij = (F_i - F_j) (X_j - X_i) / 2
 ///
 /// with X rest and x current nodes (D. James, "Phong Deformation", 2020, doi 10.1145/3386569.3392371, written with one
 /// vector per cage edge). The published node gradients F_i, averages of the tets' gradients, are not exact for
-/// quadratic maps; these are, wherever the cage allows: least-squares fits of first and second derivatives over the
+/// quadratic maps. These are, wherever the cage allows: least-squares fits of first and second derivatives over the
 /// nearest nodes around node i, corrected so that every affine map is exact. Within quadratic tets the map is known:
 /// the vectors of their edges come from the tets' own nodes, and x(v) is the tet's own map.
 ///
@@ -37,7 +37,7 @@ class QuadraticStencils {
 
   std::size_t gradientCount() const { return starts_.size() - 1; }
   std::size_t edgeCount() const { return restLengths_.size(); }
-  /// The number of edges whose vectors come from gradients; those of quadratic tets follow them.
+  /// The number of edges whose vectors come from gradients; those of quadratic tets come after them.
   std::size_t plainEdgeCount() const { return edgeGradients_.size() / 2; }
   /// The number of gradients in thin regions, and of those without a fit: see GradientStencil::Kind.
   std::size_t thinCount() const { return thinCount_; }
@@ -83,7 +83,7 @@ template <class Scalar>
 class NodeGradients {
  public:
   NodeGradients() = default;
-  /// One gradient more than there are nodes with a gradient: the last one is the identity, and stays so.
+  /// One gradient more than there are nodes with a gradient: the last one is always the identity.
   explicit NodeGradients(std::size_t count);
 
   /// Computes them for the current nodes. Cost O(nodes x neighbours), no allocation.
@@ -126,8 +126,8 @@ class EdgeVectors {
   std::vector<Scalar> edges_;
 };
 
-/// What makes a surface quadratic: its stencils, and edge vectors that were updated for the current nodes. Both null:
-/// it is linear, x(v) = p3 + b0 (p0-p3) + b1 (p1-p3) + b2 (p2-p3).
+/// The data of a quadratic surface: its stencils, and edge vectors updated for the current nodes. Both null: the
+/// surface is linear, x(v) = p3 + b0 (p0-p3) + b1 (p1-p3) + b2 (p2-p3).
 template <class Scalar>
 struct Bends {
   const QuadraticStencils<Scalar>* stencils = nullptr;
@@ -147,7 +147,7 @@ struct Bends {
 ///
 /// embedding  shared, read only
 /// nodes      nodeCount current positions, world space
-/// bounds     if given, becomes the box of the positions written
+/// bounds     if given, becomes the box of the written positions
 /// threads    if given, lends its threads to large meshes
 /// Cost       O(vertexCount), no allocation; cannot fail, sizes are asserted
 template <class Scalar, class Out>

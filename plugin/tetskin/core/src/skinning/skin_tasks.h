@@ -17,7 +17,7 @@
 
 namespace tetskin::skin_tasks {
 
-/// Handing work to another thread costs some microseconds, in which this many vertices are skinned.
+/// Passing work to another thread costs some microseconds, in which this many vertices are skinned.
 constexpr std::size_t kSlotsPerTask = 16384;
 constexpr std::size_t kMaxTasks = 64;
 
@@ -25,7 +25,7 @@ inline std::size_t taskCount(std::size_t items, std::size_t itemsPerTask = kSlot
   return std::clamp<std::size_t>(items / itemsPerTask, 1, kMaxTasks);
 }
 
-/// First of `items` items of a task; that of task `tasks` is `items`.
+/// The first of a task's items, out of `items`; for task number `tasks`, `items`.
 inline std::size_t firstItem(std::size_t items, std::size_t tasks, std::size_t task) {
   assert(tasks > 0 && task <= tasks);
   return items * task / tasks;
@@ -63,7 +63,7 @@ void forAllRuns(const EmbeddingData& embedding, const kernels::Work<Scalar>& wor
   });
 }
 
-/// The values of the work that depend on an embedding and its nodes.
+/// The parts of `Work` that depend on an embedding and its nodes.
 template <class Scalar>
 kernels::Work<Scalar> workFor(const EmbeddingData& embedding, const PackedNodes<Scalar>& nodes) {
   assert(nodes.size() == embedding.nodeCount);
@@ -84,9 +84,9 @@ bool isDirect(PointView<Out> points, VertexOrder order) {
   return std::is_same_v<Scalar, Out> && order == VertexOrder::Sorted && points.strideBytes() == 3 * sizeof(Out);
 }
 
-/// Copies to contiguous points of the same type. Each point is moved with the scalar behind it, which the next one
-/// overwrites: one load and one store, where three scalars would take two of each. Therefore `sorted` needs one scalar
-/// more, but the points do not.
+/// Copies to contiguous points of the same type. Each point is moved together with the scalar behind it, which the next
+/// one overwrites: one load and one store, where three scalars would take two of each. Therefore `sorted` needs one
+/// scalar more, but the points do not.
 template <class Scalar>
 void placeTightly(const std::uint32_t* slots, const Scalar* sorted, std::size_t first, std::size_t last,
                   Scalar* points) {
@@ -112,9 +112,9 @@ void placePadded(const std::uint32_t* slots, const Scalar* sorted, std::size_t f
   }
 }
 
-/// Copies from the order of the slots, in `scratchSize` scalars, to the order of the output, and to `padded` if it is
-/// not null. Reading at random and writing in order is much faster than the reverse: a processor need not wait for
-/// values that it reads ahead.
+/// Copies from slot order, in `scratchSize` scalars, to the order of the output, and to `padded` if it is not null.
+/// Reading at random and writing in order is much faster than the reverse: a processor need not wait for values that it
+/// reads ahead.
 template <class From, class Out>
 void place(const EmbeddingData& embedding, const From* sorted, PointView<Out> points, VertexOrder order,
            ParallelFor* threads, From* padded = nullptr) {

@@ -14,7 +14,7 @@ std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   if (nodes_.empty()) return 0;
   using Four = Eigen::Matrix<Scalar, 4, 1>;
   const auto packed = [&](std::size_t i) { return Eigen::Map<Four, Eigen::Aligned16>(nodes_[i].scalars); };
-  // Two sums of each are used, as one addition would have to wait for the one before.
+  // Two sums of each, because an addition would have to wait for the previous one.
   Four sum[2] = {Four::Zero(), Four::Zero()}, largest[2] = {Four::Zero(), Four::Zero()};
   const auto add = [](const Four& p, Four& total, Four& maximum) {
     total += p;
@@ -36,7 +36,7 @@ std::size_t PackedNodes<Scalar>::pack(PointView<const Scalar> positions) {
   const Point total = (sum[0] + sum[1]).template head<3>();
   const Scalar maximum = largest[0].cwiseMax(largest[1]).template head<3>().maxCoeff();
   if (!total.allFinite() || maximum > static_cast<Scalar>(Limits::kMaxCoordinate)) return firstUnusable(positions);
-  // Differences to a point among the nodes are nearly exact, however far all of them are from the origin.
+  // Differences from a point among the nodes are nearly exact, however far they all are from the origin.
   mean_ = total / static_cast<Scalar>(size());
   const Four mean(mean_[0], mean_[1], mean_[2], Scalar(0));
   for (std::size_t i = 0; i < size(); ++i) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What linear and quadratic skinning share: the current nodes as the kernels read them, and where the points go.
+// The common part of linear and quadratic skinning: the current nodes as the kernels read them, and where the points
+// go.
 #pragma once
 
 #include <tetskin/core/embedding.h>
@@ -11,8 +12,8 @@
 
 namespace tetskin {
 
-/// Current node positions side by side, each padded to four scalars, relative to their mean: what the kernels read. A
-/// Bullet node is some 400 bytes; gathering the positions once is cheaper than striding over them for every tet.
+/// Current node positions side by side, each padded to four scalars, relative to their mean, for the kernels. A Bullet
+/// node has some 400 bytes; gathering the positions once is cheaper than striding over them for every tet.
 template <class Scalar>
 class PackedNodes {
  public:
@@ -20,21 +21,20 @@ class PackedNodes {
 
   explicit PackedNodes(std::size_t nodeCount = 0) : nodes_(nodeCount) {}
 
-  /// Copies positions, whose number must be size(). Returns the index of the first that is not finite, or is beyond
-  /// Limits::kMaxCoordinate, or size(); the packed nodes are then unusable. Cost O(nodeCount), no allocation.
+  /// Copies positions, whose number must be size(). Returns the index of the first that is not finite or is beyond
+  /// Limits::kMaxCoordinate (the packed nodes are then unusable), or size(). Cost O(nodeCount), no allocation.
   [[nodiscard]] std::size_t pack(PointView<const Scalar> positions);
 
   std::size_t size() const { return nodes_.size(); }
-  /// size() x 3, four scalars apart: positions that are computed for packing may be written here, and packed from here
-  /// in place.
+  /// size() x 3, four scalars apart: positions computed for packing may be written here, and packed in place.
   PointView<Scalar> memory() { return {nodes_.empty() ? nullptr : nodes_.front().scalars, size(), 4 * sizeof(Scalar)}; }
   /// size() x 4: position minus mean(), and a 0.
   const Scalar* data() const { return nodes_.empty() ? nullptr : nodes_.front().scalars; }
   const Point& mean() const { return mean_; }
 
  private:
-  /// Not an Eigen type: the alignment of those, and how Eigen frees them, depends on the flags with which each file is
-  /// compiled, in the application and here.
+  /// Not an Eigen type: its alignment, and how Eigen frees it, depend on the flags with which each file is compiled, in
+  /// the application and here.
   struct alignas(4 * sizeof(Scalar)) Node {
     Scalar scalars[4] = {};
   };
@@ -61,8 +61,7 @@ struct SkinOutput {
   /// allocated each time.
   Scalar* scratch = nullptr;
   /// If not null, vertexCount x 4 scalars of the caller's that also get the points, in the same order, each with one
-  /// scalar without meaning, for callers that have to read them. All points are then written to the scratch memory
-  /// first.
+  /// meaningless scalar, for callers that need to read them. All points are then written to the scratch memory first.
   Scalar* padded = nullptr;
 };
 

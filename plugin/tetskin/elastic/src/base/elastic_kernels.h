@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to elasticity: the inner loops, compiled once for each instruction set and chosen at run time. They use
-// plain types only, as tetskin/core/src/kernels/skinning_kernels.h does, and for the same reason.
+// Internal to elasticity: the inner loops, compiled once for each instruction set and chosen at run time. Plain types
+// only, for the same reason as in tetskin/core/src/kernels/skinning_kernels.h.
 //
 // Values of eight tets (a pack), or of eight rows of the matrix (a chunk), are adjacent in memory. `S[kGroup]` of
-// consecutive quantities is called wide. Points are four scalars: x, y, z, and one without meaning.
+// consecutive quantities is called wide. Points are four scalars: x, y, z, and a meaningless one.
 #pragma once
 
 #include <tetskin/core/src/base/kernels/dispatch.h>
@@ -15,7 +15,7 @@
 
 namespace tetskin::kernels {
 
-/// Tets and rows that are stored side by side: as many floats as AVX2 has lanes, twice those of SSE2, half those of
+/// Number of tets or rows stored side by side: as many floats as AVX2 has lanes, twice those of SSE2, half those of
 /// AVX-512.
 constexpr int kGroup = 8;
 
@@ -24,7 +24,7 @@ constexpr std::size_t kWideVector = 3 * kGroup, kWideSymmetric = 6 * kGroup, kWi
 /// Eight tets at rest.
 template <class S>
 struct TetPack {
-  /// Points where it is integrated, nodes, and what `kCorners` counts.
+  /// Integration points, nodes, and the unit of `kCorners`.
   static constexpr std::size_t kPoints = 1, kNodes = 4, kCornersPerNode = 1;
   S gradients[9][kGroup];               ///< of the barycentric weights of nodes 1, 2 and 3, rest space
   S shear[kGroup];                      ///< 2 mu x volume; 0 for padding in the last pack
@@ -32,10 +32,10 @@ struct TetPack {
   std::uint32_t nodes[kNodes][kGroup];  ///< slots of the nodes
 };
 
-/// Eight quadratic tets at rest, which are integrated at four points.
+/// Eight quadratic tets at rest, integrated at four points.
 template <class S>
 struct QuadraticPack {
-  /// Points where it is integrated, nodes, and what `kCorners` counts.
+  /// Integration points, nodes, and the unit of `kCorners`.
   static constexpr std::size_t kPoints = 4, kNodes = 10, kCornersPerNode = 3;
   S gradients[9][kGroup];               ///< of the barycentric weights of corners 1, 2 and 3, rest space
   S points[3 * kPoints][kGroup];        ///< the same weights at each point
@@ -44,8 +44,8 @@ struct QuadraticPack {
   std::uint32_t nodes[kNodes][kGroup];  ///< slots of the corners, and of the middles of edges 01, 02, 03, 12, 13, 23
 };
 
-/// Scalars of a tet's corners, which are points: vectors of its nodes, of a linear tet one each; of a quadratic one,
-/// which has vectors at four points, three, with all their x, y and z.
+/// Scalars of a tet's corners, which are points that hold its nodes' vectors. A linear tet has one vector per node. A
+/// quadratic one has vectors at four points: their x, y and z fill three corners per node.
 template <class Pack>
 constexpr std::size_t kCorners = 4 * Pack::kCornersPerNode* Pack::kNodes;
 
@@ -56,15 +56,15 @@ struct TetWork {
   const Pack* packs = nullptr;
   S* rotations = nullptr;        ///< quaternions w x y z, wide, by pack and point
   const S* assembled = nullptr;  ///< the rotations with which the matrix was assembled
-  const S* points = nullptr;     ///< by slot; null: `alphas` are known
+  const S* points = nullptr;     ///< by slot; null: `alphas` are already known
   /// Rotations of the frames in which bodies are at rest, quaternions w x y z, by part: points are then displacements
-  /// from what they turn the rest positions to. Null: points are positions.
+  /// from the rest positions in these frames. Null: points are positions.
   const S* frames = nullptr;
   const std::uint32_t* partOf = nullptr;  ///< by slot; null: all tets are of part 0
   S* corners = nullptr;                   ///< by tet and node
   S* sums = nullptr;           ///< by slot: forces are added here; null: written to a tet's first corners, by node
-  S alpha = 0, flatAlpha = 0;  ///< the second one: where a tet is flat or inverted, if it is larger
-  S* alphas = nullptr;         ///< by pack and point: which of the two; not used without a larger second one
+  S alpha = 0, flatAlpha = 0;  ///< the second one applies where a tet is flat or inverted, if it is larger
+  S* alphas = nullptr;         ///< by pack and point: which of the two; unused unless the second is larger
 };
 
 template <class S>
@@ -74,7 +74,7 @@ struct TetFindings {
   double energy = 0.0;
 };
 
-/// Rows of the matrix; no two are neighbours.
+/// Rows of the matrix; no two of them are neighbours.
 template <class S>
 struct RowWork {
   std::size_t firstChunk = 0, lastChunk = 0;
@@ -83,9 +83,9 @@ struct RowWork {
   S* blocks = nullptr;                        ///< by entry
   S* diagonal = nullptr;                      ///< by chunk
   S* inverse = nullptr;                       ///< by chunk: inverse of the diagonal
-  const S* masses = nullptr;                  ///< by chunk; 0: pinned, or no node
+  const S* masses = nullptr;                  ///< by chunk; 0: pinned, or not a node
 
-  // Used by the assembly.
+  // For the assembly.
   const std::uint32_t* sums = nullptr;           ///< by entry, and the end: index of the first of its terms
   const std::uint32_t* terms = nullptr;          ///< 16 per term: corners of the rows' nodes, corners of the neighbours
   const std::uint32_t* quadraticSums = nullptr;  ///< the same for quadratic tets, with the first corners of nodes
@@ -94,7 +94,7 @@ struct RowWork {
   S ratio = 0;                 ///< lambda / mu
   S minMass = 0;               ///< relative to the trace of the stiffness's diagonal block; see `assemble`
 
-  // Used by products and solves. Wide vectors are by chunk, points by slot.
+  // For products and solves. Wide vectors are by chunk, points by slot.
   S* residual = nullptr;   ///< transformed: (D + L)^-1 r
   S* direction = nullptr;  ///< transformed
   S* rest = nullptr;       ///< `backward`: U t; `forward`: t + y
@@ -105,12 +105,12 @@ struct RowWork {
   S* lowerPoints = nullptr;  ///< y as points
   S factor = 0;              ///< factor of the previous direction, or of the step
 
-  // Used for the start of solves.
+  // For the start of solves.
   const S* first = nullptr;   ///< wide
   const S* second = nullptr;  ///< wide; null: 0
 };
 
-/// Points summed by lists of corners.
+/// Sums of points by lists of corners.
 template <class S>
 struct SumWork {
   std::size_t firstSlot = 0, lastSlot = 0;
@@ -126,18 +126,18 @@ struct TetLoops {
   /// Elastic forces at the points' positions, by node or, with the same bits, summed; updates `rotations`.
   TetFindings<S> (*forces)(const TetWork<S, Pack>&, bool energy);
   /// R g sqrt(alpha mu V) of all corners, with g the gradient of the node's shape function; the fourth scalar of each
-  /// is lambda / mu. Where a tet is flat at the points' positions, with `flatAlpha`.
+  /// is lambda / mu. Uses `flatAlpha` where a tet is flat at the points' positions.
   void (*rotatedGradients)(const TetWork<S, Pack>&);
 };
 
 /// The loops of one instruction set.
 ///
-/// Of the conjugate gradient, with A = L + D + U and the preconditioner (D + L) D^-1 (D + U), by Eisenstat's trick:
+/// For the conjugate gradient, with A = L + D + U and the preconditioner (D + L) D^-1 (D + U), by Eisenstat's trick:
 ///   backward  p <- D r + factor p;  t = (D + U)^-1 p;  rest = U t
 ///   forward   y = (D + L)^-1 (rest + extra);  rest <- t + y, which is (D + L)^-1 A t;  returns p . (t + y)
 ///   advance   solution += factor t;  r -= factor rest;  returns r . D r
 ///   lower     rest <- (D + L)^-1 residual, which may be the same vector;  returns rest . D rest
-/// `backward` must be called for the last rows first, `forward` and `lower` for the first ones.
+/// Call `backward` for the last rows first, `forward` and `lower` for the first rows first.
 template <class S>
 struct ElasticTable {
   TetLoops<S, TetPack<S>> linear;
@@ -147,7 +147,7 @@ struct ElasticTable {
   void (*assemble)(const RowWork<S>&);
   /// Computes rest = A stepPoints.
   void (*multiply)(const RowWork<S>&);
-  /// The same by differences between neighbours, of rows as they were assembled.
+  /// The same by differences between neighbours, for rows as they were assembled.
   void (*multiplyByDifferences)(const RowWork<S>&);
   void (*backward)(const RowWork<S>&);
   S (*forward)(const RowWork<S>&);
@@ -173,7 +173,7 @@ extern const ElasticTable<double> elasticDouble;
 }  // namespace unfused_avx2
 
 /// The table for the processor's `instructionSet()`.
-/// deterministic  one of those with the same bits whatever the processor, unless the compiler has no vector types
+/// deterministic  one with the same bits on every processor, unless the compiler has no vector types
 template <class S>
 const ElasticTable<S>& elasticInUse(bool deterministic);
 template <>

@@ -19,7 +19,7 @@ namespace {
 using elastic_detail::RefinedBodies;
 using elastic_detail::StiffnessFit;
 
-/// Fraction of the time after which the refinements are made, about.
+/// Approximate fraction of the time after which the refinements are ready.
 constexpr double kBodiesDone = 0.2;
 
 Status check(const Cage& cage, const CalibrationOptions& options) {
@@ -42,7 +42,7 @@ int refinementsFor(std::size_t tets) {
   return refinements;
 }
 
-/// The cage without nodes that no tet uses, which would have no mass, and without stiffness factors.
+/// The cage without unused nodes, which would have no mass, and without stiffness factors.
 Cage used(const Cage& cage) {
   std::vector<int> number(cage.mesh.nodeCount(), -1);
   Cage result;
@@ -109,9 +109,8 @@ std::string CalibrationReport::describe() const {
          << " % of a displacement, less with more tets\n"
          << "compared with the limit of the refinements: " << std::lround(100.0 * modeError)
          << " % in vibrations (half of that in their frequencies), " << std::lround(100.0 * sagError) << " % in sags\n"
-         << "stretched or pressed it gives way by " << std::showpos << std::lround(100.0 * stretchError)
-         << " % of what is right, without calibration by " << std::lround(100.0 * plainStretchError) << std::noshowpos
-         << " %\n";
+         << "stretched or compressed, its displacement is off by " << std::showpos << std::lround(100.0 * stretchError)
+         << " %, without calibration by " << std::lround(100.0 * plainStretchError) << std::noshowpos << " %\n";
   }
   if (skippedModes > 0) text << skippedModes << " vibrations of loosely connected components were left out\n";
   text << std::setprecision(6) << milliseconds << " ms\n";

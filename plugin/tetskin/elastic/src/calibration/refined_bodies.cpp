@@ -13,8 +13,8 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Energy of a displacement's error, relative to that of the displacement, at which it counts as found: the relative
-/// error of the response. It is estimated by the preconditioner.
+/// Energy of a displacement's error, relative to that of the displacement, at which the solve ends: the relative error
+/// of the response. The preconditioner estimates it.
 constexpr double kTolerance = 3e-4;
 constexpr int kMaxSolveIterations = 200;
 /// Factors of stiffness and mass of empty tets: they must move with the rest without resisting it.
@@ -29,7 +29,7 @@ Eigen::VectorXd massesOf(const Cage& cage) {
   return masses;
 }
 
-/// By tet of a refinement: the volume fraction of it within the mesh.
+/// By tet of a refinement: its volume fraction within the mesh.
 std::vector<double> fillAt(const Cage& cage, int refinement) {
   assert(refinement == 1 || refinement == 2);
   assert(cage.fineVolumeFraction.empty() || cage.fineVolumeFraction.size() == kFineTets * cage.mesh.tetCount());
@@ -47,14 +47,14 @@ std::vector<double> fillAt(const Cage& cage, int refinement) {
   return fill;
 }
 
-/// The refinement as a cage of quadratic tets, one for each tet before, with the material of the refinement's own tets.
+/// The refinement as a cage of quadratic tets, one per original tet, with the material of the refinement's own tets.
 Cage quadraticCage(const Cage& cage, const TetMesh& refined, const std::vector<double>& fill) {
   assert(refined.tetCount() == kSubTets * cage.mesh.tetCount());
   Cage result(refined);
   for (std::size_t t = 0; t < refined.tetCount(); ++t) result.quadraticTet.push_back(static_cast<int>(t / kSubTets));
   if (cage.volumeFraction.empty()) return result;
   result.volumeFraction = fill;
-  // A tet of the refinement has eight of the 64 fractions, each of which fills eight of its own 64 tets.
+  // A tet of the refinement has eight of the 64 fractions, each of which applies to eight of its own 64 tets.
   for (const std::uint8_t fraction : cage.fineVolumeFraction) {
     result.fineVolumeFraction.insert(result.fineVolumeFraction.end(), kFineTets / 8, fraction);
   }

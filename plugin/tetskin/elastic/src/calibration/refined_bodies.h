@@ -15,12 +15,12 @@
 namespace tetskin::elastic_detail {
 
 /// A cage and its uniform refinements: the same shape, with eight times the tets from level to level. Displacements of
-/// a level are also displacements of the next one, once its midpoints are interpolated. Two refinements are linear:
-/// extrapolated with order two, they are within a per cent of quadratic tets of the second one, at half the time. A
-/// single one is of quadratic tets, as linear ones alone would be too far from the limit.
+/// a level become displacements of the next one by interpolating its midpoints. Two refinements are linear:
+/// extrapolated with order two, they are within a per cent of quadratic tets on the second one, in half the time. A
+/// single refinement consists of quadratic tets, because linear ones alone would be too far from the limit.
 class RefinedBodies {
  public:
-  /// The coarsest level has the stiffness and mass of the body; the finer levels have the volume fractions of their own
+  /// The coarsest level has the stiffness and mass of the body; finer levels have the volume fractions at their own
   /// resolution, from `Cage::fineVolumeFraction`. Check `ok()`.
   ///
   /// cage         every node is used by a tet; some tets may be quadratic
@@ -29,7 +29,6 @@ class RefinedBodies {
 
   bool ok() const { return direct_.ok(); }
   std::size_t levelCount() const { return levels_.size() + 1; }
-  /// The cage itself.
   const Cage& cage() const { return cage_; }
   double poissonRatio() const { return poissonRatio_; }
   const RestBody& coarsest() const { return coarsest_; }
@@ -47,12 +46,12 @@ class RefinedBodies {
   /// The displacements under balanced loads, starting from a guess: conjugate gradients, preconditioned by all coarser
   /// levels, so that the number of iterations does not grow with the size or slenderness of the body.
   Fields solve(std::size_t level, const Fields& loads, const Fields& guess) const;
-  /// Twice the strain energies, by tet of the cage and displacement. The level is one of linear tets.
+  /// Twice the strain energies, by tet of the cage and displacement. The level must have linear tets.
   Eigen::MatrixXd energies(std::size_t level, const Fields& displacements) const;
 
  private:
   struct Level {
-    /// quadratic  empty: linear tets; otherwise what the cage of quadratic ones is
+    /// quadratic  empty: linear tets; otherwise the cage of quadratic ones
     Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill, const Cage& quadratic);
     Refinement refinement;      ///< of the coarser level
     std::vector<double> scale;  ///< by tet

@@ -11,14 +11,14 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Stiffness in proportion to mass that is added for the solve, relative to the mean ratio of stiffness to mass:
-/// without it, rigid motions have none, and the matrix is singular. They are removed from every result, so that the
-/// addition only has to be small compared with the softest vibration.
+/// Mass-proportional stiffness that is added for the solve, relative to the mean ratio of stiffness to mass: rigid
+/// motions have no stiffness, so the matrix would be singular. They are removed from every result, so the addition only
+/// has to be small compared with the softest vibration.
 constexpr double kShift = 1e-9;
-/// Vectors of the subspace in addition to those that are wanted: the more, the faster it converges.
+/// Extra vectors of the subspace: the more, the faster it converges.
 constexpr int kGuardModes = 6;
 constexpr int kMaxIterations = 20;
-/// Relative change of the wanted frequencies' squares at which they count as found.
+/// Relative change of the squared frequencies at which the wanted ones count as converged.
 constexpr double kConverged = 1e-4;
 
 Eigen::SparseMatrix<double> shifted(const RestBody& body) {

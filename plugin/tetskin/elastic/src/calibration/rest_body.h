@@ -28,8 +28,8 @@ struct RestBody {
   RigidMotions rigid;
 };
 
-/// Computes displacements under loads by a factorisation that is made once: for bodies of up to some tens of thousands
-/// of tets.
+/// Computes displacements under loads from a factorisation that is made once: for bodies of up to some tens of
+/// thousands of tets.
 class DirectSolver {
  public:
   /// body  must outlive this
@@ -47,7 +47,7 @@ class DirectSolver {
 /// mass each, without rigid motions. Subspace iteration; cost: some 10 x count solves.
 ///
 /// `softestVibrations` needs no factorisation, which suits large bodies, but takes three to ten times as long (cages of
-/// 3,000 tets), and does not support several components or hinges; calibration needs the factorisation anyway.
+/// 3,000 tets), and supports neither several components nor hinges; calibration needs the factorisation anyway.
 ///
 /// This work is based on:
 ///   Klaus-Jürgen Bathe, "Finite Element Procedures", 2014, section 11.6 (subspace iteration)

@@ -13,21 +13,21 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Share of a limit that is less than what the refinements can represent.
+/// A response below this share of its limit is one that the refinements cannot represent.
 constexpr double kMinResponse = 0.1;
-/// Order of linear tets: each refinement halves the size and leaves a quarter of the error.
+/// Linear tets have order two: each refinement halves the size and leaves a quarter of the error.
 constexpr double kErrorLeft = 0.25;
-/// How often energies spread to the tets around a tet's nodes: those within a tet are too uneven.
+/// How often energies are spread to the tets around a tet's nodes: those of single tets are too uneven.
 constexpr int kSpreadings = 2;
-/// Most that a region's factor may differ from that of the whole body: what moves by itself and hardly holds anything
-/// would get any factor.
+/// Largest ratio of a region's factor to that of the whole body: a part that moves freely and holds hardly anything
+/// could get any factor.
 constexpr double kMaxDifference = 1.4;
-/// Factors by region must predict loads that they have not seen better than one factor by this.
+/// Factors by region must reduce the error for loads that they have not seen to this share of that of one factor.
 constexpr double kBetter = 0.9;
-/// Fractions of a calibration's time at which its solves for both kinds of loads end, about.
+/// Approximate fractions of a calibration's time at which its solves for the two kinds of loads end.
 constexpr double kModesDone = 0.6, kSagsDone = 0.9;
 
-/// A body's axes, those of its inertia: the longest is the last.
+/// A body's axes of inertia: the longest is the last.
 struct Axes {
   Eigen::Vector3d centre, variances;  ///< of the mass along the axes
   Eigen::Matrix3d directions;         ///< by column
@@ -54,7 +54,7 @@ Axes::Axes(const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& mas
   directions = principal.eigenvectors();
 }
 
-/// Accelerations by acceleration(position along the axes, axes, column).
+/// Accelerations from acceleration(position along the axes, axes, column).
 template <class Acceleration>
 Fields accelerationsAlong(const RefinedBodies& bodies, Eigen::Index columns, Acceleration&& acceleration) {
   const std::vector<Eigen::Vector3d>& nodes = bodies.cage().mesh.nodes;
@@ -69,18 +69,19 @@ Fields accelerationsAlong(const RefinedBodies& bodies, Eigen::Index columns, Acc
   return accelerations;
 }
 
-/// Gravity in the directions of a body's axes, as the square of the position along the two longest of these.
+/// Gravity in the directions of a body's axes, proportional to the square of the position along the two longest of
+/// them.
 Eigen::Vector3d sagAcceleration(const Eigen::Vector3d& along, const Axes& axes, Eigen::Index k) {
   const double square = along[2 - k / 3] * along[2 - k / 3] / axes.variances[2];
   return square * axes.directions.col(k % 3);
 }
 
-/// Away from the middle, along one axis in each column, as the position there.
+/// Away from the middle, along one axis in each column, proportional to the position on it.
 Eigen::Vector3d stretchAcceleration(const Eigen::Vector3d& along, const Axes& axes, Eigen::Index k) {
   return along[k] * axes.directions.col(k);
 }
 
-/// Share of the mass that takes part in a vibration: 1 where all of it moves alike, 1/N where one node of N moves.
+/// Share of the mass that takes part in a vibration: 1 if all of it moves alike, 1/N if one node of N moves.
 double participation(const Eigen::VectorXd& mode, const Eigen::VectorXd& masses) {
   assert(mode.size() == masses.size() && mode.size() % 3 == 0);
   double second = 0.0, fourth = 0.0, mass = 0.0;
@@ -123,9 +124,9 @@ LoadSet applied(const RefinedBodies& bodies, const Fields& accelerations) {
     if (last == 2) energies.push_back(bodies.energies(level, displacements));
   }
   set.limits = last == 2 ? limitOf(set.works[1], set.works[2]) : set.works[1];
-  // What hardly moves does not matter, however wrong it is.
+  // The error of what hardly moves does not matter.
   set.weights = set.limits.cwiseQuotient(set.reach);
-  // For parts that rotate freely about a node or an edge, rounding alone determines the responses and their signs.
+  // If parts rotate freely about a node or an edge, only rounding determines their responses and signs.
   for (Eigen::Index k = 0; k < set.limits.size(); ++k) {
     if (!(set.limits[k] > 0.0 && set.works[0][k] > kMinResponse * kMinResponse * set.limits[k])) set.weights[k] = 0.0;
   }
@@ -136,7 +137,7 @@ LoadSet applied(const RefinedBodies& bodies, const Fields& accelerations) {
   return set;
 }
 
-/// The weighted geometric mean; 1 where nothing has a weight.
+/// The weighted geometric mean; 1 if nothing has a weight.
 double geometricMean(const Eigen::RowVectorXd& values, const Eigen::RowVectorXd& weights) {
   double sum = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -151,7 +152,7 @@ double rootMeanSquare(const Eigen::RowVectorXd& values, const Eigen::RowVectorXd
                    weights.sum());
 }
 
-/// How much of each tet's value goes to the tets around its nodes, evenly, some times.
+/// Spreads each tet's value evenly to the tets around its nodes, several times.
 Eigen::VectorXd spread(const TetMesh& mesh, Eigen::VectorXd values) {
   std::vector<double> count(mesh.nodeCount(), 0.0);
   for (const Tet& tet : mesh.tets) {
@@ -170,7 +171,7 @@ Eigen::VectorXd spread(const TetMesh& mesh, Eigen::VectorXd values) {
   return values;
 }
 
-/// Makes the values of the eight tets of each quadratic one equal.
+/// Averages the values over the eight tets of each quadratic one.
 Eigen::VectorXd shared(const Cage& cage, Eigen::VectorXd values) {
   const Result<std::vector<QuadraticTet>> tets = quadraticTets(cage);
   assert(tets.ok());
@@ -182,7 +183,7 @@ Eigen::VectorXd shared(const Cage& cage, Eigen::VectorXd values) {
   return values;
 }
 
-/// Which tets are quadratic and full; empty: none is.
+/// Which tets are quadratic and full; empty: none.
 std::vector<bool> exactTets(const Cage& cage) {
   std::vector<bool> exact;
   for (std::size_t t = 0; t < cage.quadraticTet.size(); ++t) {
@@ -208,7 +209,7 @@ struct CageWith {
   Eigen::RowVectorXd works(const Fields& loads) const { return products(loads, solver.solve(loads)); }
 };
 
-/// Passes in which one factor is found for a part of the tets.
+/// Passes to find one factor for only some of the tets.
 constexpr int kFactorPasses = 4;
 
 }  // namespace
@@ -244,7 +245,7 @@ std::vector<double> StiffnessFit::scaled(std::vector<double> values, double fact
   return values;
 }
 
-/// Displacements are inverse to a factor of all tets; of some of them, it takes several passes.
+/// If all tets have the factor, displacements are inverse to it; if only some have it, several passes are needed.
 void StiffnessFit::fitOneFactor() {
   const std::vector<double> ones(bodies_.cage().mesh.tetCount(), 1.0);
   factors_ = ones;
@@ -271,7 +272,7 @@ void StiffnessFit::measureStretch() {
   stretchError_ = errorOf(CageWith(bodies_, factors_).works(loads));
 }
 
-/// Factors by region, about as large as that of the whole body.
+/// Factors by region, near the factor of the whole body.
 std::vector<double> StiffnessFit::regional(const Eigen::VectorXd& energies,
                                            const Eigen::VectorXd& limitEnergies) const {
   const Cage& cage = bodies_.cage();
@@ -286,7 +287,7 @@ std::vector<double> StiffnessFit::regional(const Eigen::VectorXd& energies,
   return factors;
 }
 
-/// Factors of the one kind of loads are judged by the other kind.
+/// Factors found from one kind of loads are judged by the other kind.
 bool StiffnessFit::regionsPredict() const {
   if (modes_.energies.size() == 0 || !(modes_.weights.sum() > 0.0 && sags_.weights.sum() > 0.0)) return false;
   const double alike = std::hypot(spreadWith({}, sags_), spreadWith({}, modes_));
@@ -295,7 +296,7 @@ bool StiffnessFit::regionsPredict() const {
   return regions < kBetter * alike;
 }
 
-/// How much the works under different loads differ in how far they are from their limits: what no common factor mends.
+/// How unevenly the works under different loads deviate from their limits: an error that no common factor corrects.
 /// factors  by tet; empty: one factor
 double StiffnessFit::spreadWith(const std::vector<double>& factors, const LoadSet& loads) const {
   Eigen::RowVectorXd ratios = loads.ratios(0);
@@ -318,7 +319,7 @@ StiffnessFit::Ratios StiffnessFit::ratiosWith(const std::vector<double>& factors
           cage.works(sags_.loads).cwiseQuotient(sags_.limits)};
 }
 
-/// Vibrations and sags count alike.
+/// Vibrations and sags count equally.
 double StiffnessFit::meanOf(const Ratios& ratios) const {
   return std::sqrt(geometricMean(ratios.modes, modes_.weights) * geometricMean(ratios.sags, sags_.weights));
 }

@@ -9,13 +9,13 @@
 
 namespace tetskin::elastic_detail {
 
-/// Loads on a cage and on its refinements, and how far they move both.
+/// Loads on a cage and on its refinements, and the resulting displacements.
 struct LoadSet {
   Fields accelerations;                   ///< of the cage's nodes; loads are the masses times these, balanced
   Fields loads;                           ///< on the cage: the loads on its finest refinement
   std::vector<Eigen::RowVectorXd> works;  ///< by level: loads times displacements
   Eigen::RowVectorXd limits;              ///< works in the limit of infinite refinement
-  Eigen::RowVectorXd reach;               ///< the loads times their own accelerations
+  Eigen::RowVectorXd reach;               ///< the loads times the accelerations that cause them
   Eigen::RowVectorXd weights;             ///< the body's response in the limit; 0: left out
   /// By tet of the cage: strain energies in the cage and in the limit, relative to the works in the limit, summed over
   /// the loads. Empty unless there are two refinements.
@@ -24,22 +24,22 @@ struct LoadSet {
   Eigen::RowVectorXd ratios(std::size_t level) const { return works[level].cwiseQuotient(limits); }
 };
 
-/// The factors of a cage's stiffness with which it moves as far as the limit of its refinements, under loads of two
-/// kinds. The first are the accelerations of the softest vibrations, times the masses that each body has. The second
-/// are sags: gravity that grows with the squared distance from the middle, along the two longest axes of the body, in
-/// three directions, so that it bends and needs no support; the cage has the loads of the refined body, as its own
-/// masses are farther out. Neither presumes where a scene pins the body.
+/// The factors of a cage's stiffness with which it moves as far as the limit of its refinements, under two kinds of
+/// loads. The first are the accelerations of the softest vibrations, times each body's own masses. The second are sags:
+/// gravity that grows with the squared distance from the middle, along the two longest axes of the body, in three
+/// directions, so that the body bends without a support; the cage gets the loads of the refined body, because its own
+/// masses are farther out. Neither assumes where a scene pins the body.
 ///
-/// Factors by region come from strain energies. Where a load goes through a body like a current through resistors in
-/// series, each region's energy under it is its compliance: its share in the cage, divided by that in the limit, is the
-/// factor of its stiffness.
+/// Factors by region come from strain energies. Where a load passes through a body like a current through resistors in
+/// series, each region's energy is its compliance: its share in the cage, divided by that in the limit, is its
+/// stiffness factor.
 ///
-/// Quadratic tets that are full are not too stiff: their factor is 1. Nor are linear ones under loads that stretch or
-/// press the body: what the factors cost there is told.
+/// Full quadratic tets are not too stiff: their factor is 1. Nor are linear ones under loads that stretch or compress
+/// the body; the error that the factors cause there is reported.
 class StiffnessFit {
  public:
   /// bodies    must outlive this; at least one refinement
-  /// progress  told how far it is; where the application cancels, the factors are not found
+  /// progress  is told the progress; if the application cancels, the factors are not found
   StiffnessFit(const RefinedBodies& bodies, int modeCount, Progress& progress);
 
   const std::vector<double>& factors() const { return factors_; }  ///< by tet of the cage, at most 1
@@ -49,8 +49,8 @@ class StiffnessFit {
   /// Root mean square errors of the cage with the factors: of the responses to its vibrations, and of its sags.
   double modeError() const { return modeError_; }
   double sagError() const { return sagError_; }
-  /// How much farther than the limit of its refinements the cage is stretched or pressed along its axes, as a fraction:
-  /// without the factors, and with them.
+  /// How much farther than in the limit of its refinements the cage is stretched or compressed along its axes, as a
+  /// fraction: without the factors, and with them.
   double plainStretchError() const { return plainStretchError_; }
   double stretchError() const { return stretchError_; }
 
@@ -69,7 +69,7 @@ class StiffnessFit {
   double meanOf(const Ratios& ratios) const;
 
   const RefinedBodies& bodies_;
-  std::vector<bool> exact_;  ///< by tet of the cage: quadratic and full; empty: none is
+  std::vector<bool> exact_;  ///< by tet of the cage: quadratic and full; empty: none
   LoadSet modes_, sags_;
   double factor_ = 1.0;  ///< of all tets
   std::vector<double> factors_;

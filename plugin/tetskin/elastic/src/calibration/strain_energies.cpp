@@ -8,8 +8,8 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// u^T K u for each column of the displacements of these nodes. The compiler needs a second for each size of a product
-/// with sizes that it knows.
+/// u^T K u for each column of the displacements of these nodes. Sizes are dynamic, because the compiler needs a second
+/// for each fixed size of a product.
 template <class Stiffness, std::size_t N>
 Eigen::RowVectorXd energiesOf(const Stiffness& stiffness, const std::array<int, N>& nodes,
                               const Fields& displacements) {

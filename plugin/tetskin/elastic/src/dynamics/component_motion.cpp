@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Bound of the sine of a step's rotation: straight paths can represent at most a rotation by 90 degrees, and near it
+/// Bound of the sine of a step's rotation: straight paths can represent at most a rotation by 90 degrees, and near that
 /// the equation is singular. The rest of the rotation is left to the solve.
 constexpr double kMaxSineOfTurn = 0.8;
 
@@ -54,8 +54,8 @@ Matrix3d rotationBy(const Vector3d& angle) {
   return rotation.toRotationMatrix();
 }
 
-/// The smallest rotation that takes one unit vector to the other. Eigen's own brings half a singular value
-/// decomposition with it, for opposite vectors, which takes the compiler longer than all the rest of this file.
+/// The smallest rotation that takes one unit vector to the other. Eigen's own version includes half a singular value
+/// decomposition, for opposite vectors, which takes the compiler longer than the rest of this file.
 Matrix3d rotationBetween(const Vector3d& from, const Vector3d& to) {
   const double cosine = to.dot(from);
   if (cosine < -1.0 + 1e-12) return rotationBy(3.14159265358979323846 * from.unitOrthogonal());
@@ -66,10 +66,10 @@ Matrix3d rotationBetween(const Vector3d& from, const Vector3d& to) {
   return rotation.toRotationMatrix();
 }
 
-/// The rotation Q with sum m r x Q r = `moment`, by Newton's method. If the moment exceeds what rotations can have, it
+/// The rotation Q with sum m r x Q r = `moment`, by Newton's method. If the moment exceeds what a rotation can have, it
 /// is reduced; without inertia, Q is the identity.
 Matrix3d turnWith(Vector3d moment, const Matrix3d& spread) {
-  // Newton's method doubles its digits in each step: what takes more does not converge.
+  // Newton's method doubles its digits in each step: if more steps are needed, it does not converge.
   constexpr int kMaxSteps = 12;
   // Radians: the next step would be below the last digit.
   constexpr double kConverged = 1e-14;
@@ -118,7 +118,7 @@ Matrix3d nearestRotation(const Matrix3d& moments) {
 }
 
 void PinnedNodes::add(const Vector3d& point, const Vector3d& nodeVelocity) {
-  // Sine of the angle up to which a node is on the line of those before: more than rounding of positions makes.
+  // Sine of the angle up to which a node counts as on the line of those before: more than the rounding of positions.
   constexpr double kOnLine = 1e-3;
   if (count_++ == 0) first_ = point;
   const Vector3d arm = point - first_;

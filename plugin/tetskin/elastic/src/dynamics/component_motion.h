@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The rigid motion of one component of a body over a step: nodes that tets connect; some may be pinned.
+// The rigid motion of one component of a body over a step. A component is a set of nodes connected by tets; some may be
+// pinned.
 //
-// Positions are moved along straight lines, x + dt v. A body that rotates by dt omega x r thereby swells by
-// (dt omega)^2 / 2 in every step, which its stiffness must undo. Therefore the velocities of a rigid motion are taken
-// as the chords of a rotation Q: v = (Q - 1) r / dt, and Q is the one that has the angular momentum of the component,
+// Positions move along straight lines, x + dt v. So a body that rotates by dt omega x r swells by (dt omega)^2 / 2 in
+// every step, which its stiffness must undo. Therefore the velocities of a rigid motion are taken as the chords of a
+// rotation Q: v = (Q - 1) r / dt, and Q is chosen to have the angular momentum of the component,
 //   sum m r x Q r = dt L
-// which is what x + dt v keeps: angular momentum is exact, and a component that does not deform is not stretched.
+// which x + dt v keeps: angular momentum is exact, and a component that does not deform is not stretched.
 #pragma once
 
 #include <tetskin/core/src/base/state/state_stream.h>
@@ -22,13 +23,13 @@ class PinnedNodes {
   enum Kind { Nothing, Point, Line, Fixed };
 
   void add(const Eigen::Vector3d& point, const Eigen::Vector3d& velocity);
-  /// Call it when all nodes are added.
+  /// Call it after all nodes have been added.
   void finish(double seconds);
 
   Kind kind = Nothing;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), axis = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centroid
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< of the step: the rotation that fits the nodes' motion best
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< of the step: the rotation that best fits the nodes' motion
 
  private:
   Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
@@ -38,8 +39,8 @@ class PinnedNodes {
   Eigen::Matrix3d positionMoments_ = Eigen::Matrix3d::Zero(), velocityMoments_ = Eigen::Matrix3d::Zero();
 };
 
-/// Sums over the nodes of a component that are not pinned, about a point near them. They are plain numbers, as they are
-/// updated for each node.
+/// Sums over the unpinned nodes of a component, about a point near them. Plain numbers, because they are updated for
+/// each node.
 struct ComponentMoments {
   double mass = 0.0;
   double first[3] = {}, momentum[3] = {}, spin[3] = {};  ///< sums of m r, m v, m r x v
@@ -60,7 +61,7 @@ struct ComponentMoments {
   }
 };
 
-/// The momentum of velocities that a solve has found.
+/// The momentum of the velocities that a solve has found.
 struct ComponentMomentum {
   double momentum[3] = {}, spin[3] = {};
 
@@ -85,11 +86,11 @@ struct RigidVelocity {
   RigidVelocity operator-(const RigidVelocity& other) const;
 };
 
-/// The rotation R nearest to a matrix M: that with the largest tr(R^T M).
+/// The rotation R nearest to a matrix M: the one with the largest tr(R^T M).
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& moments);
 
 /// Maps a velocity of a component, and its rate of rotation about `ComponentMotion::about`, to the change of momentum
-/// and angular momentum by what resists them.
+/// and angular momentum due to whatever resists them.
 using Resistance = Eigen::Matrix<double, 6, 6>;
 
 class ComponentMotion {
@@ -104,39 +105,38 @@ class ComponentMotion {
   /// The velocities of the rigid motion over the step, as a function of the nodes' positions at its beginning.
   RigidVelocity velocities(double seconds) const;
   /// A point near `about()`, on a grid as wide as the component, so that it seldom changes: positions relative to it
-  /// have as many digits as they can, and the same rounding from step to step.
+  /// have the most digits, and the same rounding from step to step.
   Eigen::Vector3d anchor() const;
-  /// The root of the mean square of the distance from the centre of mass; 0 where there is no mass.
+  /// The root mean square distance from the centre of mass; 0 without mass.
   double radius() const;
-  /// The least moment of inertia about an axis through the centre of mass; 0 where there is no mass.
+  /// The smallest moment of inertia about an axis through the centre of mass; 0 without mass.
   double minInertia() const;
   /// The change of velocity per unit impulse, both at a point and in a direction, if the component moves as a rigid
-  /// body: with pinned nodes, only by rotations about the node or line; 0 if more is pinned.
+  /// body. With pinned nodes, it only rotates about the node or line; 0 if more is pinned.
   double compliance(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
-  /// The velocities to subtract from velocities with this momentum, about `about()`, so that the component has its
-  /// momentum at the beginning of the step: internal forces cannot change it, but a solve that is cut short does. They
-  /// are a rigid motion of the component at its predicted position, which its stiffness does not resist. With one
-  /// pinned node, only the angular momentum about it is corrected; with pinned nodes on a line, that about the line;
-  /// with more, nothing.
+  /// The velocities to subtract from velocities with this momentum, about `about()`, so that the component keeps its
+  /// momentum from the beginning of the step: internal forces cannot change it, but an incomplete solve does. They are
+  /// a rigid motion of the component at its predicted position, which its stiffness does not resist. With one pinned
+  /// node, only the angular momentum about it is corrected; with pinned nodes on a line, that about the line; with
+  /// more, nothing.
   /// impulse, torque  of everything else that has acted in the step
-  /// held             what resists these velocities, and whose impulses change by them; 0: nothing. Ignored with pinned
-  ///                  nodes
+  /// held             resistance to these velocities, whose impulses change by them; 0: none. Ignored with pinned nodes
   RigidVelocity excess(const ComponentMomentum& now, const Eigen::Vector3d& impulse, const Eigen::Vector3d& torque,
                        const Resistance& held) const;
-  /// Adds what a point of the component with this stiffness resists.
+  /// Adds the resistance of a point of the component with this stiffness.
   void addResistance(const Eigen::Vector3d& point, const Eigen::Matrix3d& stiffness, Resistance& to) const;
 
-  /// The rigid motion with this momentum, about `about()`, as far as pinned nodes permit it.
+  /// The rigid motion with this momentum, about `about()`, as far as pinned nodes permit.
   RigidVelocity withMomentum(const ComponentMomentum& own) const;
 
-  /// The velocities to add where something else has rotated the component: the rotation is a straight motion, linear in
+  /// The velocities to add if something else has rotated the component: such a rotation is a straight motion, linear in
   /// the nodes' positions, and becomes a chord. Momenta stay the same.
-  /// now, moments  of the velocities before
+  /// now, moments  of the velocities so far
   RigidVelocity chord(const ComponentMomentum& now, const ComponentMoments& moments, const Eigen::Vector3d& near,
                       double seconds) const;
 
-  /// Takes what the next `find` uses of this one along a rigid motion.
+  /// Moves what the next `find` uses of this one along with a rigid motion.
   void carry(const Eigen::Matrix3d& turn, const Eigen::Vector3d& by) { about_ = (turn * about_ + by).eval(); }
   /// Writes or reads what the next `find` uses of this one.
   void visitState(StateStream& stream) { stream.plain(about_.data(), 3); }
@@ -155,7 +155,7 @@ class ComponentMotion {
                   central_ = second_;  ///< second moments of mass, about `about_` and about the centre
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d inverseInertia_ =
-      Eigen::Matrix3d::Zero();  ///< about `about_`; with pinned nodes, of the possible rotations
+      Eigen::Matrix3d::Zero();  ///< about `about_`; with pinned nodes, of the rotations that they permit
 };
 
 }  // namespace tetskin::elastic_detail

@@ -12,7 +12,7 @@
 
 namespace tetskin::elastic_detail {
 
-/// Small matrices are processed side by side, large ones one after the other, each by all threads.
+/// Small matrices are processed in parallel, large ones one after the other, each by all threads.
 template <class S>
 template <class Call>
 void ConjugateGradient<S>::forEachMatrix(ParallelFor* threads, Call&& call) {
@@ -39,7 +39,7 @@ void ConjugateGradient<S>::start(Matrices matrices, const SolveLimits& limits, C
   for (const BlockMatrix<S>* matrix : matrices_) sizes_.push_back(matrix->slotCount());
   forEachMatrix(threads, [](std::size_t, BlockMatrix<S>& matrix, ParallelFor* inner) { return matrix.lower(inner); });
   rho_ = summed();
-  // Below the last of these, products of residuals lose their digits, and the next step lengths would be arbitrary.
+  // Below the second of these, products of residuals lose their digits, and the next step lengths would be arbitrary.
   constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
   const double least =
       std::max(limits.enough, static_cast<double>(std::numeric_limits<S>::min()) / (kEpsilon * kEpsilon));

@@ -10,14 +10,14 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Most groups: the factors of six motions each take about as long as a hundred iterations of a body of this size.
+/// Most groups: factorising six motions for each takes about as long as a hundred iterations of a body of this size.
 constexpr std::size_t kMaxGroups = 64;
-/// Number of nodes per group, of a body with few nodes.
+/// Number of nodes per group, for a body with few nodes.
 constexpr std::size_t kNodesOfGroup = 12;
-/// Stiffness added to a group's own, relative to it: nodes on a line do not resist rotations about it.
+/// Stiffness added to a group's, relative to it: nodes on a line do not resist rotations about it.
 constexpr double kShift = 1e-14;
 
-/// By node: those with which it shares a tet, some of them several times.
+/// By node: the nodes with which it shares a tet, some of them several times.
 Lists<> neighboursOf(const RestTets& rest, std::size_t nodes) {
   return packLists(nodes, [&](auto&& add) {
     const auto connect = [&](const auto& ofTet) {
@@ -96,7 +96,7 @@ bool GroupMotions::assemble(const TetStiffness& stiffness, const std::vector<dou
   return factors_.info() == Eigen::Success && factors_.vectorD().minCoeff() > 0.0;
 }
 
-/// What a point resists: E_gh += B_g^T D B_h, B being the gradients of a group's motions, and D their stress.
+/// A point's contribution: E_gh += B_g^T D B_h, where B are the gradients of a group's motions, and D their stress.
 void GroupMotions::addStiffness(const TetStiffness& stiffness, const StiffnessPoint& at, Eigen::MatrixXd& sums) const {
   struct Part {
     int group;

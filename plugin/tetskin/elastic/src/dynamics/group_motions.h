@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The rigid motions of groups of neighbouring nodes: the coarse space of a solve in two levels. A slender or thin body
-// bends as its groups move, and the conjugate gradient alone passes on that motion by one node per iteration.
+// The rigid motions of groups of neighbouring nodes: the coarse space of a two-level solve. A slender or thin body
+// bends as its groups move, and the conjugate gradient alone propagates such motion by only one node per iteration.
 //
 // This work is based on:
 //   Petr Vanek, Jan Mandel, Marian Brezina, "Algebraic Multigrid by Smoothed Aggregation for Second and Fourth Order
@@ -38,10 +38,10 @@ class GroupMotions {
   void addStiffness(const TetStiffness& stiffness, const StiffnessPoint& at, Eigen::MatrixXd& sums) const;
   Motions motionsAt(std::size_t slot) const;
 
-  std::vector<int> groupOf_;  ///< by slot; -1: none
+  std::vector<int> groupOf_;  ///< by slot; -1: no group
   int count_ = 0;
   std::vector<char> moves_;             ///< by slot: it has a group, and is not pinned
-  std::vector<Eigen::Vector3d> arms_;   ///< by slot: from the centre of its group, over the groups' radius
+  std::vector<Eigen::Vector3d> arms_;   ///< by slot: from the centre of its group, divided by the group's radius
   Eigen::SparseMatrix<double> matrix_;  ///< E, lower triangle
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
 };

@@ -12,15 +12,15 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// By how much the solve reduces the residual that a guess has left, at least.
+/// The solve must reduce the residual that a guess leaves at least to this fraction.
 constexpr double kReduction = 0.1;
-/// Iterations of a solve from which on a guess is worth its cost.
+/// A guess is worth its cost if a solve has at least this many iterations.
 constexpr int kMany = 8;
-/// A guess that leaves more than this fraction of what acts is useless. After kUselessGuesses of them in a row, kPause
+/// A guess that leaves more than this fraction of what acts is useless. After kUselessGuesses of these in a row, kPause
 /// solves start without a guess.
 constexpr double kUseless = 0.25;
 constexpr int kUselessGuesses = 8, kPause = 64;
-/// Combinations of unit directions whose squared length is below this consist of rounding.
+/// Combinations of unit directions whose squared length is below this are only rounding.
 constexpr double kDependent = 1e-6;
 
 }  // namespace
@@ -67,8 +67,8 @@ void InitialGuess<S>::addDirection(BlockMatrix<S>& matrix, const Wide& first, co
   ++count_;
 }
 
-/// By the eigenvectors of the products of directions, which are nearly dependent in smooth motion. 0 if the values are
-/// not finite.
+/// Uses the eigenvectors of the products of directions, which are nearly dependent in smooth motion. 0 if the values
+/// are not finite.
 template <class S>
 typename InitialGuess<S>::Factors InitialGuess<S>::bestFactors(BlockMatrix<S>& matrix, ParallelFor* threads) const {
   constexpr auto kSize = static_cast<Eigen::Index>(kDirections);

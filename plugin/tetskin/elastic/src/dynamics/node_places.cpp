@@ -16,11 +16,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Roundings of a position, up to which a node counts as moved with the whole body: Bullet computes such a position by
+/// Roundings of a position up to which a node counts as moved with the whole body: Bullet computes such a position with
 /// some products and sums.
 constexpr double kRoundings = 3.0;
 
-/// The product, of length 1. Eigen's has other bits on other processors.
+/// The product, normalised. Eigen's has other bits on other processors.
 Eigen::Quaterniond turned(const Eigen::Quaterniond& by, const Eigen::Quaterniond& q) {
   const double w = by.w() * q.w() - by.x() * q.x() - by.y() * q.y() - by.z() * q.z();
   const double x = by.w() * q.x() + by.x() * q.w() + by.y() * q.z() - by.z() * q.y();
@@ -31,7 +31,7 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& by, const Eigen::Quaterniond
   return {w / length, x / length, y / length, z / length};
 }
 
-/// The rotation by a small vector, to the second order, but for its length.
+/// The rotation by a small vector, to second order, not normalised.
 Eigen::Quaterniond smallRotation(const Vector3d& angle) {
   return {1.0, 0.5 * angle.x(), 0.5 * angle.y(), 0.5 * angle.z()};
 }
@@ -70,7 +70,7 @@ void NodePlaces<S>::findParts() {
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     const Matrix3d inertia = second[k].trace() * Matrix3d::Identity() - second[k];
     parts_[k].inverseInertia = inertia.inverse();
-    if (!parts_[k].inverseInertia.allFinite()) parts_[k].inverseInertia.setZero();  // a node alone
+    if (!parts_[k].inverseInertia.allFinite()) parts_[k].inverseInertia.setZero();  // a single node
   }
 }
 
@@ -112,7 +112,7 @@ void NodePlaces<S>::take(const AlignedVector<S>& points) {
   }
 }
 
-/// Tries a translation first, which leaves directions as they are.
+/// Tries a translation first, which leaves directions unchanged.
 template <class S>
 bool NodePlaces<S>::takeRigid(const AlignedVector<S>& points) {
   const auto given = [&](std::size_t slot) {
@@ -152,7 +152,8 @@ bool NodePlaces<S>::takeRigid(const AlignedVector<S>& points) {
 
 // ---- displacements
 
-/// The sums tell by which rotation the displacements are those of a frame that is behind: in its own directions,
+/// If displacements come from a frame that is behind by a rotation, these sums give it: in the frame's own directions,
+/// sum a x u over sum a x (w x a), with a from the centroid.
 /// sum a x u over sum a x (w x a), with a from the centroid.
 template <class S>
 void NodePlaces<S>::displace(const std::vector<Vector3d>& anchors, AlignedVector<S>& displacements) {
@@ -197,7 +198,7 @@ void NodePlaces<S>::displace(const std::vector<Vector3d>& anchors, AlignedVector
   }
 }
 
-/// Positions that are the nodes' own have all of their digits.
+/// Positions that are still the nodes' own get all of their digits.
 template <class S>
 void NodePlaces<S>::displacePoints(AlignedVector<S>& points) const {
   assert(points.size() == 4 * partOf_.size());

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where a body's nodes are: in double, whatever the precision of the caller's positions, which are their rounding. Far
-// from the origin, or in a stiff body, a step moves a node by less than the last digit of a float.
+// The positions of a body's nodes in double, whatever the precision of the caller's positions, which are their
+// rounding. Far from the origin, or in a stiff body, a step moves a node by less than the last digit of a float.
 //
-// Forces follow from the displacements u of nodes from a frame of their component, in which it is at rest:
+// Forces follow from the displacements u of the nodes in a frame of their component, in which the component is at rest:
 //   x = c + Q X + u
-// with X the nodes at rest. A frame follows the rotation of its component, so that u is small where strains are: in
-// float, it has the digits that x does not have. See corotation.h for the strains.
+// with X the nodes at rest. A frame follows the rotation of its component, so that u is small if strains are: in float,
+// u has the digits that x lacks. See corotation.h for the strains.
 #pragma once
 
 #include <tetskin/core/src/base/aligned.h>
@@ -24,7 +24,7 @@ namespace tetskin::elastic_detail {
 template <class S>
 class NodePlaces {
  public:
-  /// rest    by node, rest space; empty: the tets' shapes at rest do not fit together. The nodes begin there
+  /// rest    by node, rest space; empty: the tets' shapes at rest do not fit together. The nodes start there
   /// slotOf  by node
   /// partOf  by slot: its component
   NodePlaces(const std::vector<Eigen::Vector3d>& rest, const std::vector<std::uint32_t>& slotOf,
@@ -35,32 +35,32 @@ class NodePlaces {
   /// The frames' rotations Q, quaternions w x y z by component, for TetWork.
   const S* frames() const { return quaternions_.data(); }
 
-  /// Takes the caller's positions, 4 scalars per slot, where they are not the rounding of the nodes' own: something
-  /// else has moved these nodes. Where the whole body was moved as a rigid one, it keeps its shape to the last digit.
+  /// Takes the caller's positions, 4 scalars per slot, for nodes where they are not the rounding of their own:
+  /// something else has moved these nodes. If the whole body was moved rigidly, it keeps its shape to the last digit.
   void take(const AlignedVector<S>& points);
   /// A node's position.
   const double* at(std::size_t slot) const { return &places_[3 * slot]; }
-  /// True if the caller's position is that of the node, but for `near`: of two roundings that are as near, either.
+  /// True if the caller's position is the node's, up to `near`; of two equally near roundings, either counts.
   bool isAt(std::size_t slot, const S* point, S near) const;
   /// Moves a node along a velocity.
   void advance(std::size_t slot, double seconds, const S* velocity) {
     for (std::size_t k = 0; k < 3; ++k) places_[3 * slot + k] += seconds * static_cast<double>(velocity[k]);
   }
-  /// The node's position as the caller has it.
+  /// The node's position, rounded for the caller.
   void round(std::size_t slot, S* point) const {
     for (std::size_t k = 0; k < 3; ++k) point[k] = static_cast<S>(places_[3 * slot + k]);
   }
 
-  /// Places the frames by the nodes, and writes the displacements of all nodes, 4 scalars per slot.
+  /// Fits the frames to the nodes, and writes the displacements of all nodes, 4 scalars per slot.
   /// anchors  by component: the points to which positions are relative, without frames
   void displace(const std::vector<Eigen::Vector3d>& anchors, AlignedVector<S>& displacements);
   /// The largest component of these displacements.
   double largestDisplacement() const { return largest_; }
-  /// Turns the frames with their components: what were the displacements of nodes are now those of turned ones.
+  /// Turns the frames with their components: displacements of nodes become those of the turned nodes.
   /// turns  by component
   void turnFrames(const std::vector<Eigen::Matrix3d>& turns);
-  /// Takes nodes and frames along a rigid motion: a rotation about the origin, then a translation.
-  /// turns  false: there is no rotation
+  /// Moves nodes and frames along with a rigid motion: a rotation about the origin, then a translation.
+  /// turns  false: no rotation
   void carry(bool turns, const Eigen::Matrix3d& turn, const Eigen::Vector3d& by);
   /// Replaces positions, 4 scalars per slot, by their displacements from the frames, up to a translation of each
   /// component. Changes nothing else.
@@ -68,18 +68,17 @@ class NodePlaces {
   /// The position of a displaced node, up to a translation of its component.
   void fromDisplacement(std::size_t slot, const S* displacement, S* position) const;
 
-  /// Writes or reads where nodes and frames are.
+  /// Writes or reads the positions of nodes and frames.
   void visitState(StateStream& stream);
 
  private:
-  /// The frame of a component.
   struct Frame {
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d lag = Eigen::Vector3d::Zero();  ///< the rotation by which it was behind, for the next step
+    Eigen::Vector3d lag = Eigen::Vector3d::Zero();  ///< how far its rotation was behind, for the next step
   };
   /// A component at rest.
   struct Part {
-    std::size_t first = 0;                                     ///< slot of a node, whose displacement is 0
+    std::size_t first = 0;                                     ///< slot of a node with displacement 0
     Eigen::Vector3d centroid = Eigen::Vector3d::Zero();        ///< of its nodes
     Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< of nodes with unit masses, about the centroid
   };

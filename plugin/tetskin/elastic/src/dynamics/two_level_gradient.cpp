@@ -95,8 +95,8 @@ void TwoLevelGradient<S>::findResidual() {
   for (std::size_t k = 0; k < right_.size(); ++k) residual_[k] = masses_[k / 3] > 0.0 ? right_[k] - residual_[k] : 0.0;
 }
 
-/// One iteration, after `precondition`. Returns false, and does nothing, where the operator is not positive.
-/// before  the residual's norm in the iteration before, squared; 0: there was none
+/// One iteration, after `precondition`. Returns false, and does nothing, if the operator is not positive.
+/// before  the squared norm of the residual in the last iteration; 0: there was none
 template <class S>
 bool TwoLevelGradient<S>::advance(double& before) {
   multiply(step_, image_);

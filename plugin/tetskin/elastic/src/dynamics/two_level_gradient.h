@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient for one body in two levels: sweeps of its nodes, and the motions of groups of them. For
-// slender and thin bodies, with which ConjugateGradient does not come to an end: products are of strains, in double
-// precision, and take several times as long.
+// The conjugate gradient for one body on two levels: sweeps over its nodes, and the motions of groups of them. For
+// slender and thin bodies, for which ConjugateGradient does not converge in time. Products are computed from strains,
+// in double precision, and take several times as long.
 //
 // This work is based on:
 //   J. M. Tang, R. Nabben, C. Vuik, Y. A. Erlangga, "Comparison of Two-Level Preconditioners Derived from Deflation,
@@ -21,10 +21,10 @@ class TwoLevelGradient {
   TwoLevelGradient(const RestTets& rest, const BlockMatrix<S>& matrix);
 
   /// Continues from the matrix's solution, and leaves its residual there. Returns the number of iterations.
-  /// matrix     as it was assembled from the source
+  /// matrix     as assembled from the source
   /// rightSide  in the wide layout
   /// points     positions, 3 scalars per slot
-  /// target     squared norm of the residual, that of the preconditioner, at which it ends
+  /// target     squared norm of the residual, in the preconditioner's norm, at which it ends
   int solve(BlockMatrix<S>& matrix, const MatrixSource<S>& source, const S* rightSide,
             const std::vector<double>& points, double target, int maximum, ParallelFor* threads);
 

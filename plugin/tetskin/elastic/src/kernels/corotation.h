@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: corotated linear elasticity at W points at a time, of tets of any kind.
+// Internal to the kernels: corotated linear elasticity at W points at a time, for tets of any kind.
 //
 // This work is based on:
 //   Matthias Müller, Markus Gross, "Interactive Virtual Materials", Graphics Interface 2004 (corotated stiffness)
@@ -11,11 +11,11 @@
 // With F the deformation gradient, R the rotation that maximises tr(R^T F), S = R^T F, E = sym(S) - 1, and g_a the
 // gradient of the shape function of node a:
 //   energy = V (mu E : E + lambda / 2 tr(E)^2),  force on node a = -V R (2 mu E + lambda tr(E)) g_a
-// which is the gradient of the energy where R is that maximum: S is then symmetric. A tet that is turned inside out
-// also has such a rotation.
+// which is the gradient of the energy where R is that maximum: S is then symmetric. An inverted tet also has such a
+// rotation.
 //
-// Where points are displacements from a frame Q, with G their gradient, F = Q + G. In this sum, a strain below the last
-// digit of 1 is lost, so that E is computed without it, from the vector v of the quaternion of R^T Q:
+// If points are displacements from a frame Q, with gradient G, then F = Q + G. In this sum, a strain below the last
+// digit of 1 is lost, so E is computed without it, from the vector v of the quaternion of R^T Q:
 //   E = sym(R^T G) + 2 (v v^T - (v . v) 1)
 #pragma once
 
@@ -23,8 +23,8 @@
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
-/// The square of the angle in radians below which a Newton step is the last one: the next one would be of the order of
-/// its square. And the most steps, beyond which `findRotation` is faster.
+/// The squared angle (radians) below which a Newton step is the last one: the next one would be of the order of its
+/// square. And the largest number of steps, beyond which `findRotation` is faster.
 template <class S>
 constexpr S kLastStep = sizeof(S) == sizeof(float) ? S(1e-4) : S(1e-8);
 constexpr int kMaxSteps = 8;
@@ -40,7 +40,7 @@ TETSKIN_INLINE Quaternions<S, W> quaternions(const S* from) {
 }
 
 /// The difference of two rotations, whatever the quaternions' signs: 4 sin^2 of a quarter of the angle between them.
-/// Unlike 1 minus the quaternions' dot product, it is precise for rotations that are nearly equal.
+/// Unlike 1 minus the quaternions' dot product, it is precise for nearly equal rotations.
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> squaredDifference(const Quaternions<S, W>& p, const Quaternions<S, W>& q) {
   using V = Lanes<S, W>;
@@ -83,8 +83,8 @@ struct RotationStep {
   Lanes<S, W> unsafe;  ///< 1 for a gradient step, 0 for a Newton step
 };
 
-/// One Newton step on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; where that matrix is
-/// not safely positive, a gradient step.
+/// One Newton step on tr(R^T F): (tr(S) - sym(S)) w = axial(S - S^T), in the frame of the body; a gradient step if that
+/// matrix is not safely positive.
 template <class S, int W>
 TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatrix<S, W>& s) {
   using V = Lanes<S, W>;
@@ -101,11 +101,11 @@ TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatr
   const V wx = good ? (c00 * bx + c01 * by + c02 * bz) * inverseDet : bx * inverseSize;
   const V wy = good ? (c01 * bx + c11 * by + c12 * bz) * inverseDet : by * inverseSize;
   const V wz = good ? (c02 * bx + c12 * by + c22 * bz) * inverseDet : bz * inverseSize;
-  // q <- q (1, w / 2), of length 1
+  // q <- q (1, w / 2), normalised
   const V hx = S(0.5) * wx, hy = S(0.5) * wy, hz = S(0.5) * wz;
   const V w = q.w - q.x * hx - q.y * hy - q.z * hz, x = q.x + q.w * hx + q.y * hz - q.z * hy;
   const V y = q.y + q.w * hy + q.z * hx - q.x * hz, z = q.z + q.w * hz + q.x * hy - q.y * hx;
-  // The squared length is at least 1 for finite values; a tet whose values were not finite begins again.
+  // The squared length is at least 1 for finite values; a tet with values that are not finite starts again.
   const V squared = w * w + x * x + y * y + z * z;
   const auto finite = (squared > S(0.5)) & (squared < S(1e18));
   const V unit = S(1) / squareRoots<S, W>(finite ? squared : all<S, W>(1));
@@ -113,8 +113,8 @@ TETSKIN_INLINE RotationStep<S, W> turnAlong(Quaternions<S, W>& q, const WideMatr
   return {wx * wx + wy * wy + wz * wz, good ? V{} : all<S, W>(1)};
 }
 
-/// 1 where the rotation is at a saddle point or at the minimum of tr(R^T F): where tr(S) - sym(S) has an eigenvalue
-/// below 0. An eigenvalue of 0, as of a mirrored tet, means many maxima; the present one is as good as any.
+/// 1 if the rotation is at a saddle point or at the minimum of tr(R^T F), where tr(S) - sym(S) has a negative
+/// eigenvalue. An eigenvalue of 0, as for a mirrored tet, means many maxima; the present one is as good as any.
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> atNoMaximum(const WideMatrix<S, W>& s) {
   using V = Lanes<S, W>;
@@ -153,7 +153,7 @@ TETSKIN_NOINLINE inline void diagonalise(double (&a)[4][4], double (&vectors)[4]
 
 /// The quaternion w x y z of the rotation that maximises tr(R^T F), from any start: the first eigenvector of that form
 /// (Berthold K. P. Horn, "Closed-form solution of absolute orientation using unit quaternions", J. Opt. Soc. Am. A 4,
-/// 1987, doi 10.1364/JOSAA.4.000629). It takes about 1 us. The quaternion stays unchanged where F is 0 or not finite.
+/// 1987, doi 10.1364/JOSAA.4.000629). It takes about 1 us. The quaternion stays unchanged if F is 0 or not finite.
 TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) {
   double squared = 0.0;
   for (const double x : f) squared += x * x;
@@ -169,8 +169,8 @@ TETSKIN_NOINLINE inline void findRotation(const double (&f)[9], double (&q)[4]) 
   diagonalise(a, vectors);
   int first = 0;
   for (int k = 1; k < 4; ++k) first = a[k][k] > a[first][first] ? k : first;
-  // Of several rotations that are equally good, as for a body turned inside out, the nearest to the one before is
-  // chosen, or to a fixed one: neighbouring tets must not choose by their rounding.
+  // Of several equally good rotations, as for an inverted body, chooses the one nearest to the last rotation, or to a
+  // fixed one: neighbouring tets must not choose by their rounding.
   constexpr double kAsGood = 1e-3, kHasPart = 1e-3;
   const double fixed[4] = {0, 1, 0, 0};
   const auto project = [&](const double* wanted, double* to) {
@@ -211,9 +211,9 @@ TETSKIN_NOINLINE void findRotations(const WideMatrix<S, W>& f, const Lanes<S, W>
   q = {wide<S, W>(to[0]), wide<S, W>(to[1]), wide<S, W>(to[2]), wide<S, W>(to[3])};
 }
 
-/// The rotations that maximise tr(R^T F), starting from those of the step before; s becomes R^T F. As a quadratic form
-/// of R's quaternion it has no other maxima, but it has saddle points from which steps hardly lead away: a tet that has
-/// been rotated by 180 degrees begins at one.
+/// The rotations that maximise tr(R^T F), starting from those of the last step; s becomes R^T F. As a quadratic form of
+/// R's quaternion, it has no other maxima, but it has saddle points which steps hardly leave: a tet that has been
+/// rotated by 180 degrees starts at one.
 template <class S, int W>
 TETSKIN_INLINE void turnToMaximum(const WideMatrix<S, W>& f, Quaternions<S, W>& q, WideMatrix<S, W>& r,
                                   WideMatrix<S, W>& s) {
@@ -244,7 +244,7 @@ TETSKIN_INLINE WideVector<S, W> rotated(const WideMatrix<S, W>& r, const Lanes<S
           r.at[6] * x + r.at[7] * y + r.at[8] * z};
 }
 
-/// V R (2 mu E + lambda tr(E)): a vector becomes the rotated stress times it.
+/// V R (2 mu E + lambda tr(E)): maps a vector to the rotated stress times the vector.
 template <class S, int W>
 struct RotatedStress {
   WideMatrix<S, W> r, stress;
@@ -256,7 +256,7 @@ struct RotatedStress {
   }
 };
 
-/// What `TetFindings` is made of.
+/// The parts of `TetFindings`.
 template <class S, int W>
 struct WideFindings {
   Lanes<S, W> maxTurned{}, turned{};
@@ -296,12 +296,12 @@ TETSKIN_INLINE WideMatrix<S, W> stressOf(const WideMatrix<S, W>& strain, const L
            shear * e[6], shear * e[7], shear * e[8] + pressure}};
 }
 
-/// The frames of W tets, see above; without frames, all of it is 0, and G is F.
+/// The frames of W tets, see above; without frames, everything is 0, and G is F.
 template <class S, int W>
 struct WideFrames {
   Quaternions<S, W> q;
   WideMatrix<S, W> rotation;
-  Lanes<S, W> one;  ///< what is to be subtracted from the diagonal of sym(R^T G)
+  Lanes<S, W> one;  ///< to subtract from the diagonal of sym(R^T G)
 };
 
 template <class S, int W>
@@ -309,7 +309,7 @@ TETSKIN_INLINE WideFrames<S, W> framesOf(const Quaternions<S, W>& q) {
   return WideFrames<S, W>{q, rotationOf<S, W>(q), Lanes<S, W>{}};
 }
 
-/// The frame of all tets, if there is but one.
+/// The frame of all tets, if there is only one.
 template <class S, int W, class Work>
 TETSKIN_INLINE WideFrames<S, W> commonFrame(const Work& work) {
   if (!work.frames) {
@@ -331,7 +331,7 @@ TETSKIN_INLINE WideFrames<S, W> framesAt(const Work& work, const Pack& pack, int
   return framesOf<S, W>({q.x, q.y, q.z, q.w});
 }
 
-/// F of a tet that has collapsed to a point, but for the rounding of G + Q: its rotation is undefined.
+/// F of a tet that has collapsed to a point, within the rounding of G + Q: its rotation is undefined.
 template <class S>
 constexpr S kCollapsed = sizeof(S) == sizeof(float) ? S(1e-5) : S(1e-13);
 
@@ -409,12 +409,12 @@ TETSKIN_INLINE void addToNodes(const Pack& pack, int lane, const S* from, S* sum
   }
 }
 
-/// Volume over that at rest, below which a tet counts as flat. Under its own weight or in an impact no body is flat;
-/// one that is squashed by ten times what it can carry is.
+/// Ratio of volume to rest volume below which a tet counts as flat. No body is flat under its own weight or in an
+/// impact; one that is squashed by ten times what it can carry is.
 template <class S>
 constexpr S kFlat = S(0.1);
 
-/// What multiplies the stiffness in the matrix.
+/// The factor of the stiffness in the matrix.
 /// at        index in `alphas`
 /// gradient  returns F
 template <class S, int W, class Pack, class Gradient>

@@ -6,10 +6,10 @@
 // L_i (2 L_i - 1) and 4 L_i L_j, so that
 //   H_i = (4 L_i - 1) x_i + 4 sum_{j != i} L_j x_ij,   F = sum_i H_i g_i^T = sum_{k > 0} (H_k - H_0) g_k^T
 //
-// A tet whose points are inside out, or turned far from each other, may rest so, without a stress at any of them. It
-// has a single rotation R then, that of the mean of F, with which it comes back as a linear tet does, and with
+// A tet whose points are inverted, or rotated far from each other, may be at rest like that, without a stress at any of
+// them. It then uses a single rotation R, that of the mean of F, with which it recovers as a linear tet does, and
 //   energy = sum over points of V (mu |F - R|^2 + lambda / 2 t^2),   t = mean of tr(R^T F) - 3
-// whose gradient is the force, as R is where the energy does not change with it; in an even strain it is the usual one.
+// whose gradient is the force, because the energy is stationary in R; for a uniform strain it equals the usual energy.
 #pragma once
 
 #include <tetskin/elastic/src/kernels/corotation.h>
@@ -70,9 +70,9 @@ TETSKIN_INLINE WideMatrix<S, W> gradientOf(const QuadraticPack<S>& pack, int lan
   return f;
 }
 
-/// Calls visit(node, vector) with the sum over i of c_i times what `carried` makes of g_i, where the gradient of the
-/// node's shape function is the sum of c_i g_i.
-/// carried  linear: gets and returns a vector
+/// Calls visit(node, vector) with the sum over i of c_i times carried(g_i), where the gradient of the node's shape
+/// function is the sum of c_i g_i.
+/// carried  a linear map of vectors
 template <class S, int W, class Carried, class Visit>
 TETSKIN_INLINE void byShapeGradients(const QuadraticPack<S>& pack, int lane, const Lanes<S, W> weights[4],
                                      Carried&& carried, Visit&& visit) {
@@ -96,7 +96,7 @@ TETSKIN_INLINE void byShapeGradients(const QuadraticPack<S>& pack, int lane, con
 }
 
 /// Cosine of half the angle between the rotations of two points above which they are too far apart: 70 degrees. In a
-/// tet that is rolled up they are 30 apart, where it rests in a wrong state, 90 and more.
+/// tet that is rolled up it is 30; where a tet rests in a wrong state, 90 and more.
 template <class S>
 constexpr S kApart = S(0.819);
 
@@ -107,7 +107,7 @@ struct TurnedPoints {
   WideMatrix<S, W> r, s;
 };
 
-/// 1 where a tet must have a single rotation.
+/// 1 if a tet must use a single rotation.
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> lostTets(const TurnedPoints<S, W> at[4]) {
   using V = Lanes<S, W>;

@@ -39,8 +39,8 @@ TETSKIN_INLINE WideVector<S, W> offDiagonal(const RowWork<S>& work, std::uint32_
   return total;
 }
 
-/// The inverses of symmetric positive blocks; 0 where there is no mass. They are computed from the ratios to the trace:
-/// products of three entries of the stiffest blocks would leave float's range.
+/// The inverses of symmetric positive blocks; 0 where there is no mass. They are computed relative to the trace:
+/// products of three entries of the stiffest blocks would exceed float's range.
 template <class S, int W>
 TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, S* to) {
   using V = Lanes<S, W>;
@@ -60,7 +60,7 @@ TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, 
   put<S, W>((d[0] * d[3] - d[1] * d[1]) * scale, to + 5 * kGroup);
 }
 
-/// Adds products a b^T of the vectors that a quadratic tet has of two nodes at its four points.
+/// Adds products a b^T of the vectors that a quadratic tet has for two nodes at its four points.
 template <class S, int W>
 TETSKIN_INLINE void addQuadraticTerm(const RowWork<S>& work, std::uint32_t term, int lane, Lanes<S, W> sum[9]) {
   const std::uint32_t* indices = work.quadraticTerms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
@@ -72,9 +72,9 @@ TETSKIN_INLINE void addQuadraticTerm(const RowWork<S>& work, std::uint32_t term,
   }
 }
 
-/// The block of a pair of nodes: the sum, over the tets around their edge and the points of each, of
+/// The block of a pair of nodes: the sum, over the tets around their edge and the points of each tet, of
 ///   lambda / mu  a b^T + b a^T + (a . b) 1
-/// with a and b as `rotatedGradients` made them. All of it follows from the sum of a b^T.
+/// with a and b from `rotatedGradients`. It all follows from the sum of a b^T.
 template <class S, int W>
 TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int lane, Lanes<S, W> block[9]) {
   using V = Lanes<S, W>;
@@ -108,7 +108,7 @@ TETSKIN_INLINE Lanes<S, W> effectiveMass(const RowWork<S>& work, const Lanes<S, 
   return light ? minimum : real;
 }
 
-/// The diagonal block of a row is the sum of its mass and its off-diagonal blocks, so that a body moves as a whole
+/// The diagonal block of a row is its mass minus the sum of its off-diagonal blocks, so that a body moves as a whole
 /// without resistance.
 template <class S, int W>
 void assemble(const RowWork<S>& work) {
@@ -150,8 +150,8 @@ void multiply(const RowWork<S>& work) {
   }
 }
 
-/// The same as `multiply` but for rounding, of rows that nothing was added to: M v_i + sum_j A_ij (v_j - v_i). What a
-/// product of float resists a translation by is rounding of the stiffness, and may be more than the mass.
+/// The same as `multiply` except for rounding, for rows without additions: M v_i + sum_j A_ij (v_j - v_i). In float, an
+/// ordinary product resists a translation by the rounding of the stiffness, which may exceed the mass.
 template <class S, int W>
 void multiplyByDifferences(const RowWork<S>& work) {
   using V = Lanes<S, W>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: corotated elasticity of W linear tets at a time, which have one deformation gradient each.
+// Internal to the kernels: corotated elasticity of W linear tets at a time, with one deformation gradient each.
 #pragma once
 
 #include <tetskin/elastic/src/kernels/corotation.h>

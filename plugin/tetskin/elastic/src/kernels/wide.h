@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: W tets or rows at a time, which are a part of a group of eight, with conversions from and to
-// points.
+// Internal to the kernels: W tets or rows at a time, part of a group of eight, with conversions from and to points.
 #pragma once
 
 #include <tetskin/core/src/base/kernels/lanes.h>
@@ -74,7 +73,8 @@ TETSKIN_INLINE Lanes<S, W> absolute(const Lanes<S, W>& v) {
 }
 
 #if defined(TETSKIN_VECTOR_TYPES) && defined(TETSKIN_SHUFFLE) && defined(__wasm_simd128__)
-// WebAssembly has registers of four floats. Eight are two of them: what is written lane by lane below would be done so.
+// WebAssembly has registers of four floats; eight floats are two of them. What is written lane by lane below would be
+// compiled lane by lane.
 #define TETSKIN_HALVES 1
 template <class S>
 TETSKIN_INLINE Lanes<S, 8> joined(const Lanes<S, 4>& low, const Lanes<S, 4>& high) {
@@ -117,7 +117,6 @@ TETSKIN_INLINE Lanes<S, W> squareRoots(const Lanes<S, W>& v) {
   }
 }
 
-/// True if any lane is above a limit.
 template <class S, int W>
 TETSKIN_INLINE bool anyAbove(const Lanes<S, W>& v, S limit) {
   if constexpr (W == 1) {

@@ -17,7 +17,7 @@ using kernels::kWideSymmetric;
 
 namespace {
 
-/// Least mass of a node relative to the trace of its diagonal block of alpha K: a number of last digits of it.
+/// Smallest mass of a node relative to the trace of its diagonal block of alpha K: some last digits of it.
 template <class S>
 constexpr S kMinMass = 4 * std::numeric_limits<S>::epsilon();
 
@@ -64,7 +64,7 @@ BlockMatrix<S>::BlockMatrix(std::size_t nodes, const RestTets& rest) : pattern_(
 template <class S>
 kernels::RowWork<S> BlockMatrix<S>::work(std::size_t firstChunk, std::size_t lastChunk) const {
   assert(firstChunk <= lastChunk && lastChunk <= pattern_.chunkCount());
-  // This function is const, but the kernels that write are only called from functions that are not.
+  // This function is const, but kernels that write are only called from functions that are not.
   const auto writable = [](const AlignedVector<S>& v) { return const_cast<S*>(v.data()); };
   kernels::RowWork<S> work;
   work.firstChunk = firstChunk;
@@ -106,8 +106,8 @@ double BlockMatrix<S>::totalMass() const {
   return std::accumulate(masses_.begin(), masses_.end(), 0.0);
 }
 
-/// Calls kernel(its work, the table) for all ranges. Returns the sum of what it returns, if that are numbers, in an
-/// order that does not depend on the number of threads.
+/// Calls kernel(its work, the table) for all ranges. If the results are numbers, returns their sum, in an order that
+/// does not depend on the number of threads.
 template <class S>
 template <class Kernel>
 double BlockMatrix<S>::sweep(Order order, ParallelFor* threads, Kernel&& kernel) const {
@@ -147,7 +147,7 @@ void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads) {
     part.inverse = freeInverse_.data();
     table.assemble(part);
   });
-  // What was added to the blocks before is not in these.
+  // These blocks do not contain what was added before.
   for (Coupling& coupling : couplings_) coupling.known = coupling.used = false;
   used_.clear();
   free();
@@ -166,7 +166,7 @@ void BlockMatrix<S>::free() {
   used_.clear();
 }
 
-/// Entries of neighbours after the slot follow those of neighbours before it.
+/// Entries of neighbours after the slot come after those of neighbours before it.
 template <class S>
 std::optional<std::size_t> BlockMatrix<S>::blockOf(std::size_t slot, std::size_t neighbour) const {
   assert(slot < slotCount() && neighbour < slotCount());
@@ -189,10 +189,10 @@ void BlockMatrix<S>::read(Coupling& coupling) const {
   }
 }
 
-/// Writes the blocks of a pair: their own values and the addition.
+/// Writes the blocks of a pair: their own values plus the addition.
 template <class S>
 void BlockMatrix<S>::write(const Coupling& coupling) {
-  // By entry of a block: its place among xx xy xz yy yz zz.
+  // By entry of a block: its index in xx xy xz yy yz zz.
   constexpr std::size_t kPlaces[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
   for (std::size_t k = 0; k < 9; ++k) {
     blocks_[coupling.block + k * kGroup] = coupling.own[k] + coupling.addition[kPlaces[k]];

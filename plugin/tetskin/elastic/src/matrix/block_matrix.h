@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The matrix A = M + alpha K of one body: 3x3 blocks, one row per node, symmetric and positive. A large body is divided
-// into parts, and separators between them, so that a Gauss-Seidel sweep processes first all parts and then all
+// into parts, with separators between them, so that a Gauss-Seidel sweep processes first all parts and then all
 // separators, on any number of threads. The rows of each are sorted by colour, so that eight of them are processed at
 // once: see elastic_kernels.h.
 #pragma once
@@ -20,12 +20,12 @@
 
 namespace tetskin::elastic_detail {
 
-/// True if a matrix of this many slots is worth dividing among threads: see kChunksPerTask in block_pattern.cpp.
+/// True if it pays to divide a matrix of this many slots among threads: see kChunksPerTask in block_pattern.cpp.
 constexpr bool isDivisible(std::size_t slots) {
   return slots >= 4096;
 }
 
-/// Which slot each node has, and which rows have common blocks. Slots are numbered by row; some belong to no node.
+/// Which slot each node has, and which rows share blocks. Slots are numbered by row; some belong to no node.
 struct BlockPattern {
   std::vector<std::uint32_t> slotOf;                         ///< by node
   std::vector<std::uint32_t> starts;                         ///< by chunk, 2 entries each, and the end
@@ -34,9 +34,9 @@ struct BlockPattern {
   std::vector<std::uint32_t> terms;                          ///< 16 per term
   std::vector<std::uint32_t> quadraticSums, quadraticTerms;  ///< the same of quadratic tets
   std::vector<std::uint32_t>
-      rangeChunks;                    ///< by range, and the end: its first chunk; rows of a range are no neighbours
+      rangeChunks;                    ///< by range, and the end: its first chunk; rows of a range are not neighbours
   std::vector<std::uint32_t> tasks;   ///< by task, and the end: its first range; they are swept in this order
-  std::vector<std::uint32_t> phases;  ///< by phase, and the end: its first task; rows of two tasks are no neighbours
+  std::vector<std::uint32_t> phases;  ///< by phase, and the end: its first task; rows of two tasks are not neighbours
 
   std::size_t chunkCount() const { return starts.size() / 2; }
   std::size_t slotCount() const { return chunkCount() * kernels::kGroup; }
@@ -66,7 +66,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
     return slot / kernels::kGroup * kernels::kWideVector + slot % kernels::kGroup;
   }
   std::size_t wideSize() const { return pattern_.chunkCount() * kernels::kWideVector; }
-  /// A vector in the wide layout, by node: what is in lanes without a node is not defined, and 0 after reading.
+  /// A vector in the wide layout, by node. Lanes without a node are undefined, and 0 after reading.
   void visitWide(StateStream& stream, S* wide) const;
 
   /// Masses by slot; 0: pinned. They take effect at the next assembly.
@@ -81,7 +81,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// See `elasticInUse`.
   void setDeterministic(bool on) { deterministic_ = on; }
 
-  /// corners  see CorotatedTets::cornersForMatrix; null: without tets, so that A = M
+  /// corners  see CorotatedTets::cornersForMatrix; null: no tets, so A = M
   /// ratio    lambda / mu
   void assemble(const S* corners, S ratio, ParallelFor* threads);
 
@@ -89,14 +89,14 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void fix(std::size_t node);
   void fixAlong(std::size_t node, const S normal[3]);
   void fixAllBut(std::size_t node, const S direction[3]);
-  /// Adds a block, xx xy xz yy yz zz, without negative eigenvalues, to a node's diagonal block: it resists the node's
+  /// Adds a block, xx xy xz yy yz zz, without negative eigenvalues, to a node's diagonal block: resists the node's
   /// motion. Call it before the node is fixed.
   void resist(std::size_t node, const S block[6]);
-  /// The number of a pair of nodes that is to be coupled, valid as long as the matrix; empty where the two are the same
-  /// node or have no tet in common: the matrix has no such block. Cost O(neighbours of a node)
+  /// The number of a pair of nodes to be coupled, valid as long as the matrix; empty if both are the same node or share
+  /// no tet: the matrix has no such block. Cost O(neighbours of a node)
   std::optional<std::uint32_t> couplingOf(std::size_t first, std::size_t second);
-  /// Adds a symmetric block, xx xy xz yy yz zz, to what `applyCouplings` adds to the blocks of a pair, in both of their
-  /// rows; nothing if one of the two is pinned.
+  /// Adds a symmetric block, xx xy xz yy yz zz, to the sum that `applyCouplings` adds to the blocks of a pair, in both
+  /// of their rows; does nothing if one of the two is pinned.
   void couple(std::uint32_t coupling, const S block[6]);
   void applyCouplings();
   /// Reverts all changes by `fix`, `resist` and `couple`; pinned nodes stay pinned.
@@ -104,17 +104,16 @@ class TETSKIN_ELASTIC_API BlockMatrix {
 
   /// The inverse of the node's diagonal block, as if it were not fixed: xx xy xz yy yz zz. 0 if it is pinned.
   void freeInverse(std::size_t node, S out[6]) const;
-  /// The node's diagonal block.
   void diagonal(std::size_t node, S out[6]) const;
 
-  /// Multiplies A with points, 4 scalars per slot. Where A is as it was assembled, a translation meets its masses and
-  /// nothing else, to the last digit.
+  /// Multiplies A with points, 4 scalars per slot. If A is as it was assembled, a translation meets only its masses, to
+  /// the last digit.
   void multiply(const S* points, S* wide, ParallelFor* threads) const;
 
   /// Computes velocities = P^-1 impulses, both in the wide layout, with the preconditioner of sweeps; returns the
-  /// square of the impulses' norm. Replaces `residual`.
+  /// squared norm of the impulses. Overwrites `residual`.
   double precondition(const S* impulses, S* velocities, ParallelFor* threads);
-  /// The square of the norm of impulses in the wide layout, as `lower` returns that of the residual.
+  /// The squared norm of impulses in the wide layout, in the same norm that `lower` returns for the residual.
   double squaredNorm(const S* impulses, ParallelFor* threads);
   /// Computes difference = first - second, in the wide layout, 0 at pinned nodes, and A times it.
   /// second  null: 0
@@ -141,7 +140,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
  private:
   using Work = kernels::RowWork<S>;
   using Table = kernels::ElasticTable<S>;
-  /// Forward: each row after those of its neighbours that are before it; backward: after those that are after it.
+  /// Forward: each row after its neighbours that precede it; backward: after those that follow it.
   enum class Order { Any, Forward, Backward };
 
   Work work(std::size_t firstChunk, std::size_t lastChunk) const;
@@ -154,12 +153,12 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// Index of the first scalar of the block of two slots, which is one of nine per lane of a group.
   std::optional<std::size_t> blockOf(std::size_t slot, std::size_t neighbour) const;
 
-  /// What is added to the two blocks of a pair of nodes, and their values without it.
+  /// The addition to the two blocks of a pair of nodes, and their values without it.
   struct Coupling {
     std::size_t first = 0, second = 0;    ///< slots
     std::size_t block = 0, mirrored = 0;  ///< of the first scalars
     S addition[6] = {}, own[9] = {}, ownMirrored[9] = {};
-    bool known = false;  ///< own values, since the last assembly
+    bool known = false;  ///< its own values are known since the last assembly
     bool used = false;   ///< since the last `free`
   };
   void read(Coupling& coupling) const;

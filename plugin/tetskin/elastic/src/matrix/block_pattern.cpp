@@ -15,19 +15,18 @@ using kernels::kGroup;
 
 /// Sums over more chunks than this would lose digits of float.
 constexpr std::size_t kChunksPerRange = 24;
-/// Nodes of a part: what a sweep of it reads again stays in the first-level cache, and takes longer than handing it to
-/// another thread.
+/// Nodes of a part: what a sweep reads again stays in the first-level cache, and sweeping it takes longer than passing
+/// it to another thread.
 constexpr std::size_t kNodesPerPart = 1800;
 /// Most separators, as a fraction of all nodes.
 constexpr double kMaxSeparated = 0.25;
 
-/// Two corners of a tet that contribute to the block of a pair of nodes; of quadratic tets, the first ones of two
+/// Two corners of a tet that contribute to the block of a pair of nodes; for quadratic tets, the first corners of two
 /// nodes.
 struct Term {
   std::uint32_t own = 0, other = 0;
 };
 
-/// The terms of a block.
 struct Terms {
   std::vector<Term> linear, quadratic;
 
@@ -88,7 +87,7 @@ std::vector<Row> rowsOf(std::size_t nodes, const RestTets& rest) {
   return rows;
 }
 
-/// Each node has the first colour that none of its neighbours before it has.
+/// Each node gets the first colour that none of its earlier neighbours has.
 std::vector<std::uint32_t> coloursOf(const std::vector<Row>& rows) {
   std::vector<std::uint32_t> colours(rows.size());
   std::vector<char> taken;
@@ -102,8 +101,8 @@ std::vector<std::uint32_t> coloursOf(const std::vector<Row>& rows) {
   return colours;
 }
 
-/// Appends the nodes that a node is connected with, by distance from it; nodes that `found` are not appended, and those
-/// that are become found.
+/// Appends the nodes to which a node is connected, by distance from it, except those in `found`; appended nodes are
+/// added to `found`.
 void appendByDistance(const std::vector<Row>& rows, std::uint32_t start, std::vector<char>& found,
                       std::vector<std::uint32_t>& order) {
   assert(!found[start]);
@@ -134,8 +133,8 @@ std::vector<std::uint32_t> orderByDistance(const std::vector<Row>& rows) {
   return order;
 }
 
-/// Tasks of a sweep: parts of the body, and separators, the nodes of a part that have neighbours in later parts. No two
-/// parts are neighbours, nor two separators.
+/// Tasks of a sweep: parts of the body, and separators, which are the nodes of a part that have neighbours in later
+/// parts. No two parts are neighbours, nor are two separators.
 struct Division {
   std::vector<std::uint32_t> taskOf;  ///< by node; parts are followed by separators
   std::uint32_t parts = 1, separators = 0;
@@ -158,7 +157,7 @@ Division divide(const std::vector<Row>& rows, const std::vector<std::uint32_t>& 
     if (separates(n)) separators.push_back(n);
   }
   for (const std::uint32_t n : separators) division.taskOf[n] = parts + partOf[n];
-  // Separators that are neighbours, as parts are thin, become one.
+  // Neighbouring separators, which occur if parts are thin, become one.
   DisjointSets sets(parts);
   for (const std::uint32_t n : separators) {
     for (const std::uint32_t m : rows[n].neighbours) {
@@ -199,7 +198,7 @@ std::size_t lowerCount(const Row& row, std::uint32_t level, const std::vector<st
       std::count_if(row.neighbours.begin(), row.neighbours.end(), [&](std::uint32_t m) { return levels[m] < level; }));
 }
 
-/// Creates the chunks of up to eight rows one after the other.
+/// Creates the chunks of up to eight rows, one after the other.
 class PatternMaker {
  public:
   PatternMaker(BlockPattern& pattern, const std::vector<Row>& rows, const std::vector<std::uint32_t>& levels,
@@ -210,7 +209,7 @@ class PatternMaker {
     pattern_.quadraticSums.push_back(0);
   }
 
-  /// nodes  of the chunk; fewer than eight if no more nodes are on this level
+  /// nodes  of the chunk; fewer than eight if the level has no more nodes
   void addChunk(const std::uint32_t* nodes, std::size_t count, std::uint32_t firstSlot) {
     assert(count > 0 && count <= kGroup && firstSlot % kGroup == 0);
     for (const bool lower : {true, false}) {
@@ -221,7 +220,7 @@ class PatternMaker {
         for (std::size_t k = 0; k < row.neighbours.size(); ++k) {
           if ((levels_[row.neighbours[k]] < levels_[nodes[i]]) == lower) indices[i].push_back(k);
         }
-        // Sums over as many terms are side by side, since the shorter ones are padded.
+        // Sums over similar numbers of terms are put side by side, because shorter ones are padded.
         std::stable_sort(indices[i].begin(), indices[i].end(),
                          [&](std::size_t a, std::size_t b) { return row.terms[a].effort() > row.terms[b].effort(); });
         longest = std::max(longest, indices[i].size());
@@ -276,14 +275,14 @@ BlockPattern blockPattern(std::size_t nodes, const RestTets& rest) {
   const std::uint32_t colourCount = colours.empty() ? 0 : *std::max_element(colours.begin(), colours.end()) + 1;
   const Division division = divide(rows);
   const std::uint32_t taskCount = division.parts + division.separators, levelCount = taskCount * colourCount;
-  // Rows of one level are no neighbours, and levels are swept one after the other, except for those of other tasks.
+  // Rows of one level are not neighbours, and levels are swept one after the other, except for those of other tasks.
   std::vector<std::uint32_t> levels(nodes);
   for (std::size_t n = 0; n < nodes; ++n) levels[n] = division.taskOf[n] * colourCount + colours[n];
   Lists<> onLevel = packLists(levelCount, [&](auto&& visit) {
     for (std::uint32_t n = 0; n < nodes; ++n) visit(levels[n], n);
   });
 
-  // Rows of similar length are put in one chunk, since the shorter rows of a chunk are padded.
+  // Rows of similar length share a chunk, because the shorter rows of a chunk are padded.
   BlockPattern pattern;
   pattern.slotOf.resize(nodes);
   std::uint32_t slot = 0;

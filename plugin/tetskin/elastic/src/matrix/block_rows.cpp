@@ -11,10 +11,10 @@ namespace {
 /// Number of fields that are processed together in registers.
 constexpr int kTogether = 6;
 
-/// By node: the node itself and those with which it shares a tet, ascending.
+/// By node: the node itself and the nodes with which it shares a tet, ascending.
 /// tets       the linear ones
 Lists<> neighboursOf(std::size_t nodes, const std::vector<Tet>& tets, const std::vector<RestQuadraticTet>& quadratic) {
-  // By node, the tets around it: the quadratic ones are numbered after the linear ones.
+  // By node, the tets around it: quadratic ones are numbered after the linear ones.
   const Lists<> around = packLists(nodes, [&](auto&& add) {
     std::uint32_t number = 0;
     const auto addTet = [&](const auto& ofTet) {

@@ -16,7 +16,7 @@ class BlockRows {
  public:
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-  /// cage   valid, rest space, no tet flat: linear tets, and quadratic ones where it has some. Not referred to later
+  /// cage   valid, rest space, no tet flat; its quadratic tets are used as such. Not kept
   /// scale  by tet: stiffness factor relative to a Young's modulus of 1; empty: the cage's, over its material
   /// Cost   O(T log T) for T tets
   BlockRows(const Cage& cage, double poissonRatio, const std::vector<double>& scale);
@@ -25,7 +25,7 @@ class BlockRows {
   void multiply(const Fields& fields, Fields& product) const;
   Eigen::VectorXd diagonal() const;
   const Block& diagonalBlock(std::size_t node) const;
-  /// By node: the node itself and those with which it shares a linear or quadratic tet, ascending.
+  /// By node: the node itself and the nodes with which it shares a linear or quadratic tet, ascending.
   const Lists<>& neighbours() const { return columns_; }
   /// The whole matrix, both triangles.
   Eigen::SparseMatrix<double, Eigen::RowMajor> sparse() const;

@@ -13,8 +13,8 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Stiffness of `volume` of a material, where the weights of two nodes have the gradients g and h: it maps a
-/// displacement of the second to the force on the first.
+/// Stiffness of `volume` of a material, if the weights of two nodes have the gradients g and h: maps a displacement of
+/// the second node to the force on the first.
 Eigen::Matrix3d blockOf(const Lame& material, double volume, const Eigen::Vector3d& g, const Eigen::Vector3d& h) {
   return volume * (material.lambda * g * h.transpose() + material.mu * h * g.transpose() +
                    material.mu * g.dot(h) * Eigen::Matrix3d::Identity());

@@ -50,7 +50,7 @@ RigidMotions::RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses) {
 
 void RigidMotions::removeFrom(Fields& displacements) const {
   assert(displacements.rows() == rowOf(partOf_.size()));
-  // First the momenta of the components, then the velocities of the rigid motions with these momenta.
+  // First computes the momenta of the components, then the velocities of the rigid motions with these momenta.
   Fields linear = Fields::Zero(rowOf(components_.size()), displacements.cols()), angular = linear;
   Fields momentum(3, displacements.cols()), motion = momentum;
   for (std::size_t n = 0; n < partOf_.size(); ++n) {

@@ -10,13 +10,13 @@
 namespace tetskin::elastic_detail {
 
 /// The rigid motions of each component of a free body at rest: elasticity does not resist them. Displacements and loads
-/// may have several columns; each column is treated by itself.
+/// may have several columns; each column is treated separately.
 ///
-/// This does not apply to a body in motion: its components rotate by angles that are not small, and some of their nodes
-/// are pinned (see ComponentMotion::excess).
+/// Not for a moving body: its components rotate by large angles, and some of their nodes are pinned (see
+/// ComponentMotion::excess).
 class RigidMotions {
  public:
-  /// mesh    rest space; every component has a volume. Not referred to later
+  /// mesh    rest space; every component has volume. Not kept
   /// masses  3 nodeCount, above 0, see `lumpedVolumes`
   /// Cost    O(nodes + tets)
   RigidMotions(const TetMesh& mesh, const Eigen::VectorXd& masses);

@@ -23,7 +23,7 @@ TetStiffness::TetStiffness(const RestTets& rest, const std::vector<std::uint32_t
   vectors_.resize(vectors);
 }
 
-/// The vectors of a point have no sum, to the last digit, so that nothing resists a translation.
+/// A point's vectors sum to exactly 0, to the last digit, so that nothing resists a translation.
 template <class S>
 void TetStiffness::take(const MatrixSource<S>& source) {
   assert(source.corners);
@@ -59,7 +59,7 @@ Eigen::Matrix3d TetStiffness::stress(const Eigen::Matrix3d& gradient) const {
   return sum;
 }
 
-/// In plain numbers, which compilers keep in registers.
+/// Plain numbers, which compilers keep in registers.
 void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector<double>& impulses) const {
   assert(velocities.size() == impulses.size());
   for (std::size_t p = 0; p < pointCount(); ++p) {

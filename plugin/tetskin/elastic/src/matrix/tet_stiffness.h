@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The matrix alpha K of a body as what it is the sum of: strains of tets, in double precision. Rounding of a matrix of
-// floats resists rotations, and more than bending does in a beam that is 50 times as long as thick; strains of a
-// rotation are none.
+// The matrix alpha K of a body as a sum over strains of tets, in double precision. In a matrix of floats, rounding
+// resists rotations, more than bending does in a beam that is 50 times as long as thick; strains of a rotation are 0.
 #pragma once
 
 #include <tetskin/elastic/src/tets/rest_tets.h>
@@ -13,15 +12,15 @@
 
 namespace tetskin::elastic_detail {
 
-/// Where a tet is integrated: a linear one at one point, a quadratic one at four. A motion v of the nodes has there the
-/// gradient G = sum_n v_n a_n^T, and node n gets (ratio tr(G) + G + G^T) a_n.
+/// An integration point of a tet: a linear tet has one, a quadratic tet four. A motion v of the nodes has the gradient
+/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + G + G^T) a_n.
 struct StiffnessPoint {
   const std::uint32_t* slots = nullptr;      ///< of the tet's nodes
   const Eigen::Vector3d* vectors = nullptr;  ///< a, by node
   std::size_t nodes = 0;
 };
 
-/// What a matrix was assembled from.
+/// The data from which a matrix was assembled.
 template <class S>
 struct MatrixSource {
   const RestTets& rest;
@@ -34,7 +33,7 @@ class TetStiffness {
   /// slotOf  by node
   TetStiffness(const RestTets& rest, const std::vector<std::uint32_t>& slotOf);
 
-  /// The same tets as before. Cost O(T)
+  /// The tets must be the same as before. Cost O(T)
   template <class S>
   void take(const MatrixSource<S>& source);
 

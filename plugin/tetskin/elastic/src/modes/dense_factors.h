@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Dense eigenvectors and factors: Eigen's templates for them are compiled once, in one source.
+// Dense eigenvectors and factors: compiles Eigen's templates for them only once, in one source.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -22,11 +22,11 @@ Eigenpairs eigenpairsOf(const Eigen::MatrixXd& a);
 /// a, b  symmetric; their lower triangles are read; b is positive
 Eigenpairs eigenpairsOf(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Orthonormal columns of the same span, by reflections: as many, also where they are nearly linearly dependent.
+/// Orthonormal columns of the same span, by reflections: as many columns, even if they are nearly linearly dependent.
 Eigen::MatrixXd orthonormalColumns(const Eigen::MatrixXd& columns);
 
 using DenseCholesky = Eigen::LLT<Eigen::MatrixXd>;
-/// Keeps the factors of a symmetric matrix, whose lower triangle is read; its `info` says whether it was positive.
+/// Stores the factors of a symmetric matrix, whose lower triangle is read; its `info` tells whether it was positive.
 void factorise(const Eigen::MatrixXd& a, DenseCholesky& factors);
 Eigen::MatrixXd solved(const DenseCholesky& factors, const Eigen::MatrixXd& b);
 

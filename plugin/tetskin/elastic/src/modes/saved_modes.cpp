@@ -25,7 +25,7 @@ namespace {
 /// See above.
 constexpr SavedFormat kFormat{"tetskmod", 1, 8 * 8, "modes", "the saved set of modes", "compute it again"};
 
-/// The hash of the mesh, unless some tets are quadratic: a body with the same nodes then vibrates differently.
+/// The hash of the mesh, modified if some tets are quadratic: a body with the same nodes then vibrates differently.
 std::uint64_t hashOfTets(const Cage& cage) {
   const std::vector<int>& number = cage.quadraticTet;
   const std::uint64_t ofMesh = hashOf(cage.mesh);
@@ -39,7 +39,7 @@ std::uint64_t hashOfTets(const Cage& cage) {
 struct Header {
   std::uint64_t tetsHash = 0, nodeCount = 0, tetCount = 0, modeCount = 0, pinnedCount = 0;
 
-  /// Also false where the sum would overflow.
+  /// Also false if the sum would overflow.
   bool isOf(std::size_t bytes) const {
     const std::uint64_t maximum = bytes / 8;
     if (nodeCount > maximum || pinnedCount > nodeCount || modeCount > maximum) return false;

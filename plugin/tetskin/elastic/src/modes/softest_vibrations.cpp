@@ -19,13 +19,13 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Error of a vector relative to the vector, in the energy norm, at which it counts as found: the relative error of its
+/// Relative error of a vector, in the energy norm, at which it counts as converged: the relative error of its
 /// eigenvalue is the square of this, up to rounding.
 constexpr double kVectorTolerance = 1e-8;
 constexpr int kMaxModeIterations = 200;
-/// Vectors in addition to those that are wanted: the more, the faster the wanted ones converge.
+/// Extra vectors: the more, the faster the wanted ones converge.
 constexpr int kGuards = 5;
-/// Degrees of freedom per vector below which all vectors are found at once: the iteration takes three subspaces.
+/// Degrees of freedom per vector below which all vectors are computed at once: the iteration needs three subspaces.
 constexpr Eigen::Index kFewFreedoms = 5;
 /// Eigenvalue of the products of normalised vectors below which the vectors are linearly dependent.
 constexpr double kDependent = 1e-13;
@@ -34,7 +34,7 @@ struct Space {
   Fields vectors, images;  ///< images: the matrix times the vectors
 };
 
-/// Orthonormal vectors of the same span; linearly dependent ones are dropped.
+/// Orthonormal vectors of the same span; drops linearly dependent ones.
 Fields orthonormal(Fields vectors) {
   for (int pass = 0; pass < 2 && vectors.cols() > 0; ++pass) {
     Eigen::MatrixXd products = vectors.transpose() * vectors;
@@ -56,7 +56,7 @@ Fields picked(const Fields& from, const std::vector<Eigen::Index>& columns) {
   return result;
 }
 
-/// The number of vectors: of bodies with few degrees of freedom, all that there are.
+/// The number of vectors; for bodies with few degrees of freedom, all of them.
 Eigen::Index widthFor(const VibrationProblem& problem, int wanted) {
   const Eigen::Index all = problem.freedoms() - problem.rigidCount(), width = wanted + std::max(kGuards, wanted / 4);
   return problem.freedoms() < kFewFreedoms * width ? all : width;
@@ -73,10 +73,10 @@ class Iteration {
     rotate();
   }
 
-  /// True if the first vectors span all that there is: then they are found.
+  /// True if the first vectors span the whole space: then they are the solution.
   bool isComplete() const { return width_ == problem_.freedoms() - problem_.rigidCount(); }
 
-  /// Returns how far the wanted vectors are from their tolerance, at most 1; 0: all are found.
+  /// Returns how far the wanted vectors are from their tolerance, at most 1; 0: all have converged.
   double advance() {
     const Fields residuals = space_.vectors.leftCols(width_) * (-values_).asDiagonal() + space_.images.leftCols(width_);
     const Fields steps = problem_.precondition(residuals);
@@ -123,7 +123,7 @@ class Iteration {
     take(eigenpairsOf(0.5 * (energies + energies.transpose())), active);
   }
 
-  /// The softest Ritz vectors become the present ones; for the active ones, their difference to the former ones is kept
+  /// The softest Ritz vectors become the present ones; for the active ones, keeps their difference from the former ones
   /// as the direction.
   void take(const Eigenpairs& ritz, const std::vector<Eigen::Index>& active) {
     const Eigen::Index all = space_.vectors.cols();

@@ -17,30 +17,31 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Most groups: six motions each give as many unknowns as a dense factorisation can process in a few seconds.
+/// Most groups: six motions of each give as many unknowns as a dense factorisation can process in a few seconds.
 constexpr int kMaxGroups = 400;
-/// Least number of nodes per group.
+/// Smallest number of nodes per group.
 constexpr std::size_t kNodesOfGroup = 8;
 /// A group's motion that is this small relative to its largest one does not exist: the nodes are on a line, or there is
-/// only one.
+/// only one node.
 constexpr double kNoMotion = 1e-6;
-/// Degree of the smoothing polynomial, and the part of the spectrum that it damps: all above 1 over this of it.
+/// Degree of the smoothing polynomial, and the part of the spectrum that it damps: everything above the largest
+/// eigenvalue divided by this.
 constexpr int kDegree = 3;
 constexpr double kDampedRange = 12.0;
 constexpr int kPowerIterations = 15;
 /// Margin added to an estimate of the largest eigenvalue, which is a lower bound.
 constexpr double kMaxMargin = 1.1;
-/// Stiffness added to that of the groups, the same for each motion, relative to the largest: without it, a free body's
-/// rigid motions have none.
+/// Stiffness added to each motion of the groups, relative to the largest: a free body's rigid motions have none of
+/// their own.
 constexpr double kGroupShift = 1e-10;
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 using Motions = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-/// Makes the columns orthonormal, largest first, and returns how many there are: those that have hardly anything which
-/// the others have not are dropped. By Gram and Schmidt's method, twice, which is enough for all digits: the compiler
-/// takes five seconds for Eigen's singular values of such a matrix, and none for this.
+/// Makes the columns orthonormal, largest first, and returns how many there are: drops those that add hardly anything
+/// to the others. By the Gram-Schmidt method, twice, which gives all digits: Eigen's singular values of such a matrix
+/// take the compiler five seconds, this takes none.
 Eigen::Index makeOrthonormal(Motions& motions) {
   Eigen::Index rank = 0;
   double largest = 0.0;
@@ -118,7 +119,7 @@ TwoLevelSolver::TwoLevelSolver(const BlockRows& stiffness, const std::vector<Eig
   const SparseRows motions = motionsOf(aggregate(stiffness.neighbours(), desired), nodes, free);
   const SparseRows sparse = stiffness.sparse();
 
-  // One step of Jacobi's method: the motions of neighbouring groups then blend into each other, which makes them soft.
+  // One Jacobi step: the motions of neighbouring groups blend into each other, which makes them soft.
   // P = (1 - 4/3 D^-1 K / largest) P0
   SparseRows inverse(sparse.rows(), sparse.rows());
   std::vector<Eigen::Triplet<double>> entries;

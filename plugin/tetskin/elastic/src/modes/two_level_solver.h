@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Approximate displacements under loads: smoothing on the nodes, and an exact solve for the motions of groups of nodes
-// as a whole.
+// Approximate displacements under loads: smoothing on the nodes, plus an exact solve for the rigid motions of groups of
+// nodes.
 #pragma once
 
 #include <tetskin/elastic/src/matrix/block_rows.h>
@@ -27,7 +27,7 @@ class TwoLevelSolver {
   bool ok() const { return coarse_.info() == Eigen::Success; }
   /// Solves for each load; 0 at pinned nodes.
   Fields solve(const Fields& loads) const;
-  /// An upper bound of stiffness over mass, which is a squared frequency: a shift must be small relative to it.
+  /// An upper bound of stiffness over mass, which is a squared frequency: a shift must be small compared with it.
   double largestFrequency() const { return largestFrequency_; }
 
  private:
@@ -38,7 +38,7 @@ class TwoLevelSolver {
   void estimateLargest(const std::vector<double>& masses);
 
   const BlockRows& stiffness_;
-  std::vector<Block> inverseDiagonal_;  ///< by node; 0 where it is pinned
+  std::vector<Block> inverseDiagonal_;  ///< by node; 0 if it is pinned
   double largest_ = 0.0;                ///< largest eigenvalue of the inverse diagonal times the stiffness
   double largestFrequency_ = 0.0;
   Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation_;  ///< 3 nodes x motions of groups

@@ -19,7 +19,7 @@ using elastic_detail::Fields;
 using elastic_detail::VibrationProblem;
 using elastic_detail::Vibrations;
 
-/// Relative to a body's largest eigenvalue: a smaller one belongs to a motion that nothing resists.
+/// Relative to a body's largest eigenvalue: a smaller eigenvalue belongs to a motion that nothing resists.
 constexpr double kNoStiffness = 1e-13;
 
 Status invalid(std::string message) {

@@ -15,7 +15,7 @@ namespace {
 
 using kernels::kGroup;
 
-/// Handing work to another thread costs some microseconds, in which this many points of packs, or nodes, are processed.
+/// Passing work to another thread costs some microseconds, in which this many points of packs, or nodes, are processed.
 constexpr std::size_t kPointsPerTask = 64, kSlotsPerTask = 256;
 
 template <class Pack>
@@ -58,7 +58,7 @@ void CorotatedTets<S>::makePacks(std::size_t tets, std::size_t firstCorner, Pack
   packed.tasks = tasksFor(packs, kPacksPerTask<Pack>);
 }
 
-/// The last tet is repeated, without stiffness, in what is left of the last pack.
+/// The rest of the last pack repeats the last tet, without stiffness.
 template <class S>
 void CorotatedTets<S>::fillPacks(const std::vector<std::uint32_t>& slotOf) {
   const auto fill = [&](auto& pack, std::size_t lane, const auto& nodes, const std::array<double, 9>& gradients) {
@@ -158,8 +158,8 @@ double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, Par
 
 template <class S>
 void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
-  // One thread adds the forces where they belong. Several could do so at the same time: they write corners, which are
-  // then added in the same order.
+  // A single thread adds forces directly to the nodes. Several could collide: they write corners, which are then added
+  // in the same order.
   if (!threads) {
     std::fill_n(out, 4 * slots_, S(0));
     cornerForces(points, out, false, nullptr);
@@ -179,7 +179,8 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
   });
 }
 
-/// The next step finds its rotations starting from the same ones, and makes its matrix anew, or not, as it would have.
+/// Restores everything, so that the next step finds its rotations from the same start, and assembles its matrix, or
+/// not, as it would have.
 template <class S>
 template <class Query>
 void CorotatedTets<S>::ask(Query&& query) {
@@ -234,7 +235,7 @@ const S* CorotatedTets<S>::cornersAgain(S alpha, ParallelFor* threads) {
   return corners(alpha, nullptr, threads);
 }
 
-/// points  null: those are flat that were
+/// points  null: the same tets are flat as before
 template <class S>
 const S* CorotatedTets<S>::corners(S alpha, const S* points, ParallelFor* threads) {
   byPacks(threads, [&](auto work, const auto& loops, std::size_t) {

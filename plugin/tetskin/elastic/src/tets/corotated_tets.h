@@ -29,7 +29,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// See `elasticInUse`.
   void setDeterministic(bool on) { deterministic_ = on; }
 
-  /// From now on, points are displacements; see TetWork for both. Not owned.
+  /// From now on, points are displacements in these frames; see TetWork. Not owned.
   void setFrames(const S* frames, const std::uint32_t* partOf) {
     frames_ = frames;
     partOf_ = partOf;
@@ -37,7 +37,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
 
   /// Elastic forces at `points`, both 4 scalars per slot; updates the tets' rotations.
   void forces(const S* points, S* out, ParallelFor* threads);
-  /// The same, and the elastic energy at `points`; these change nothing.
+  /// The same, and the elastic energy at `points`, without changing anything.
   void probeForces(const S* points, S* out, ParallelFor* threads);
   double energy(const S* points, ParallelFor* threads);
 
@@ -48,12 +48,12 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// flatAlpha  if larger than `alpha`: its value where tets were flat or inverted in the last `forces`, whose points
   ///            must still be there
   const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
-  /// The same result again, for a matrix that is assembled from the state in a snapshot.
+  /// The same result again, for a matrix that is assembled from a snapshot's state.
   const S* cornersAgain(S alpha, ParallelFor* threads);
   /// Writes or reads the rotations.
   /// alpha     of the matrix
-  /// ofMatrix  false: without those of the matrix, which is going to be made anew
-  /// Returns   true if reading has changed what the matrix is made from
+  /// ofMatrix  false: without those of the matrix, which will be assembled anew
+  /// Returns   true if reading has changed the data from which the matrix is assembled
   bool visitState(StateStream& stream, S alpha, bool ofMatrix);
   /// lambda / mu, for BlockMatrix::assemble.
   S ratio() const { return ratio_; }
@@ -99,14 +99,14 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   Linear linear_;
   Quadratic quadratic_;
   AlignedVector<S> corners_;                             ///< see RestTets
-  std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot: those that get forces
+  std::vector<std::uint32_t> cornerStarts_, cornersAt_;  ///< by slot: the corners whose forces it gets
   std::size_t slots_ = 0;
   bool deterministic_ = false;
   const S* points_ = nullptr;  ///< of the last `forces`
   const S* frames_ = nullptr;
   const std::uint32_t* partOf_ = nullptr;
   S ratio_ = 0;
-  S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: it has no such value
+  S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: no such value
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task

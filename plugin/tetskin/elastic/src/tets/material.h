@@ -25,13 +25,13 @@ inline Lame lameOf(double youngsModulus, double poissonRatio) {
           youngsModulus * poissonRatio / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio))};
 }
 
-/// The largest Poisson's ratio. Beyond it, the resistance to a change of volume exceeds that to a change of shape so
-/// far that the rounding of the one is as large as the other: balls that land have exploded from 0.49999 on in float,
-/// and solves take hundreds of iterations.
+/// The largest Poisson's ratio. Beyond it, resistance to a change of volume exceeds that to a change of shape so far
+/// that the rounding of the former is as large as the latter: landing balls have exploded from 0.49999 on in float, and
+/// solves take hundreds of iterations.
 template <class Scalar>
 constexpr double kMaxPoissonRatio = sizeof(Scalar) == sizeof(float) ? 0.4999 : 0.499999;
 
-/// Ok, or what is invalid in a material, or beyond the range of Scalar.
+/// Ok, or says what is invalid in a material, or beyond the range of Scalar.
 /// damping  seconds
 template <class Scalar>
 Status checkMaterial(double youngsModulus, double poissonRatio, double damping) {
@@ -55,9 +55,9 @@ Status checkMaterial(double youngsModulus, double poissonRatio, double damping) 
                      : "the material is too stiff, or too strongly damped, for the range of double");
 }
 
-/// A Young's modulus over a density, and over the square of a size, in 1 / s^2. Above this value, the rounding of
-/// positions in this precision stores more energy than a body has that falls or rotates. Tested to be stable up to this
-/// value, in steps of 1/60 s.
+/// Bound of Young's modulus over density and over squared size, in 1 / s^2. Above it, the rounding of positions in this
+/// precision stores more energy than a falling or rotating body has. Tested to be stable up to this value, in steps of
+/// 1/60 s.
 template <class Scalar>
 constexpr double kMaxStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
 

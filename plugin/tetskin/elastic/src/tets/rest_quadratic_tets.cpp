@@ -11,8 +11,8 @@
 namespace tetskin::elastic_detail {
 namespace {
 
-/// Share of the whole tet that is added to its material. Without it a tet with material in one corner only would move
-/// freely; a tenth makes the bodies that the surface cuts a third too stiff, this much does not show.
+/// Share of the whole tet that is added to its material. Without it, a tet with material in only one corner would move
+/// freely; a tenth makes the bodies that the surface cuts a third too stiff; this much has no visible effect.
 constexpr double kGhost = 1e-3;
 
 /// Sums over a material: its volume, and the integrals of x and x x^T.
@@ -33,14 +33,14 @@ struct Moments {
   }
 };
 
-/// The same in the coordinates of a map.
+/// The corners in the coordinates of a map.
 TetCorners mapped(TetCorners corners, const BarycentricMap& map) {
   for (Eigen::Vector3d& p : corners) p = map(p).tail<3>();
   return corners;
 }
 
 /// The material of one of the eight tets, in the quadratic one's weights.
-/// corners  rest space: there it is decided how a tet is cut into cells
+/// corners  rest space, which determines how a tet is cut into cells
 /// fine     kFineTets volume fractions in 255ths, or null: full
 void addMaterial(const TetCorners& corners, const BarycentricMap& map, double factor, const std::uint8_t* fine,
                  Moments& moments) {
@@ -51,10 +51,10 @@ void addMaterial(const TetCorners& corners, const BarycentricMap& map, double fa
 }
 
 /// Four points of equal weight with these moments: the centroid plus twice the columns of the root of the covariance of
-/// all four weights. That root is symmetric, so that no corner is preferred: the order of a tet's nodes does not
+/// all four weights. That root is symmetric, so that no corner is preferred, and the order of a tet's nodes does not
 /// matter.
 std::array<double, 3 * kQuadraticPoints> pointsWith(const Moments& moments) {
-  // Weights relative to the centroid, whose sum is 0, have three coordinates by a regular tet with these corners.
+  // Weights relative to the centroid sum to 0; a regular tet with these corners gives them three coordinates.
   Eigen::Matrix<double, 4, 3> regular;
   regular << 0.5, 0.5, 0.5, 0.5, -0.5, -0.5, -0.5, 0.5, -0.5, -0.5, -0.5, 0.5;
   const Eigen::Matrix3d fromLast = (regular.bottomRows<3>().rowwise() - regular.row(0)).transpose();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where quadratic tets are integrated: at four points, which have the volume, the centroid and the covariance of the
-// material in the tet. That is exact for the products of the linear strains of such a tet over any filling; in a full
-// tet it is the usual rule of four points. No point has a negative weight, and with four of them no deformation is
-// without a force.
+// The integration points of quadratic tets: four points, with the volume, the centroid and the covariance of the
+// material in the tet. This is exact for the products of the linear strains of such a tet with any filling; in a full
+// tet it is the usual four-point rule. No point has a negative weight, and with four points every deformation causes a
+// force.
 #pragma once
 
 #include <tetskin/core/cage.h>
@@ -15,22 +15,22 @@
 
 namespace tetskin::elastic_detail {
 
-/// Points at which a quadratic tet is integrated.
+/// Number of integration points of a quadratic tet.
 constexpr std::size_t kQuadraticPoints = 4;
 
-/// A quadratic tet at rest. Its strain is that of its four barycentric weights L, see `QuadraticTet` for its nodes.
+/// A quadratic tet at rest. Its strain is given by its four barycentric weights L; see `QuadraticTet` for its nodes.
 struct RestQuadraticTet {
   std::array<int, kQuadraticNodes> nodes{};
   std::array<double, 9> gradients{};  ///< by rows: of the weights of corners 1, 2 and 3, rest space
   /// Barycentric weights of corners 1, 2 and 3 at each point.
   std::array<double, 3 * kQuadraticPoints> points{};
-  /// Integral of the stiffness factor over the material, a quarter for each point; above 0. In an unscaled full tet its
-  /// volume.
+  /// Integral of the stiffness factor over the material, a quarter for each point; above 0. For a full tet with the
+  /// factor 1, its volume.
   double volume = 0.0;
 };
 
 /// The quadratic tets of a cage, none of them flat.
-/// cage            where it stores volume fractions, and no stiffnessScale is given, these are where the material is
+/// cage            if it stores volume fractions, and no stiffnessScale is given, these determine where the material is
 /// tets            see `quadraticTets`
 /// stiffnessScale  by tet of the cage, above 0; empty: the cage's stiffness factors, over its material
 /// Cost            O(64 T) for T tets

@@ -14,19 +14,19 @@
 
 namespace tetskin::elastic_detail {
 
-/// A body's tets at rest. None is flat. Linear ones are those that are in no quadratic one.
+/// A body's tets at rest, none of them flat. Linear tets are those that are not part of a quadratic one.
 struct RestTets {
   std::vector<Tet> tets;
   std::vector<std::array<double, 9>> gradients;  ///< by rows: of the weights of nodes 1, 2 and 3, rest space
-  std::vector<double> volumes;                   ///< above 0: volume times the factor of the stiffness
+  std::vector<double> volumes;                   ///< above 0: volume times stiffness factor
   std::vector<RestQuadraticTet> quadratic;
-  /// Nodes at rest, rest space: the tets have these shapes, to the last digit. Empty: not known.
+  /// Nodes at rest, rest space: the tets have these shapes, to the last digit. Empty: unknown.
   std::vector<Eigen::Vector3d> nodes;
 
   std::size_t count() const { return tets.size(); }
   bool empty() const { return tets.empty() && quadratic.empty(); }
 
-  // Corners are points that the matrix is assembled from, see kernels::kCorners: those of linear tets, then some that
+  // Corners are points from which the matrix is assembled, see kernels::kCorners: those of linear tets, then some that
   // are 0, then those of quadratic tets.
   static constexpr std::size_t kCornersPerNode = kernels::QuadraticPack<float>::kCornersPerNode;
   static std::size_t padded(std::size_t tets) {
@@ -43,17 +43,17 @@ struct RestTets {
 /// The tets of a cage without flat ones.
 /// quadratic       see `quadraticTets`
 /// stiffnessScale  by tet of the cage, above 0; empty: the cage's own
-/// Cost            O(T); O(64 T) where quadratic tets are filled in part
+/// Cost            O(T); O(64 T) for partly filled quadratic tets
 TETSKIN_ELASTIC_API RestTets restTets(const Cage& cage, const std::vector<QuadraticTet>& quadratic = {},
                                       const std::vector<double>& stiffnessScale = {});
 
-/// Finds nodes at rest by the shapes of linear tets, each component from one of its nodes; nodes of no tet are at 0.
-/// Where the shapes do not fit together, `takeRestShapes` finds that out. Cost O(T)
+/// Finds nodes at rest from the shapes of linear tets, each component starting at one of its nodes; nodes of no tet are
+/// at 0. Does not check whether the shapes fit together: `takeRestShapes` does. Cost O(T)
 TETSKIN_ELASTIC_API void findRestNodes(RestTets& linear, std::size_t nodes);
 
-/// Gives linear tets the shapes that their nodes have, in double, where all of them have these shapes already, but for
-/// a share of a tet's size, if one is given. Otherwise, and if the nodes make flat tets, the tets stay as they are,
-/// without nodes, and false is returned. Cost O(T)
+/// Replaces the shapes of linear tets by those of their nodes, in double, if all of them agree already, up to a share
+/// of a tet's size if given. Otherwise, or if the nodes make flat tets, the tets stay as they are, without nodes, and
+/// the result is false. Cost O(T)
 TETSKIN_ELASTIC_API bool takeRestShapes(RestTets& linear, double tolerance = std::numeric_limits<double>::infinity());
 
 }  // namespace tetskin::elastic_detail

@@ -10,11 +10,11 @@
 namespace tetskin::io {
 namespace {
 
-/// Turns two columns of B = A V, and of V, until those of B are orthogonal. Returns false if they are.
+/// Turns two columns of B = A V, and of V, until those of B are orthogonal. Returns false if they already are.
 bool orthogonalise(int p, int q, Eigen::Matrix3d& b, Eigen::Matrix3d& v) {
   const double product = b.col(p).dot(b.col(q));
   const double squaredP = b.col(p).squaredNorm(), squaredQ = b.col(q).squaredNorm();
-  // Cosine: Jacobi's rotations converge quadratically, so that the next one would change nothing.
+  // Cosine: Jacobi's rotations converge quadratically, so the next one would change nothing.
   constexpr double kOrthogonal = 1e-13;
   if (std::abs(product) <= kOrthogonal * std::sqrt(squaredP * squaredQ)) return false;
   const double zeta = (squaredQ - squaredP) / (2.0 * product);
@@ -28,7 +28,6 @@ bool orthogonalise(int p, int q, Eigen::Matrix3d& b, Eigen::Matrix3d& v) {
   return true;
 }
 
-/// A unit vector perpendicular to a unit vector.
 Eigen::Vector3d perpendicular(const Eigen::Vector3d& unit) {
   return unit.unitOrthogonal();
 }

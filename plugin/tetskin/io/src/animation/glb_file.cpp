@@ -15,13 +15,13 @@
 namespace tetskin::io {
 namespace {
 
-/// Arrays of one element type, and where they are: all accessors of a kind share a view.
+/// Arrays of one element type, and their locations: all accessors of a kind share a view.
 class GlbBuffer {
  public:
   explicit GlbBuffer(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
 
-  /// A view that the following accessors are in.
-  /// target  0: not of vertices or indices
+  /// A view that the following accessors belong to.
+  /// target  0: neither vertices nor indices
   void beginView(int target) {
     align();
     tinygltf::BufferView& view = model_.bufferViews.emplace_back();
@@ -109,7 +109,7 @@ void addMaterial(const GlbMaterial& material, int texture, tinygltf::Model& mode
   if (material.textured) made.pbrMetallicRoughness.baseColorTexture.index = texture;
 }
 
-/// 16 bits where the largest vertex fits, below the index that restarts a strip.
+/// Uses 16 bits if the largest vertex fits, below the index that restarts a strip.
 int addIndices(const std::vector<std::uint32_t>& corners, GlbBuffer& buffer) {
   constexpr std::uint32_t kRestart = 0xFFFF;
   if (*std::max_element(corners.begin(), corners.end()) >= kRestart) {
@@ -146,7 +146,7 @@ std::vector<int> asInts(const std::vector<std::size_t>& numbers) {
   return {numbers.begin(), numbers.end()};
 }
 
-/// The values of the first frame, if there are any.
+/// The values of the first frame, if any.
 std::vector<double> firstOf(const std::vector<float>& values, std::size_t arity) {
   return values.empty() ? std::vector<double>()
                         : std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(arity));
@@ -166,7 +166,7 @@ void addNode(const GlbNode& node, tinygltf::Model& model) {
   }
 }
 
-/// All nodes share the times, and all values of one kind a view.
+/// All nodes share the times, and all values of one kind share a view.
 void addAnimation(const GlbScene& scene, tinygltf::Model& model, GlbBuffer& buffer) {
   const auto moves = [](const GlbNode& node) {
     return !node.translations.empty() || !node.rotations.empty() || !node.scales.empty();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a GLB holds, as plain data.
+// The content of a GLB, as plain data.
 #pragma once
 
 #include <tetskin/io/animation.h>
@@ -13,8 +13,8 @@
 
 namespace tetskin::io {
 
-/// A material, with a white texture of one pixel on meshes that have texture coordinates: without a texture, these
-/// would count as unused, and tools would remove them.
+/// A material, with a white one-pixel texture on meshes that have texture coordinates: without a texture, these would
+/// count as unused, and tools would remove them.
 struct GlbMaterial : SurfaceMaterial {
   bool textured = false;
 };
@@ -31,12 +31,12 @@ struct GlbMesh {
   std::vector<float> normals;         ///< 3 per vertex, of unit length; or empty
   std::vector<float> texcoords;       ///< 2 per vertex, the origin at the upper left; or empty
   std::vector<std::uint16_t> joints;  ///< 4 per vertex; empty for a rigid mesh
-  std::vector<float> weights;         ///< 4 per vertex, none below 0, which sum to 1; or empty
+  std::vector<float> weights;         ///< 4 per vertex, none negative, sum 1; or empty
   std::vector<float> inverseBinds;    ///< 16 per joint, by columns; or empty
   std::vector<GlbPart> parts;         ///< at least one, none without triangles
 };
 
-/// A node, and its values in each frame; in the first frame, those of the node itself.
+/// A node, and its values in each frame; those of the first frame are also the node's own.
 struct GlbNode {
   std::string name;
   std::vector<std::size_t> children;
@@ -57,10 +57,10 @@ struct GlbScene {
   std::vector<GlbMaterial> materials;
   std::vector<GlbMesh> meshes;
   std::vector<GlbNode> nodes;
-  std::vector<std::size_t> roots;  ///< nodes that are nobody's child
+  std::vector<std::size_t> roots;  ///< nodes without a parent
   std::vector<GlbSkin> skins;
   std::vector<float> times;                          ///< seconds, by frame
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< what all places are relative to; told in the scene's extras
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< all positions are relative to it; stored in the scene's extras
 };
 
 /// Largest size of a GLB, whose header states it in 32 bits.
@@ -69,7 +69,7 @@ constexpr double kMaxGlbBytes = 4294967295.0;
 /// The bytes of the scene's file, without the text that describes them.
 double binaryBytes(const GlbScene& scene);
 
-/// The file of a scene. Empty if it cannot be made: this build has no tinygltf.
+/// The file of a scene. Empty if this build has no tinygltf.
 std::string glbBytes(const GlbScene& scene);
 
 }  // namespace tetskin::io

@@ -20,10 +20,10 @@ namespace {
 
 using io::GlbNode;
 
-/// About how many bytes the text has that describes one moving property, and one node.
+/// Approximate bytes of the text that describes one moving property, and one node.
 constexpr double kChannelText = 200.0, kNodeText = 110.0;
 
-/// What positions are relative to: the centre of a box that is far from the origin for its size, otherwise the origin.
+/// Reference point of positions: the centre of a box that is far from the origin for its size, otherwise the origin.
 Eigen::Vector3d originFor(const Box3& box) {
   constexpr double kFarOut = 100.0;
   if (box.isEmpty() || box.center().norm() <= kFarOut * box.sizes().maxCoeff()) return Eigen::Vector3d::Zero();
@@ -34,7 +34,7 @@ void appendTranslation(const Eigen::Vector3d& translation, GlbNode& node) {
   for (int k = 0; k < 3; ++k) node.translations.push_back(static_cast<float>(translation[k]));
 }
 
-/// Of the two quaternions of a rotation, the one nearer to the last.
+/// Appends the one of a rotation's two quaternions that is nearer to the last.
 void appendRotation(const Eigen::Matrix3d& rotation, GlbNode& node) {
   Eigen::Vector4d now = Eigen::Quaterniond(rotation).normalized().coeffs();
   if (!node.rotations.empty()) {
@@ -69,12 +69,12 @@ struct GlbWriter::Impl {
     std::unique_ptr<BonePalette<double>> palette;
   };
   struct Body {
-    std::size_t model = 0, firstNode = 0;  ///< the scene's node of its first bone, which has one or two
+    std::size_t model = 0, firstNode = 0;  ///< the scene's node of its first bone; a bone is one node or two
     std::vector<io::AffineBone> bones;     ///< of a quadratic body: those of the last frame
   };
   struct Object {
     std::size_t node = 0;
-    Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< what its positions are relative to
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< reference point of its positions
     bool moves = false;
   };
 
@@ -119,7 +119,7 @@ std::size_t GlbWriter::Impl::materialNumber(const std::string& name, bool textur
   return scene.materials.size() - 1;
 }
 
-/// Players address nodes by their names.
+/// Players address nodes by name, so each name must be unique.
 std::string GlbWriter::Impl::uniqueName(const std::string& wanted) {
   const std::string base = wanted.empty() ? "body" : io::asUtf8(wanted);
   std::string name = base;
@@ -143,7 +143,7 @@ Result<GlbWriter> GlbWriter::create(const std::string& path, double framesPerSec
   if (!(framesPerSecond > 0.0 && std::isfinite(framesPerSecond))) {
     return io::fileError(StatusCode::InvalidOption, path, 0, "the frames per second must be above 0 and finite");
   }
-  // Opened and removed again: a file that cannot be written is better known before a run than after it.
+  // Opened and removed again: it is better to learn before a run than after it that a file cannot be written.
   if (const Result<io::AtomicFile> probe = io::AtomicFile::create(path); !probe.ok()) return probe.status();
   auto impl = std::make_unique<Impl>();
   impl->path = path;
@@ -173,9 +173,10 @@ Result<std::size_t> GlbWriter::addModel(const std::string& name, const Cage& cag
   model.nodeCount = cage.mesh.nodeCount();
   model.bones = io::bonesOf(embedding);
   if (model.bones.size() > SkinnedMesh::kMaxBones) {
-    return io::fileError(StatusCode::TooLarge, impl_->path, 0,
-                         "cannot hold " + name + ", as " + std::to_string(model.bones.size()) +
-                             " nodes of its cage carry vertices, and 65536 bones are the most; use a coarser cage");
+    return io::fileError(
+        StatusCode::TooLarge, impl_->path, 0,
+        "cannot hold " + name + ", as " + std::to_string(model.bones.size()) +
+            " nodes of its cage carry vertices, but at most 65536 bones are possible; use a coarser cage");
   }
   if (interpolation == Interpolation::Quadratic) {
     auto palette = BonePalette<double>::create(binding.value());
@@ -255,7 +256,7 @@ double GlbWriter::bytesFor(int frames) const {
   return impl_ ? impl_->bytesFor(frames) : 0.0;
 }
 
-/// Decides what positions are relative to.
+/// Chooses the reference points of positions.
 void GlbWriter::Impl::begin(const std::vector<PointView<const double>>& nodes) {
   Box3 box;
   for (const PointView<const double>& body : nodes) box.extend(boundingBox(body));

@@ -12,7 +12,7 @@
 namespace tetskin {
 namespace {
 
-/// Where the header states the number of frames: after the name, the version, the number of vertices, the first frame
+/// Position of the number of frames in the header: after the name, the version, the number of vertices, the first frame
 /// and the step.
 constexpr long kFrameCountOffset = 28;
 
@@ -37,13 +37,13 @@ Pc2Writer& Pc2Writer::operator=(Pc2Writer&& other) noexcept = default;
 
 Result<Pc2Writer> Pc2Writer::create(const std::string& path, std::size_t vertexCount, float first, float step) {
   if (vertexCount > Limits::kMaxVertices) {
-    return io::fileError(StatusCode::TooLarge, path, 0, "cannot hold so many vertices: 2147483647 are the most");
+    return io::fileError(StatusCode::TooLarge, path, 0, "cannot hold so many vertices: at most 2147483647");
   }
   Result<io::AtomicFile> file = io::AtomicFile::create(path);
   if (!file.ok()) return file.status();
   if (!file.value().replaceable()) {
     return io::fileError(StatusCode::FileNotWritable, path, 0,
-                         "is no regular file, which a point cache must be; give the path of a file");
+                         "is not a regular file, as a point cache must be; give the path of a file");
   }
   auto impl = std::make_unique<Impl>();
   impl->path = path;

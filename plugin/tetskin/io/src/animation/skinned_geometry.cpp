@@ -10,8 +10,8 @@
 namespace tetskin::io {
 namespace {
 
-/// Four bones, none of them twice, and weights as a GLB has them: none below 0, a sum of 1, and bone 0 where the weight
-/// is 0.
+/// Four bones, none of them twice, and weights in GLB form: none negative, a sum of 1, and bone 0 where the weight is
+/// 0.
 struct VertexBones {
   std::array<std::size_t, 4> nodes{};
   std::array<float, 4> weights{};
@@ -24,7 +24,7 @@ VertexBones bonesAt(const Embedding& embedding, std::size_t vertex) {
   double sum = 0.0;
   for (std::size_t k = 0; k < 4; ++k) sum += clamped[k] = std::max(0.0, point.clampedWeights[k]);
   assert(sum > 0.0);
-  float rest = 1.0f;  // the largest weight makes the sum 1 in float
+  float rest = 1.0f;  // the largest weight makes the sum exactly 1 in float
   const auto largest = static_cast<std::size_t>(std::max_element(clamped.begin(), clamped.end()) - clamped.begin());
   for (std::size_t k = 0; k < 4; ++k) {
     bones.nodes[k] = static_cast<std::size_t>(point.nodes[k]);
@@ -35,10 +35,11 @@ VertexBones bonesAt(const Embedding& embedding, std::size_t vertex) {
   return bones;
 }
 
-/// The number of bytes that follow the first one of a character, and the range of the second; 4 if it begins none.
+/// The number of bytes that follow the first byte of a character, and the range of the second; 4 if it is not a first
+/// byte.
 std::size_t bytesAfter(unsigned char first, unsigned char& least, unsigned char& most) {
-  least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;  // neither longer than needed
-  most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;   // nor a surrogate, nor beyond Unicode
+  least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;  // no longer than needed
+  most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;   // not a surrogate, nor beyond Unicode
   if (first < 0x80) return 0;
   if (first < 0xC2 || first > 0xF4) return 4;
   return first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
@@ -90,7 +91,7 @@ std::vector<float> normalsOf(const TriangleMesh& mesh) {
   return numbers;
 }
 
-/// The point of the tet at the weights, at rest.
+/// The point of the tet at these weights, at rest.
 Eigen::Vector3d restPoint(const Cage& cage, const VertexBones& bones) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double total = 0.0;
@@ -139,8 +140,8 @@ GlbMesh skinnedGeometry(const std::string& name, const Cage& cage, const Triangl
       made.weights.push_back(vertex.weights[k]);
     }
     Eigen::Vector3d position = mesh.positions[v];
-    // Half of the distance to the tet comes from the nodes' positions, and is 0; their gradients' halves take twice as
-    // much, so that the gradient itself continues the surface.
+    // Half of the distance to the tet would come from the nodes' positions, and is 0; so the half from their gradients
+    // gets twice the distance, and the gradient itself continues the surface.
     if (quadratic && !embedding.at(v).inside) position += position - restPoint(cage, vertex);
     appendVector(position - origin, made.positions);
   }

@@ -11,13 +11,13 @@ namespace tetskin::io {
 /// The number of a material, by its name, and whether the mesh has texture coordinates.
 using MaterialNumber = std::function<std::size_t(const std::string& name, bool textured)>;
 
-/// A mesh as a GLB has it: triangles by material, without those that name a vertex twice.
+/// A mesh in GLB form: triangles by material, without those that name a vertex twice.
 /// origin  subtracted from every position
 GlbMesh rigidGeometry(const std::string& name, const TriangleMesh& mesh, const Eigen::Vector3d& origin,
                       const MaterialNumber& materialNumber);
 
 /// The same with the four bones of each vertex. `bones` are the nodes of the cage that carry vertices, ascending: a
-/// vertex names their positions in this list.
+/// vertex refers to them by their index in this list.
 GlbMesh skinnedGeometry(const std::string& name, const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding,
                         Interpolation interpolation, const std::vector<std::size_t>& bones,
                         const Eigen::Vector3d& origin, const MaterialNumber& materialNumber);
@@ -25,7 +25,7 @@ GlbMesh skinnedGeometry(const std::string& name, const Cage& cage, const Triangl
 /// The nodes that have a weight in some vertex, ascending.
 std::vector<std::size_t> bonesOf(const Embedding& embedding);
 
-/// A name as UTF-8, as glTF demands: if it is not, each byte that is not ASCII becomes a question mark.
+/// A name as UTF-8, which glTF requires: if it is not valid, each byte that is not ASCII becomes a question mark.
 std::string asUtf8(std::string name);
 
 }  // namespace tetskin::io

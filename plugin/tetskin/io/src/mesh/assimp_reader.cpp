@@ -60,7 +60,7 @@ bool isSurface(const aiFace& face) {
   return face.mNumIndices >= 3;
 }
 
-/// The flags of assimp are wrong for damaged files, so that the faces are tested.
+/// Assimp's flags are wrong for damaged files, so the faces are tested.
 bool hasSurface(const aiMesh& mesh) {
   return std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces, isSurface);
 }
@@ -104,7 +104,7 @@ std::vector<Instance> instances(const aiScene& scene) {
   return result;
 }
 
-/// vertices  by vertex of the mesh, its number in the part, -1 for none
+/// vertices  by vertex of the mesh: its number in the part, or -1
 void appendTriangles(const Instance& instance, const std::vector<int>& vertices, ScenePart& part) {
   assert(vertices.size() == instance.mesh->mNumVertices);
   const bool mirrored = instance.toScene.linear().determinant() < 0.0;
@@ -175,7 +175,7 @@ Result<TriangleMesh> importFile(const std::string& path) {
   Assimp::Importer importer;
   Status status = checkPath(path, importer);
   if (!status.ok()) return status;
-  // A file that contains only bones would otherwise appear as a mesh of its bones.
+  // Otherwise a file that contains only bones would appear as a mesh of its bones.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // None of assimp's post-processing is used: it trusts the scene, and aborts on damaged ones.
   const aiScene* scene = importer.ReadFile(path, 0);

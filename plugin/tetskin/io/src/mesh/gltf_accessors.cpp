@@ -41,7 +41,7 @@ NumberType numberType(int component) {
   }
 }
 
-/// The largest number of a type of integers, by which normalised ones are divided; 1 for other types.
+/// The largest value of an integer type, by which normalised numbers are divided; 1 for other types.
 double largestOf(const NumberType& type) {
   return type.real ? 1.0 : std::ldexp(1.0, static_cast<int>(8 * type.bytes) - (type.sign ? 1 : 0)) - 1.0;
 }
@@ -132,7 +132,7 @@ Status GltfAccessors::readElements(const Elements& elements, Take&& take) {
   return {};
 }
 
-/// Replaces some of the elements, as the accessor's indices and values say.
+/// Replaces some of the elements, as given by the accessor's indices and values.
 Status GltfAccessors::addSparse(const tinygltf::Accessor& accessor, std::uint64_t arity, std::vector<double>& numbers) {
   const auto& sparse = accessor.sparse;
   if (sparse.count < 0 || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
@@ -174,7 +174,7 @@ Status GltfAccessors::read(int accessor, int arity, std::vector<double>& numbers
     status = readElements({stated.bufferView, stated.byteOffset, stated.componentType, width, stated.count, false},
                           [&](std::uint64_t, std::uint64_t, double number) { numbers.push_back(number); });
   } else {
-    // A file can ask for any number of zeros: no more are made than a sound model may have.
+    // A file can request any number of zeros: no more are created than a reasonable model may have.
     constexpr std::uint64_t kMaxZeros = std::uint64_t(1) << 24;
     if (stated.count > kMaxZeros) {
       return error(StatusCode::Malformed, "states " + std::to_string(stated.count) + " elements without data");

@@ -14,17 +14,17 @@
 
 namespace tetskin::io {
 
-/// The numbers that a glTF document describes. All that it states is compared with the bytes that there are. Buffers
+/// The numbers that a glTF document describes. Everything that it states is checked against the actual bytes. Buffers
 /// are read when a number in them is first needed. The path, the model and the chunk must outlive it.
 class GltfAccessors {
  public:
-  /// model  parsed of what `keepShape` left: its extras are the document's buffers
+  /// model  parsed from the result of `keepShape`: its extras are the document's buffers
   GltfAccessors(const std::string& path, const tinygltf::Model& model, const std::optional<std::string>& binaryChunk)
       : path_(path), model_(model), binaryChunk_(binaryChunk) {}
 
-  /// Reads the numbers of an accessor, integers of normalised ones as fractions of their largest.
+  /// Reads the numbers of an accessor; normalised integers become fractions of their largest value.
   /// arity   numbers per element: 1, 2 or 3
-  /// Errors  Malformed, IndexOutOfRange; FileNotFound and UnsupportedFormat of a buffer
+  /// Errors  Malformed, IndexOutOfRange; FileNotFound and UnsupportedFormat for a buffer
   Status read(int accessor, int arity, std::vector<double>& numbers);
 
   Status error(StatusCode code, const std::string& what) const;
@@ -38,7 +38,7 @@ class GltfAccessors {
     std::uint64_t offset = 0;  ///< in the view
     int component = 0;         ///< its type, as glTF names it
     std::uint64_t arity = 1, count = 0;
-    bool packed = false;  ///< whatever the view's stride is
+    bool packed = false;  ///< ignores the view's stride
   };
   template <class Take>
   Status readElements(const Elements& elements, Take&& take);

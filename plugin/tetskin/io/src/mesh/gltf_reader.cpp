@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The meshes of a glTF 2.0 scene. tinygltf parses the text; buffers are read here, so that it opens no file, decodes no
-// image, and need not match what a document states with what there is.
+// The meshes of a glTF 2.0 scene. tinygltf only parses the text. Buffers are read here, so tinygltf opens no file,
+// decodes no image, and need not check what a document states against its actual content.
 //
 // This work is based on:
 //   "glTF 2.0 Specification", Khronos Group, 2021
@@ -28,7 +28,7 @@ namespace tetskin::io {
 
 namespace {
 
-/// Extensions of the looks: the shape is complete without them.
+/// Extensions about looks: the shape is complete without them.
 constexpr std::array<std::string_view, 9> kLooks = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                     "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
                                                     "KHR_xmp",        "AGI_",         "KHR_technique"};
@@ -45,7 +45,7 @@ class GltfReader {
   Result<TriangleMesh> read();
 
  private:
-  /// The accessors of a primitive's vertices, -1 for none; primitives that have them all in common share vertices.
+  /// The accessors of a primitive's vertices, -1 for none; primitives with the same accessors share vertices.
   using Vertices = std::array<int, 3>;
   struct Visit {
     int node = 0;
@@ -68,7 +68,8 @@ class GltfReader {
   std::vector<ScenePart> parts_;
 };
 
-/// The nodes of the scene that is shown: the first one by default, and all that are no child without any scene.
+/// The root nodes of the displayed scene, which is the first one by default; without any scene, all nodes that are not
+/// children.
 std::vector<int> GltfReader::roots() const {
   const std::size_t shown = static_cast<std::size_t>(std::max(model_.defaultScene, 0));
   if (shown < model_.scenes.size()) return model_.scenes[shown].nodes;
@@ -124,7 +125,7 @@ Status GltfReader::placeOf(int n, Eigen::Affine3d& place) const {
   };
   if (!is(node.matrix, 16) || !is(node.translation, 3) || !is(node.rotation, 4) || !is(node.scale, 3)) {
     return accessors_.error(StatusCode::Malformed,
-                            "has a wrong number of numbers in the place of node " + std::to_string(n));
+                            "has the wrong number of values in the transform of node " + std::to_string(n));
   }
   place.setIdentity();
   if (!node.matrix.empty()) {
@@ -170,7 +171,7 @@ Status GltfReader::addMesh(int m, const std::string& nodeName, bool skinned, con
     // Integers of a skinned mesh are scaled by its bones, which are left out.
     if (skinned && accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
       return fileError(StatusCode::UnsupportedFormat, path_, 0,
-                       "has a mesh with bones and quantised positions, which its bones alone scale; save it without "
+                       "has a mesh with bones and quantised positions, which only its bones scale; save it without "
                        "quantisation (gltfpack: with -noq)");
     }
     ScenePart& part = parts_[at->second];
@@ -213,7 +214,7 @@ Status GltfReader::addVertices(const Vertices& vertices, const Eigen::Affine3d& 
   Status status = accessors_.read(vertices[2], 2, numbers);
   if (status.ok()) status = differs(2);
   if (!status.ok()) return status;
-  for (std::size_t v = 0; v < count; ++v) {  // theirs begin at the upper left
+  for (std::size_t v = 0; v < count; ++v) {  // glTF's begin at the upper left
     const Eigen::Vector2d texcoord(numbers[2 * v], 1.0 - numbers[2 * v + 1]);
     part.texcoords.push_back(texcoord.allFinite() ? Eigen::Vector2f(texcoord.cast<float>()) : Eigen::Vector2f(0, 0));
   }
@@ -261,7 +262,8 @@ Result<TriangleMesh> parse(const std::string& path) {
   }
   if (Status status = keepShape(path, text); !status.ok()) return status;
   if (text.firstVersion) {
-    return fileError(StatusCode::UnsupportedFormat, path, 0, "is of glTF 1.0, which is not read; save it as glTF 2.0");
+    return fileError(StatusCode::UnsupportedFormat, path, 0,
+                     "is glTF 1.0, which is not supported; save it as glTF 2.0");
   }
   tinygltf::Model model;
   tinygltf::TinyGLTF parser;

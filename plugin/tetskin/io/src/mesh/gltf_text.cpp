@@ -15,11 +15,11 @@ namespace tetskin::io {
 
 namespace {
 
-/// Of the file, and of each of its chunks: glTF 2.0 specification, 4.4.
+/// Header sizes of the file and of its chunks: glTF 2.0 specification, 4.4.
 constexpr std::size_t kGlbHeaderBytes = 12, kChunkHeaderBytes = 8;
 /// The types of chunks: "JSON" and "BIN" in ASCII.
 constexpr std::uint64_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-/// A document is 8 deep, without extras and extensions.
+/// A document is 8 levels deep, without extras and extensions.
 constexpr int kMaxDepth = 100;
 constexpr std::array<std::string_view, 10> kShape = {
     "asset",  "extensionsUsed", "extensionsRequired", "bufferViews", "accessors", "meshes", "nodes",
@@ -30,7 +30,7 @@ std::uint64_t wordAt(const std::string& bytes, std::size_t at) {
   return bitsAt(&bytes[at], 4, ByteOrder::Little);
 }
 
-/// The index of the quote that ends a string; the text's size if none does.
+/// The index of the quote that ends a string, or the text's size.
 std::size_t stringEnd(std::string_view json, std::size_t begin) {
   assert(json[begin] == '"');
   for (std::size_t i = begin + 1; i < json.size(); ++i) {
@@ -61,9 +61,8 @@ Result<GltfText> splitGltf(const std::string& path, std::string bytes) {
   if (bytes.compare(0, 4, "glTF") != 0) {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n", bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0);
     if (first == std::string::npos || bytes[first] != '{') {
-      return fileError(
-          StatusCode::Malformed, path, 0,
-          "is no glTF 2.0, which begins with 'glTF', as a GLB, or with '{', as text; export the model again");
+      return fileError(StatusCode::Malformed, path, 0,
+                       "is not glTF 2.0, which begins with 'glTF' (GLB) or with '{' (text); export the model again");
     }
     text.json = std::move(bytes);
     return text;

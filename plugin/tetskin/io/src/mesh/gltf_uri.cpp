@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// 0 to 15; -1 for what is no such digit.
+/// 0 to 15; -1 for any other character.
 int hexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -35,7 +35,7 @@ std::string percentDecoded(std::string_view text) {
   return decoded;
 }
 
-/// False if a character is no digit of base 64.
+/// False if a character is not a base64 digit.
 bool base64Decoded(std::string_view text, std::string& bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::uint32_t bits = 0;

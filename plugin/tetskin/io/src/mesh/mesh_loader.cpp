@@ -53,10 +53,10 @@ Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report) {
   if (extension == ".off") return io::readOff(path);
   if (extension == ".stl") return io::readStl(path);
   if (extension == ".gltf" || extension == ".glb" || extension == ".vrm") return io::readGltfIfPossible(path);
-  if (extension == ".3mf") {  // of a package with images, assimp 5.2.5 frees some twice
+  if (extension == ".3mf") {  // assimp 5.2.5 frees some images of a package twice
     if (const Result<std::string> bytes = io::readFile(path); !bytes.ok()) return bytes.status();
     return io::fileError(StatusCode::UnsupportedFormat, path, 0,
-                         "packages of 3MF are not read; save the model as STL or PLY");
+                         "3MF packages are not supported; save the model as STL or PLY");
   }
   return io::readWithAssimp(path);
 }

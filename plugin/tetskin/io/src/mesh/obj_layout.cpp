@@ -26,7 +26,7 @@ std::string_view withoutNormal(std::string_view corner) {
   return corner.substr(0, end == first + 1 ? first : end);
 }
 
-/// A corner without a normal, with the normal of its vertex's number: "1/2" is "1/2/1", "1" is "1//1".
+/// A corner without a normal, with its vertex's number as normal: "1/2" is "1/2/1", "1" is "1//1".
 void appendWithNormal(std::string_view corner, std::string& text) {
   const std::size_t slash = corner.find('/');
   text += corner;
@@ -118,7 +118,7 @@ void ObjLayout::addFace(const io::ObjStatement& statement) {
   text_.append(copied, text.data() + text.size());
 }
 
-/// A name may contain blanks, or there may be several names: every one that exists as a file is taken.
+/// A name may contain blanks, or there may be several names: takes every one that exists as a file.
 void ObjLayout::addLibraries(const io::ObjStatement& statement) {
   const auto offset = [&, start = text_.size()](std::string_view name) {
     return start + static_cast<std::size_t>(name.data() - statement.text.data());
@@ -167,7 +167,7 @@ ObjLayout ObjLayout::create(const TriangleMesh& mesh) {
   return layout;
 }
 
-/// The number of a normal is that of its vertex if counted from the front. It is also that if counted from the back, as
+/// The number of a normal is that of its vertex if counted from the front, and also if counted from the back, because
 /// its line directly follows the vertex's.
 ObjLayout ObjLayout::withNormals() const {
   assert(!hasNormals());
@@ -229,7 +229,7 @@ ObjLayout ObjLayout::forFolder(const std::string& folder) const {
     if (error || path.empty()) continue;
     const std::string name = path.generic_string();
     result.text_.replace(library.offset, library.name.size(), name);
-    const std::size_t grown = name.size() - library.name.size();  // wraps around where it shrinks, and back when added
+    const std::size_t grown = name.size() - library.name.size();  // wraps around if it shrinks, and back when added
     for (std::size_t& gap : result.gaps_) gap += gap > library.offset ? grown : 0;
     for (std::size_t& gap : result.normalGaps_) gap += gap > library.offset ? grown : 0;
   }
@@ -254,7 +254,7 @@ template <class Scalar>
 std::string_view ObjLayout::format(PointView<const Scalar> positions, std::vector<char>& buffer,
                                    PointView<const float> normals) const {
   assert(positions.size() == vertexCount() && normals.size() == normalGaps_.size());
-  // Characters: three numbers, and blanks between them.
+  // Number of characters: three numbers, and blanks between them.
   constexpr std::size_t kPointRoom = 3 * io::kNumberRoom + 2;
   buffer.resize(std::max(buffer.size(), text_.size() + (gaps_.size() + normalGaps_.size()) * kPointRoom));
   char* out = buffer.data();

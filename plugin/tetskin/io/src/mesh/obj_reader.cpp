@@ -19,7 +19,7 @@ namespace {
 
 /// A corner without this index.
 constexpr int kNone = -1;
-constexpr int kMissing = std::numeric_limits<int>::max();  ///< more than there can be
+constexpr int kMissing = std::numeric_limits<int>::max();  ///< larger than any real index
 
 struct Corner {
   int vertex = kNone, texcoord = kNone, normal = kNone;
@@ -40,7 +40,7 @@ void note(MeshFileReport::Faces& faces, std::size_t line) {
   if (faces.count++ == 0) faces.firstLine = line;
 }
 
-/// Collects the statements of one file, with polygons that are not yet triangulated.
+/// Collects the statements of one file, with polygons not yet triangulated.
 class ObjParser {
  public:
   ObjParser(const std::string& path, std::string_view text, MeshFileReport& report)
@@ -187,7 +187,7 @@ Status ObjParser::readCorner(std::string_view word, Corner& corner) {
 }
 
 /// Converts an index of the file, which counts from 1, or backwards from the last one so far, to one that counts from
-/// 0. Whether it is too large is only known at the end of the file, as faces may refer to what comes later.
+/// 0. Whether it is too large is only known at the end of the file, because faces may refer to later lines.
 Status ObjParser::readIndex(std::string_view text, const char* what, std::size_t count, long long& index) {
   long long number = 0;
   if (!parseInteger(text, number)) {
@@ -210,7 +210,7 @@ Status ObjParser::readVertex(std::string_view text, int& vertex) {
   return {};
 }
 
-/// One that cannot exist is kMissing until the end of the file.
+/// An index that cannot exist is kMissing until the end of the file.
 Status ObjParser::readAttribute(std::string_view text, const char* what, std::size_t count, int& attribute) {
   if (text.empty()) return {};
   long long index = 0;

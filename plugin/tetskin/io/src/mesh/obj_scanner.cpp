@@ -41,8 +41,8 @@ std::size_t wordLength(std::string_view text) {
   return length;
 }
 
-/// Length up to the line break that ends the statement. A backslash in a comment does not continue it: it may be the
-/// end of a Windows path.
+/// Length up to the line break that ends the statement. A backslash at the end of a comment does not continue it: it
+/// may end a Windows path.
 std::size_t statementLength(std::string_view text, bool comment) {
   std::size_t end = text.find('\n');
   while (end != text.npos && !comment) {

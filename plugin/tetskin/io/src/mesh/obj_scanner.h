@@ -10,12 +10,12 @@
 
 namespace tetskin::io {
 
-/// One statement of an OBJ file: a line, with the lines that a backslash at its end adds. All views are into the text.
+/// One statement of an OBJ file: a line, continued by a backslash at its end. All views are into the text.
 struct ObjStatement {
   std::string_view text;     ///< everything, from leading blanks to the line break
   std::string_view keyword;  ///< "v", "f", ...; empty for a blank line or a comment
-  std::string_view rest;     ///< number of its first line, from 1
-  std::size_t line = 0;      ///< of its first line, from 1
+  std::string_view rest;     ///< after the keyword
+  std::size_t line = 0;      ///< number of its first line, from 1
 };
 
 /// Splits the text of an OBJ file into statements, which together make up the whole text. The text must outlive it.
@@ -30,13 +30,13 @@ class ObjScanner {
   std::size_t line_ = 1;
 };
 
-/// Splits what follows the keyword (`ObjStatement::rest`) into words, up to a comment.
+/// Splits the part after the keyword (`ObjStatement::rest`) into words, up to a comment.
 class ObjWords {
  public:
   explicit ObjWords(std::string_view rest) : rest_(rest) {}
   /// Empty at the end.
   std::string_view next();
-  /// The rest of the statement as one name, which may contain blanks, without a comment and without blanks around it.
+  /// The rest of the statement as one name, which may contain blanks, without a comment and without surrounding blanks.
   std::string_view name();
 
  private:

@@ -28,7 +28,7 @@ class OffReader {
  private:
   Status readHeader();
   Status readMark(std::string_view mark);
-  /// The next word, of this line or a later one.
+  /// The next word, on this line or a later one.
   std::string_view word();
   template <class Number>
   bool number(Number& value);
@@ -61,8 +61,8 @@ bool OffReader::number(Number& value) {
   }
 }
 
-/// The format's name, behind letters for what vertices have: normals, colours, texture coordinates; other dimensions
-/// are not read. It may touch the first count.
+/// The format's name, after letters for the vertices' data: normals, colours, texture coordinates; other dimensions are
+/// not supported. It may touch the first count.
 Status OffReader::readMark(std::string_view mark) {
   hasNormals_ = mark.find('N') != mark.npos;
   if (mark.find_first_not_of("NCST") == mark.npos) return {};

@@ -59,7 +59,7 @@ Status HeaderReader::readLine(TextScanner& line, bool& ended) {
   if (keyword == "element") return readElement(line);
   if (keyword == "property") return readProperty(line);
   if (ended || keyword.empty() || keyword == "comment" || keyword == "obj_info") return {};
-  if (header_.elements.empty()) return {};  // old versions of Blender tell there who wrote the file
+  if (header_.elements.empty()) return {};  // here old versions of Blender state who wrote the file
   return error(StatusCode::Malformed, "has " + excerpt(keyword) + " in its header; correct the line, or remove it");
 }
 

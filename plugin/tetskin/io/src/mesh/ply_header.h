@@ -39,7 +39,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-/// Reads a header from the front of a file, to the line break that ends it. Errors: UnsupportedFormat, Malformed
+/// Reads a header from the beginning of a file, including its last line break. Errors: UnsupportedFormat, Malformed
 Result<PlyHeader> readPlyHeader(const std::string& path, TextScanner& in);
 
 }  // namespace tetskin::io

@@ -21,10 +21,10 @@ namespace tetskin::io {
 
 namespace {
 
-/// One instance of an element: by property its numbers; one number if it is no list.
+/// One instance of an element: by property its numbers; a single number unless it is a list.
 using Row = std::vector<std::vector<double>>;
 
-/// The columns of the properties of interest; the columns of missing ones are beyond the last.
+/// The columns of the relevant properties; those of missing ones are beyond the last.
 struct Columns {
   std::array<std::size_t, 3> position{}, normal{};
   std::array<std::size_t, 2> texcoord{};
@@ -68,7 +68,7 @@ class PlyReader {
   Status addStrips(std::uint64_t index, const Row& row);
   Status readCorner(std::string_view what, std::uint64_t index, double number, int& vertex) const;
   void addTexcoords(const std::vector<double>& numbers);
-  /// Binary data have no lines that are worth reporting.
+  /// Lines of binary data are not worth reporting.
   Status error(StatusCode code, const std::string& what) const {
     return fileError(code, path_, header_.binary ? 0 : in_.line(), what);
   }
@@ -76,11 +76,11 @@ class PlyReader {
   const std::string& path_;
   TextScanner in_;
   PlyHeader header_;
-  bool byLine_ = false;  ///< a text whose elements each begin a line; what stands behind one is ignored
+  bool byLine_ = false;  ///< a text in which each element begins a line; anything after it on the line is ignored
   Columns columns_;      ///< of the element that is being read
   std::vector<int> polygon_;
-  std::vector<char> hasTexcoord_;  ///< by vertex; used if texture coordinates come from the corners of faces
-  bool texcoordsDiffer_ = false;   ///< corners at one vertex have different ones, or some have none
+  std::vector<char> hasTexcoord_;  ///< by vertex; used if texture coordinates come from faces' corners
+  bool texcoordsDiffer_ = false;   ///< corners at one vertex differ, or some have none
   TriangleMesh mesh_;
 };
 
@@ -105,7 +105,7 @@ Result<TriangleMesh> PlyReader::read() {
   return std::move(mesh_);
 }
 
-/// Whether there are as many lines as elements. Otherwise line breaks mean nothing.
+/// Whether there are as many lines as elements. Otherwise line breaks are ignored.
 bool PlyReader::linesSuffice() const {
   std::uint64_t lines = 0;
   for (TextScanner ahead = in_; ahead.remaining() > 0; ++lines) ahead.restOfLine();
@@ -235,7 +235,7 @@ Status PlyReader::addFace(std::uint64_t index, const Row& row) {
   return {};
 }
 
-/// Gives the vertices of the polygon the texture coordinates of its corners.
+/// Gives the vertices of the polygon its corners' texture coordinates.
 void PlyReader::addTexcoords(const std::vector<double>& numbers) {
   texcoordsDiffer_ = texcoordsDiffer_ || numbers.size() != 2 * polygon_.size();
   if (texcoordsDiffer_) return;
@@ -270,7 +270,7 @@ Status PlyReader::addStrips(std::uint64_t index, const Row& row) {
   return {};
 }
 
-/// Converts the line ends of old Macs, single carriage returns, to line feeds, as far as the file is text.
+/// Converts the line ends of old Macs, single carriage returns, to line feeds, in the text part of the file.
 void endLines(std::string& text) {
   if (text.substr(0, 4) != "ply\r" || text.substr(4, 1) == "\n") return;
   const std::size_t header = std::min(text.find("end_header\r"), text.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What readers of scenes, glTF and assimp's formats, share: meshes that nodes place, joined into one.
+// The common part of readers of scenes, glTF and assimp's formats: joins meshes placed by nodes into one.
 #pragma once
 
 #include <tetskin/core/mesh.h>
@@ -12,17 +12,17 @@
 
 namespace tetskin::io {
 
-/// One mesh as a node shows it, in the scene's space.
+/// One mesh as placed by a node, in the scene's space.
 struct ScenePart {
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3f> normals;    ///< by vertex, of unit length or 0; or empty
   std::vector<Eigen::Vector2f> texcoords;  ///< by vertex; or empty
   std::vector<std::array<int, 3>> triangles;
-  std::vector<TriangleGroup> groups;  ///< they cover the triangles in order
+  std::vector<TriangleGroup> groups;  ///< cover the triangles in order
 };
 
-/// Matrix of cofactors times the sign of the determinant: a positive multiple of the inverse transpose, which normals
-/// need, that exists for flattening transforms as well.
+/// Matrix of cofactors times the sign of the determinant: a positive multiple of the inverse transpose, as normals
+/// need, which also exists for flattening transforms.
 Eigen::Matrix3d normalMatrix(const Eigen::Matrix3d& m);
 
 /// Joins parts into one mesh, as `loadMesh` describes: if only some have texture coordinates, the others get 0; if only

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kStlText = 80, kStlHeader = kStlText + 4, kStlTriangle = 50, kStlNormal = 12;
 constexpr NumberType kStlCount{4, false, false}, kStlReal{4, true};
 
-/// True for a binary file: of exactly the size that it states, or with a zero among its first 84 bytes, or without
-/// "solid" at its beginning. Some binary files begin with that, too, but a text has no zeros.
+/// True for a binary file: of exactly the size that it states, or with a zero among its first 84 bytes, or not
+/// beginning with "solid". Some binary files begin with that, too, but a text has no zeros.
 bool isBinaryStl(const std::string& bytes, std::size_t triangles) {
   if (bytes.size() < kStlHeader) return false;
   if (bytes.size() == kStlHeader + triangles * kStlTriangle) return true;
@@ -56,7 +56,7 @@ Result<TriangleMesh> readBinaryStl(const std::string& path, const std::string& b
   return mesh;
 }
 
-/// Of text, only the lines of vertices tell of the shape.
+/// In a text file, only the lines of vertices describe the shape.
 Result<TriangleMesh> readStlText(const std::string& path, const std::string& text) {
   TriangleMesh mesh;
   TextRecords records(text);

@@ -13,7 +13,6 @@ namespace tetskin::io {
 
 namespace {
 
-/// An edge that is halved.
 struct HalvedEdge {
   std::array<int, 2> ends;  ///< ascending
   int middle;
@@ -105,7 +104,7 @@ Status Cutter::collectEdges() {
   return malformed(edge->line, "a node is in the middle of two edges; is the order of the nodes right? Save it again");
 }
 
-/// Leaves each edge once.
+/// Keeps each edge once.
 Status Cutter::uniteEdges() {
   std::stable_sort(edges_.begin(), edges_.end(), hasLowerEnds);
   std::vector<HalvedEdge> unique;
@@ -182,7 +181,7 @@ void Cutter::cutTets() {
   repeat(cage.volumeFraction, from);
   repeat(cage.stiffnessFactor, from);
   repeat(cage.component, from);
-  // What is known of duplicates, and of parts of tets, is not known of the parts.
+  // Data about duplicates, and about parts of tets, does not apply to the parts.
   cage.vertexTets.clear();
   cage.sourceTet.clear();
   cage.fineVolumeFraction.clear();

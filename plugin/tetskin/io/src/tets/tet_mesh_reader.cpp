@@ -46,7 +46,7 @@ std::string TetFileReport::describe() const {
   const auto add = [&](std::size_t count, const std::string& what) {
     if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + what;
   };
-  add(skippedCells, " cells that are no tets were skipped");
+  add(skippedCells, " cells that are not tets were skipped");
   add(quadraticTets, " tets of second order became quadratic tets, each of eight tets");
   char distance[32];
   std::snprintf(distance, sizeof distance, "%.3g", farthestMove);

@@ -72,7 +72,7 @@ Status readNodes(const std::string& path, std::string_view text, std::vector<Eig
 Status readTet(const std::string& path, TextScanner& record, std::uint64_t t, std::size_t nodeCount, std::int64_t base,
                Tet& nodes) {
   assert(base == 0 || base == 1);
-  record.word();  // its index, which nothing refers to
+  record.word();  // its index, which is not used
   for (std::size_t i = 0; i < 4; ++i) {
     std::int64_t node = 0;
     if (!record.integer(node)) {
@@ -119,7 +119,7 @@ Status readTets(const std::string& path, std::string_view text, std::int64_t bas
   return {};
 }
 
-/// The path of the file of the same name with another extension, which may also be in capitals.
+/// The path of the file with the same name and another extension, which may also be in capitals.
 std::string sibling(const std::string& path, const char* extension, const char* capitals) {
   std::filesystem::path result = path;
   std::error_code ignored;

@@ -15,10 +15,10 @@ namespace {
 /// A kind of data other than SCALARS: a keyword, a name, possibly the number of components, possibly a type.
 struct Attribute {
   const char* keyword;
-  std::uint64_t components;  ///< 0: the file states it
-  bool typed;                ///< otherwise the values are bytes in binary files, numbers in text
+  std::uint64_t components;  ///< 0: stated in the file
+  bool typed;                ///< states a type; otherwise the values are bytes in binary files, numbers in text
 };
-/// What the format calls data with a meaning: the word, the numbers per element, and whether a type is stated.
+/// The format's kinds of data: the keyword, the numbers per element, and whether a type is stated.
 constexpr std::array<Attribute, 10> kAttributes = {{{"vectors", 3, true},
                                                     {"normals", 3, true},
                                                     {"tensors", 9, true},
@@ -38,7 +38,7 @@ const Attribute* attributeNamed(const std::string& keyword) {
   return nullptr;
 }
 
-/// Removes the values of cells that are no tets.
+/// Removes the values of cells that are not tets.
 template <class Value>
 void keepValues(std::vector<Value>& values, const std::vector<bool>& isTet) {
   if (values.empty()) return;

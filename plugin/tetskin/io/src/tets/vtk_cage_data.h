@@ -22,8 +22,8 @@
 
 namespace tetskin::io {
 
-/// Reads these arrays into a cage, whether they are SCALARS or in a FIELD of their owner, as programs that save the
-/// file again exchange the two. All other arrays are skipped.
+/// Reads these arrays into a cage, whether they are SCALARS or in a FIELD of their owner, because programs that save
+/// the file again may exchange the two. All other arrays are skipped.
 class VtkCageData {
  public:
   VtkCageData(VtkText& file, Cage& cage) : file_(file), cage_(cage) {}
@@ -32,7 +32,7 @@ class VtkCageData {
   Status readField();
   /// Reads everything from the first CELL_DATA or POINT_DATA on, whose keyword has been read.
   Status readSections(std::string keyword, std::size_t cells, std::size_t nodes);
-  /// Removes values of cells that are no tets.
+  /// Removes values of cells that are not tets.
   /// isTet  by cell
   void keepTets(const std::vector<bool>& isTet);
 

@@ -56,7 +56,7 @@ class VtkReader {
   Status errorAt(std::size_t line, StatusCode code, const std::string& what) const {
     return fileError(code, file_.path(), line, what);
   }
-  /// Binary data have no lines that are worth reporting.
+  /// Lines of binary data are not worth reporting.
   std::size_t lineOf(std::size_t entry) const { return entry < entryLines_.size() ? entryLines_[entry] : 0; }
 
   VtkText file_;
@@ -82,7 +82,7 @@ Result<FileCage> VtkReader::read() {
   return std::move(result_);
 }
 
-/// Reads up to the data of points and cells, and reads these as well if the cage's data are wanted.
+/// Reads up to the data of points and cells, and also these if the cage's data is wanted.
 Status VtkReader::readSections() {
   std::string keyword = file_.word();
   Status status;
@@ -195,7 +195,7 @@ Status VtkReader::readCells() {
 }
 
 /// Reads the form up to version 4: every cell is the number of its nodes and their indices. The total of these numbers
-/// determines where binary data end. In text it is not needed, and some of Bullet's own files state it incorrectly.
+/// determines where binary data ends. In text it is not needed, and some of Bullet's own files state it incorrectly.
 Status VtkReader::readCountedCells(std::uint64_t cellCount, std::uint64_t size) {
   assert(cellFirst_.empty() && entries_.empty());
   std::vector<std::int64_t> numbers;
@@ -306,8 +306,8 @@ Status VtkReader::addTet(std::size_t cell) {
   return {};
 }
 
-/// Tets of first order have 4 nodes, of second 10; those of Lagrange and Bezier have either, or more, and are refused
-/// then.
+/// Tets of first order have 4 nodes, those of second order 10; Lagrange and Bezier tets have either number, or more,
+/// and are then refused.
 Status VtkReader::checkSize(std::size_t cell) const {
   const std::size_t size = cellSize_[cell];
   const bool secondOrder = isHighOrderTet(cell);

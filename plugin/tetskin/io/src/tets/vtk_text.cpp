@@ -51,7 +51,7 @@ Status VtkText::checkSize(const VtkArray& array) const {
   return error(StatusCode::Malformed, "states an array larger than the file; is it complete? Save it again");
 }
 
-/// A string in binary is its length, in 1, 2, 4 or 8 bytes by the two bits on top, and its bytes.
+/// A binary string is its length, in 1, 2, 4 or 8 bytes depending on the two top bits, and its bytes.
 Status VtkText::skipStrings(std::uint64_t count) {
   for (std::uint64_t i = 0; i < count; ++i) {
     if (in_.remaining() == 0) return notANumber();
@@ -73,7 +73,7 @@ Status VtkText::skip(const VtkArray& array) {
     if (status.ok()) in_.bytes(static_cast<std::size_t>(array.count()) * vtkNumberType(array.type).bytes);
     return status;
   }
-  // A string is on a line of its own, with its blanks encoded, and may be empty.
+  // A string has its own line, with its blanks encoded, and may be empty.
   for (std::uint64_t i = 0; i < array.count(); ++i) array.type == "string" ? in_.restOfLine() : in_.word();
   return {};
 }

@@ -39,22 +39,22 @@ class VtkText {
   /// The next word, unchanged or in lower case; empty at the end of the file.
   std::string_view name() { return in_.word(); }
   std::string word() { return lower(in_.word()); }
-  /// The word after that, which stays unread.
+  /// Looks ahead at the next word, without reading it.
   std::string wordAhead() const { return lower(TextScanner(in_).word()); }
   std::string_view restOfLine() { return in_.restOfLine(); }
-  /// The next word of a text as an integer; false if it is not one.
+  /// The next word as an integer; false if it is not one.
   bool integer(std::int64_t& value) { return in_.integer(value); }
-  /// Binary data begin on the next line; text may continue on the same one.
+  /// Binary data begins on the next line; text may continue on the same one.
   void endHeader() {
     if (binary_) in_.restOfLine();
   }
 
-  /// How much memory may be reserved for a number of values, each of which takes at least a byte of the file.
+  /// How many values memory may be reserved for: each takes at least a byte of the file.
   std::size_t room(std::uint64_t count) const { return std::min<std::uint64_t>(count, in_.remaining()); }
 
   Status readCount(const char* what, std::uint64_t& count);
 
-  /// Passes the next `count` numbers of a type one after the other to take(number), which returns a Status.
+  /// Passes the next `count` numbers of a type, one after the other, to take(number), which returns a Status.
   template <class Number, class Take>
   Status readNumbers(std::uint64_t count, const std::string& type, Take&& take);
 

@@ -13,8 +13,8 @@ namespace tetskin::io {
 
 /// A file that is written in pieces, under the name `path.part` until it is complete, so that a file called `path` is
 /// always complete: an interrupted run leaves the earlier one, or none, and perhaps a `.part`. It writes through
-/// symbolic links, and directly to anything that is no regular file (/dev/stdout). It does not wait for the disk, so
-/// that a power failure may lose the file. Can be moved, not copied; without `finish`, it removes the `.part`.
+/// symbolic links, and directly to anything that is not a regular file (/dev/stdout). It does not wait for the disk, so
+/// a power failure may lose the file. Can be moved, not copied; without `finish`, it removes the `.part`.
 class AtomicFile {
  public:
   AtomicFile() = default;
@@ -32,7 +32,7 @@ class AtomicFile {
   /// Closes the file, and gives it its name. Errors as for `append`.
   Status finish();
 
-  /// False for what is no regular file: written directly, from its beginning to its end.
+  /// False for anything but a regular file, which is written directly, from beginning to end.
   bool replaceable() const { return part_ != target_; }
 
  private:
@@ -44,8 +44,8 @@ class AtomicFile {
   void discard();
 
   std::string path_;    ///< as given, for messages
-  std::string target_;  ///< where links lead
-  std::string part_;    ///< what is written: the target itself if it is no regular file
+  std::string target_;  ///< after following links
+  std::string part_;    ///< the file that is written: the target itself if it is not a regular file
   std::unique_ptr<std::FILE, Close> file_;
 };
 

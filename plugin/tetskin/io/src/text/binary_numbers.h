@@ -64,7 +64,6 @@ inline std::int64_t decodeInteger(const char* data, const NumberType& type, Byte
   return static_cast<std::int64_t>(bits << unused) >> unused;
 }
 
-/// Decodes a number of any type.
 inline double decodeNumber(const char* data, const NumberType& type, ByteOrder order = ByteOrder::Big) {
   assert(!type.real || type.bytes == sizeof(float) || type.bytes == sizeof(double));
   if (!type.real) return static_cast<double>(decodeInteger(data, type, order));

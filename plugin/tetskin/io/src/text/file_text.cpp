@@ -33,7 +33,7 @@ Result<std::string> readFile(const std::string& path) {
   std::string bytes;
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   if (!ignored) bytes.reserve(static_cast<std::size_t>(size) + 1);
-  // Bytes that are read at a time.
+  // Number of bytes to read at a time.
   constexpr std::size_t kChunk = std::size_t(1) << 20;
   for (std::size_t got = kChunk; got == kChunk;) {
     const std::size_t before = bytes.size();

@@ -23,7 +23,7 @@ std::string withLineFeeds(std::string text);
 /// A status whose message begins with the position: "path:line: what", or "path: what" if line is 0.
 Status fileError(StatusCode code, const std::string& path, std::size_t line, const std::string& what);
 
-/// Extension of a path in lower case, with its dot; empty if it has none.
+/// Extension of a path in lower case, with its dot; or empty.
 std::string lowerExtension(const std::string& path);
 
 /// A piece of a file for use in a message: in quotes, without control characters, cut after `most` characters.

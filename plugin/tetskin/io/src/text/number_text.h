@@ -10,7 +10,7 @@
 #include <limits>
 #include <string_view>
 #include <system_error>
-#ifndef __cpp_lib_to_chars  // libc++, which has had no such functions of floating-point numbers for long
+#ifndef __cpp_lib_to_chars  // libc++ has long lacked these functions for floating-point numbers
 #include <stdio.h>
 #include <stdlib.h>
 #include <string>
@@ -24,7 +24,7 @@
 
 namespace tetskin::io {
 
-/// Reads a token that is one whole number and nothing else, with an optional sign; false if it is not, or does not fit.
+/// Reads a token that is exactly one integer, with an optional sign; false if it is not, or does not fit.
 template <class Integer>
 bool parseInteger(std::string_view token, Integer& value) {
   const char* first = token.data();
@@ -34,7 +34,7 @@ bool parseInteger(std::string_view token, Integer& value) {
   return error == std::errc() && end == last;
 }
 
-/// True if a number is 1 or more, false if it is less, decided by its text: it may be far outside the range of double.
+/// True if a number is 1 or more, false if it is less, judged by its text: it may be far outside the range of double.
 inline bool isLarge(std::string_view token) {
   assert(!token.empty());
   const std::size_t mark = std::min(token.find_first_of("eE"), token.size());
@@ -51,14 +51,14 @@ inline bool isLarge(std::string_view token) {
   return token[mark + 1] != '-';  // no text is as long as that exponent
 }
 
-/// Reads a token that is one number and nothing else: decimal or scientific, with an optional sign, also "inf" and
-/// "nan". Correctly rounded, whatever the locale. A number too large for double is infinite, of its sign, and one
-/// too small is 0. Returns false, with `value` unspecified, if the token is not a number.
+/// Reads a token that is exactly one number: decimal or scientific, with an optional sign, also "inf" and "nan".
+/// Correctly rounded, in any locale. A number too large for double becomes infinite, with its sign; one too small
+/// becomes 0. Returns false, with `value` unspecified, if the token is not a number.
 inline bool parseDouble(std::string_view token, double& value) {
 #ifdef __cpp_lib_to_chars
   const char* first = token.data();
   const char* last = first + token.size();
-  // std::from_chars takes no plus sign.
+  // std::from_chars does not accept a plus sign.
   if (token.size() > 1 && *first == '+' && first[1] != '-') ++first;
   const auto [end, error] = std::from_chars(first, last, value);
   if (end != last || error == std::errc::invalid_argument) return false;
@@ -68,7 +68,7 @@ inline bool parseDouble(std::string_view token, double& value) {
   }
   return true;
 #else
-  // strtod reads more than std::from_chars: numbers after blanks, and in hexadecimal.
+  // strtod accepts more than std::from_chars: numbers after blanks, and hexadecimal ones.
   if (token.empty() || token.find_first_of(" \t\n\v\f\rxX") != token.npos || token.find('\0') != token.npos)
     return false;
   static const locale_t kPlain = newlocale(LC_ALL_MASK, "C", nullptr);
@@ -83,7 +83,7 @@ inline bool parseDouble(std::string_view token, double& value) {
 constexpr int kNumberRoom = 25;
 
 #ifndef __cpp_lib_to_chars
-/// With as many digits as it takes, in the plain locale.
+/// With as many digits as necessary, in the plain locale.
 template <class Real>
 char* formatByTrying(char* out, Real value) {
   double same = 0;

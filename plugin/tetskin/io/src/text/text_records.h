@@ -6,12 +6,11 @@
 
 namespace tetskin::io {
 
-/// Iterates over the lines of a text that are neither blank nor a comment, which begins with #. The text must outlive
-/// it.
+/// Iterates over the lines of a text that are neither blank nor a comment (beginning with #). The text must outlive it.
 class TextRecords {
  public:
   explicit TextRecords(std::string_view text) : in_(text) {}
-  /// A scanner of the next line, without its comment. At the end of the file its words are empty.
+  /// A scanner of the next line, without its comment. At the end of the file it finds no words.
   TextScanner next() {
     while (in_.remaining() > 0) {
       const std::size_t line = in_.line();

@@ -54,7 +54,7 @@ class TextScanner {
     return take(count);
   }
 
-  /// True if the rest of the text can contain this many numbers, of at least one digit and one blank each. Call it
+  /// True if the rest of the text can contain this many numbers, with at least one digit and one blank each. Call it
   /// before reserving memory for a count that the file states.
   bool hasRoomFor(std::uint64_t numbers) const { return numbers <= rest_.size() / 2 + 1; }
 

@@ -10,8 +10,8 @@
 namespace tetskin::reduced_detail {
 namespace {
 
-/// Mass of the frame of a pinned body where Bullet computes the effect of an impulse on the modes: the frame takes
-/// none.
+/// Mass of a pinned body's frame while Bullet computes the effect of an impulse on the modes: the frame takes none of
+/// it.
 constexpr btScalar kHeldMass = btScalar(1e30);
 
 /// Gives access to the length of the current substep, which Bullet does not publish.
@@ -125,7 +125,7 @@ void ModalBody::placeAt(const btTransform& placement) {
 
 btMatrix3x3 ModalBody::getImpulseFactor(int node) {
   assert(node >= 0 && node < m_nFull);
-  // Without the mass of the frame, since the frame of a pinned body does not move.
+  // Without the mass of the frame, because the frame of a pinned body does not move.
   const btScalar mass = m_mass;
   if (pinned_) m_mass = kHeldMass;
   const btMatrix3x3 factor = btReducedDeformableBody::getImpulseFactor(node);
@@ -150,9 +150,9 @@ void ModalBody::stay() {
 }
 
 /// May be called any number of times in a substep before contacts are solved: its result depends only on the state
-/// before the substep. Between steps, it only sets velocities of nodes, which the next step sets anew.
+/// before the substep. Between steps, it only sets velocities of nodes, which the next step overwrites.
 void ModalBody::correctPrediction() {
-  // While the world is being told of the body, its solver may not know the length of a step yet.
+  // While the body is being added to the world, its solver may not know the length of a step yet.
   if (!m_softBodySolver || !getBroadphaseHandle()) return;
   if (m_softBodySolver->getSolverType() != btSoftBodySolver::REDUCED_DEFORMABLE_SOLVER) return;
   const auto* solver = static_cast<const btReducedDeformableBodySolver*>(m_softBodySolver);

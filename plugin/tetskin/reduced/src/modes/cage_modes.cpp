@@ -14,12 +14,12 @@
 namespace tetskin::reduced_detail {
 namespace {
 
-/// Weight of the cage's own bending relative to the fine nodes' distances, so small that it does not affect these; it
-/// determines nodes that carry next to nothing.
+/// Weight of the cage's own bending relative to the fine nodes' distances: small enough not to affect these; it
+/// determines nodes that carry almost nothing.
 constexpr double kBendingWeight = 1e-6;
-/// Least mass of a node relative to the mean: nodes that carry nothing, or carry nodes outside only, would have none.
+/// Smallest mass of a node relative to the mean: nodes that carry nothing, or only nodes outside, would have none.
 constexpr double kMinMass = 1e-3;
-/// Fraction of the diagonal of the cage's box: fine nodes farther outside of it are not at the cage's position.
+/// Fraction of the diagonal of the cage's box: if fine nodes are farther outside, they are not at the cage's position.
 constexpr double kFarOutside = 0.2;
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -80,8 +80,8 @@ Result<Weights> weightsOf(const std::vector<Eigen::Vector3d>& nodes, const TetMe
   return weights;
 }
 
-/// The squared change of gradients from tet to tet, which is 0 for affine displacements. It is weighted by volume and
-/// by squared length, to have the unit of squared displacements.
+/// The squared change of gradients from tet to tet, which is 0 for affine displacements. Weighted by volume and by
+/// squared length, to have the unit of squared displacements.
 Sparse bendingOf(const TetMesh& cage) {
   const Lists<> neighbours = faceNeighbours(cage);
   Triplets entries;
@@ -146,7 +146,7 @@ std::vector<double> massesOf(const Eigen::VectorXd& carried, double total) {
   return masses;
 }
 
-/// True for nodes of the cage that carry more of what is pinned than of what is not.
+/// True for nodes of the cage that carry more pinned than free fine nodes.
 std::vector<char> pinnedNodes(const VibrationModes& modes, const Sparse& carried) {
   assert(carried.rows() == static_cast<Eigen::Index>(modes.nodeCount()));
   Eigen::VectorXd pinned = Eigen::VectorXd::Zero(carried.rows());

@@ -16,7 +16,7 @@ struct CageModes {
   std::vector<double> masses;               ///< nodeCount of the cage, above 0
   std::vector<double> projectionErrors;     ///< by mode, see ReductionReport
   std::size_t outside = 0;                  ///< number of fine nodes in no tet
-  std::vector<char> pinned;  ///< nodeCount of the cage: true for nodes that carry pinned fine nodes more than others
+  std::vector<char> pinned;  ///< nodeCount of the cage: true for nodes that carry more pinned fine nodes than others
 
   // The mass of the fine tets, not of the cage, whose nodes are farther out.
   double mass = 0.0;
@@ -25,8 +25,8 @@ struct CageModes {
   std::vector<Eigen::Vector3d> momenta;               ///< by mode: sum of mass times displacement
 };
 
-/// For each mode, the displacements of the cage for which the fine nodes are nearest to their displacements in the
-/// mode: least squares, weighted by mass. Where no fine node determines the cage, it bends as little as possible.
+/// For each mode, the cage's displacements for which the fine nodes are nearest to their displacements in the mode:
+/// least squares, weighted by mass. Where no fine node determines the cage, it bends as little as possible.
 /// count     modes to take, softest first
 /// nodeTets  by fine node: its tet of the cage; empty: found by its position
 /// Errors    those of `embed`; OutsideCage: the fine nodes are elsewhere; SizeMismatch, IndexOutOfRange of nodeTets

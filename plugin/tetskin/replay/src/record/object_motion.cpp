@@ -11,13 +11,13 @@
 
 namespace tetskin::bullet_detail {
 
-/// `setMotionState` asks the new one.
+/// Direct access, because `setMotionState` would ask the new one.
 using MotionStateMember = Hidden<btRigidBody, btMotionState*>;
 template struct Opened<MotionStateMember, &btRigidBody::m_optionalMotionState>;
 
 namespace {
 
-/// 0 and -0 are different: they are other bits.
+/// 0 and -0 differ: their bits do.
 void addBits(Hash& hash, const btVector3& v) {
   for (int k = 0; k < 3; ++k) {
     const auto x = static_cast<double>(v[k]);
@@ -106,7 +106,7 @@ Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world) {
   return bytes;
 }
 
-/// Tells Bullet, once, where the body is, and gives it back the motion state that it has had.
+/// Tells Bullet, once, where the body is, and then gives the body its own motion state back.
 class LedToTargets::StandIn : public btMotionState {
  public:
   explicit StandIn(btRigidBody& body) : body_(body), own_(body.getMotionState()), place_(body.getWorldTransform()) {
@@ -143,7 +143,7 @@ LedToTargets::LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Byte
   if (!fits_) return;
   for (const Target& target : targets) {
     btRigidBody& body = *kinematicAt(world, target.index);
-    body.getWorldTransform() = target.place;  // as Bullet does it: `setWorldTransform` counts as a change
+    body.getWorldTransform() = target.place;  // as Bullet does it: `setWorldTransform` would count as a change
     btDefaultMotionState* place = asPlace(body.getMotionState());
     if (place) place->setWorldTransform(target.place);
   }

@@ -12,7 +12,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// The first bytes of a file; the digits are those of the format's version.
+/// The first bytes of a file; the digits are the format's version.
 constexpr char kMagic[] = "tetskin replay 03\n";
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 
@@ -80,7 +80,7 @@ Status RecordReader::open(const std::string& path) {
   file_.seekg(0);
   file_.read(magic, kMagicSize);
   if (!file_ || std::memcmp(magic, kMagic, kMagicSize) != 0) {
-    return {StatusCode::Malformed, path + ": is no run that tetskin's Recorder has written, or of another version"};
+    return {StatusCode::Malformed, path + ": was not written by tetskin's Recorder, or is of another version"};
   }
   left_ = size_ - kMagicSize;
   return {};

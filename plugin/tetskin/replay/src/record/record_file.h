@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to Recorder: the file, as a sequence of chunks. Numbers in them have the machine's own byte order, which
-// the snapshots state.
+// Internal to Recorder: the file, a sequence of chunks. Numbers in them have the machine's own byte order, which the
+// snapshots state.
 #pragma once
 
 #include <tetskin/core/types.h>
@@ -19,7 +19,7 @@ class StateStream;
 
 namespace tetskin::bullet_detail {
 
-/// What a chunk holds. Its values are in files.
+/// What a chunk holds. The values are part of the file format.
 enum class ChunkKind : std::uint32_t {
   Description = 1,  ///< text
   Snapshot = 2,     ///< the state before the next step
@@ -37,17 +37,18 @@ struct StepChunk {
   double seconds = 0;
   std::int32_t maxSubSteps = 0;
   double fixedTimeStep = 0;
-  Bytes change;                       ///< difference of the snapshot before this step from that after the last one
+  Bytes change;                       ///< difference from the snapshot after the last step to the one before this step
   Bytes kinematic;                    ///< see KinematicTargets
   std::vector<std::uint32_t> motion;  ///< by object: a hash of its motion after the step
 
   void visit(StateStream& stream);
   Bytes toBytes();
-  /// Empty for bytes that are no such chunk.
+  /// Empty if the bytes are not such a chunk.
   static std::optional<StepChunk> fromBytes(const Bytes& bytes);
 };
 
-/// Lengths in files have 32 bits: the difference of two states, with its heads, is less than twice as long as one.
+/// Lengths in files have 32 bits: the difference of two states, including its headers, is less than twice as long as
+/// one state.
 constexpr bool isRecordable(std::uint64_t bytes) {
   return bytes < 0x80000000u;
 }
@@ -56,8 +57,8 @@ class RecordWriter {
  public:
   /// Error: FileNotWritable.
   Status open(const std::string& path);
-  /// Writes it at once, so that it is in the file when the program crashes. Errors: FileNotWritable; NotSaved: it is
-  /// too large.
+  /// Writes the chunk at once, so that it is in the file if the program crashes. Errors: FileNotWritable; NotSaved: it
+  /// is too large.
   Status write(ChunkKind kind, const Bytes& bytes);
 
  private:
@@ -67,9 +68,9 @@ class RecordWriter {
 
 class RecordReader {
  public:
-  /// Errors: FileNotFound; Malformed: it does not begin as such a file.
+  /// Errors: FileNotFound; Malformed: not the beginning of such a file.
   Status open(const std::string& path);
-  /// The next chunk; empty at the end. A chunk that is not whole is the end, and `isCutShort` is true from then on.
+  /// The next chunk; empty at the end. An incomplete chunk counts as the end, and `isCutShort` is true from then on.
   /// Errors: Malformed: a chunk is damaged.
   Result<std::optional<Chunk>> next();
   bool isCutShort() const { return cutShort_; }

@@ -21,7 +21,7 @@ struct Recorder::Impl {
   btDeformableMultiBodyDynamicsWorld& world;
   std::size_t snapshotEvery;
   RecordWriter file;
-  Bytes ended, now;  ///< the states after the last step, and at present
+  Bytes ended, now;  ///< the states after the last step, and now
   Status status;
   std::size_t steps = 0;
 };

@@ -23,7 +23,7 @@ Status malformed(const std::string& path, const std::string& fault) {
 struct Replay::Impl {
   Impl(btDeformableMultiBodyDynamicsWorld& ofWorld, const std::string& ofPath) : world(ofWorld), path(ofPath) {}
 
-  /// The next chunk of a step, after those before it have been obeyed; empty at the end, or on an error.
+  /// The next step's chunk, after the chunks before it have been applied; empty at the end, or on an error.
   std::optional<StepChunk> nextStep();
   Status begin();
   Status obey(const Chunk& chunk);
@@ -36,8 +36,8 @@ struct Replay::Impl {
   std::string path;
   RecordReader file;
   std::function<void(std::size_t)> change;
-  Bytes ended, now;      ///< the states after the last step, and at present
-  bool changed = false;  ///< the world has been given the state before the next step
+  Bytes ended, now;      ///< the states after the last step, and now
+  bool changed = false;  ///< the world is already in the state before the next step
   ReplayReport report;
   std::size_t next = 0;  ///< number of the next step
   Status status;
@@ -56,7 +56,8 @@ Status Replay::Impl::begin() {
   }
 }
 
-/// Applies a chunk that precedes a step. A snapshot has the state after the last step, and the change is reported.
+/// Applies a chunk that precedes a step. A snapshot holds the state after the last step; for a change, the function set
+/// by `onChange` is called first.
 Status Replay::Impl::obey(const Chunk& chunk) {
   switch (chunk.kind) {
     case ChunkKind::Description:
@@ -93,7 +94,7 @@ std::optional<StepChunk> Replay::Impl::nextStep() {
   }
 }
 
-/// Brings the world from the state after the last step to that before this one.
+/// Brings the world from the state after the last step to the one before this step.
 Status Replay::Impl::prepare(const StepChunk& step) {
   if (!changed) {
     const std::optional<Bytes> before = applied(step.change, ended);
@@ -131,7 +132,7 @@ void Replay::Impl::compare(const StepChunk& step) {
   report.differs = true;
   const auto index = static_cast<int>(other.first - motion.begin());
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-  report.object = index < objects.size() ? nameOf(*objects[index]) : "an object that is not there any more";
+  report.object = index < objects.size() ? nameOf(*objects[index]) : "an object that no longer exists";
 }
 
 Replay::Replay(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

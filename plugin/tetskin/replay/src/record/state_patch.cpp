@@ -9,11 +9,11 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// A run's head: as many bytes are kept before it, as many are taken out, as many are put in.
+/// A run's header: bytes kept before it, bytes taken out, bytes put in.
 struct RunHead {
   std::uint32_t kept, taken, put;
 };
-/// Equal bytes between two runs that are cheaper to write than another head.
+/// A gap of equal bytes up to this length is cheaper to write than another header.
 constexpr std::size_t kGap = sizeof(RunHead);
 
 void addRun(Bytes& difference, RunHead head, const unsigned char* put) {
@@ -27,7 +27,7 @@ std::uint32_t narrow(std::size_t count) {
   return static_cast<std::uint32_t>(count);
 }
 
-/// The first byte from `k` on that differs.
+/// The first differing byte from `k` on.
 std::size_t nextOther(const Bytes& from, const Bytes& to, std::size_t k) {
   return static_cast<std::size_t>(std::mismatch(from.begin() + static_cast<std::ptrdiff_t>(k), from.end(),
                                                 to.begin() + static_cast<std::ptrdiff_t>(k))

@@ -13,11 +13,11 @@ namespace tetskin::bullet_detail {
 
 using Bytes = std::vector<unsigned char>;
 
-/// Runs of bytes that differ, each with its place and its bytes; or, where the lengths differ, the one run between what
-/// both begin and end with. Empty if they are equal. Cost O(length)
+/// Runs of differing bytes, each with its position and its bytes; if the lengths differ, one run between the common
+/// beginning and the common end. Empty if they are equal. Cost O(length)
 Bytes differenceOf(const Bytes& from, const Bytes& to);
 
-/// `to`, from `from` and the difference; empty if the difference does not belong to `from`.
+/// Computes `to` from the difference and `from`; empty if the difference does not belong to `from`.
 std::optional<Bytes> applied(const Bytes& difference, const Bytes& from);
 
 }  // namespace tetskin::bullet_detail

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bullet's broadphase finds pairs in the order in which its trees are walked, and moves a part of each tree in every
-// step. Therefore the trees are put back node by node, with all counters.
+// Bullet's broadphase finds pairs in the order of its trees, and reorganises a part of each tree in every step.
+// Therefore the trees are restored node by node, with all counters.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <tetskin/replay/src/state/bullet_members.h>
 #include <tetskin/replay/src/state/saved_tree.h>
@@ -17,7 +17,7 @@ struct SavedProxy {
   int id = 0, group = 0, mask = 0, stage = 0;
   btVector3 low{0, 0, 0}, high{0, 0, 0};
 };
-/// All of it, so that it is checked before the first change.
+/// Read as a whole, so that it is checked before the first change.
 struct SavedBroadphase {
   std::vector<SavedProxy> proxies;  ///< of the objects
   std::vector<int> stages[kFixedStage + 1];
@@ -46,7 +46,7 @@ SavedBroadphase read(const btDbvtBroadphase& broadphase, const btCollisionObject
   return saved;
 }
 
-/// Each object once, in the list of its stage and in the tree of this stage.
+/// True if each object is there once, in the list of its stage and in the tree of this stage.
 bool isWhole(const SavedBroadphase& saved, std::size_t objects) {
   if (saved.proxies.size() != objects) return false;
   const auto stageOf = [&](int object) {
@@ -127,7 +127,7 @@ void visitBroadphase(WorldStream& stream) {
   visitAll(stream, b.m_prediction, b.m_stageCurrent, b.m_fupdates, b.m_dupdates, b.m_cupdates, b.m_newpairs,
            b.m_fixedleft, b.m_updates_call, b.m_updates_done, b.m_updates_ratio, b.m_pid, b.m_cid, b.m_gid,
            b.m_deferedcollide, b.m_needcleanup);
-  // It is the index of the list into which each step puts objects.
+  // This is the index of the list into which each step puts objects.
   if (b.m_stageCurrent < 0 || b.m_stageCurrent >= kFixedStage) {
     b.m_stageCurrent = 0;
     stream.fail();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to snapshots: members of Bullet's classes that it does not show. A world goes on to the last bit only if
-// they are put back as they were, and Bullet's setters compute or round.
+// Internal to snapshots: private members of Bullet's classes. A world continues to the last bit only if they are
+// restored exactly, and Bullet's setters compute or round.
 #pragma once
 
 #include <tetskin/bullet/src/base/world_stream.h>
@@ -12,7 +12,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// A number, a vector, an array of such; or a struct that has its own visitState.
+/// A number, a vector, an array of these; or a struct that has its own visitState.
 template <class T>
 void visitMember(WorldStream& stream, T& member) {
   if constexpr (std::is_array_v<T>) {
@@ -36,7 +36,7 @@ struct MembersOf {
 
 /// In a source,
 ///     template struct Visited<Object, &Object::m_hidden, ...>;
-/// says what `visitMembers` writes or reads of that class.
+/// defines what `visitMembers` writes or reads of that class.
 template <class Object, auto... members>
 struct Visited {
   friend void visitOpened(MembersOf<Object>, WorldStream& stream, Object& object) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Settings of joints, which the application may change while it runs, and what Bullet remembers of them from step to
-// step. What a joint computes anew in each step from its bodies is not saved: its Jacobians, frames in the world, axes.
+// Settings of joints, which the application may change at any time, and what Bullet remembers of them from step to
+// step. What a joint recomputes from its bodies in each step is not saved: its Jacobians, frames in the world, axes.
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBodyFixedConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBodyGearConstraint.h>
@@ -130,8 +130,7 @@ template struct Visited<GearJoint, &GearJoint::m_axisInA, &GearJoint::m_axisInB,
 
 using BodyJoint = btMultiBodyConstraint;
 template struct Visited<BodyJoint, &BodyJoint::m_maxAppliedImpulse, &BodyJoint::m_isUnilateral>;
-/// The impulses with which the next step starts are at the beginning of its data; Jacobians, computed in each step,
-/// follow.
+/// Its data begin with the impulses with which the next step starts; Jacobians, recomputed in each step, follow.
 using JointData = Hidden<BodyJoint, btAlignedObjectArray<btScalar>>;
 template struct Opened<JointData, &BodyJoint::m_data>;
 
@@ -165,7 +164,7 @@ template struct Visited<BallLimit, &BallLimit::m_desiredVelocity, &BallLimit::m_
 
 namespace {
 
-/// The member functions that hold for this class and those it derives from.
+/// The member functions for this class and its bases.
 template <class Joint, class... Bases>
 void visitAs(WorldStream& stream, btTypedConstraint& joint) {
   (visitMembers(stream, static_cast<Bases&>(static_cast<Joint&>(joint))), ...);
@@ -175,7 +174,7 @@ void visitAs(WorldStream& stream, btMultiBodyConstraint& joint) {
   visitMembers(stream, static_cast<Joint&>(joint));
 }
 
-/// A class of Bullet's, known by an object of it.
+/// One of Bullet's classes, represented by an object of it.
 template <class Base>
 struct JointClass {
   std::unique_ptr<Base> sample;

@@ -7,7 +7,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// A cache that Bullet keeps between steps: its length is fixed by the body.
+/// A cache that Bullet keeps between steps; the body determines its length.
 template <class T>
 void visitState(WorldStream& stream, btAlignedObjectArray<T>& cache) {
   if (stream.length(static_cast<std::size_t>(cache.size())) != static_cast<std::size_t>(cache.size())) {

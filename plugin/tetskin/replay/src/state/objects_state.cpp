@@ -19,7 +19,7 @@ template struct Visited<
     &btCollisionObject::m_ccdSweptSphereRadius, &btCollisionObject::m_ccdMotionThreshold,
     &btCollisionObject::m_checkCollideWith, &btCollisionObject::m_updateRevision>;
 
-/// Whom it passes through, as `setIgnoreCollisionCheck` says: `m_checkCollideWith` counts them.
+/// Objects that it ignores, set by `setIgnoreCollisionCheck`: `m_checkCollideWith` counts them.
 using PassesThrough = Hidden<btCollisionObject, btAlignedObjectArray<const btCollisionObject*>>;
 template struct Opened<PassesThrough, &btCollisionObject::m_objectsWithoutCollisionCheck>;
 
@@ -44,7 +44,7 @@ template struct Visited<World, &World::m_localTime, &World::m_fixedTimeStep, &Wo
 
 namespace {
 
-/// Some may be in no world, or no longer exist: these are only compared with, and kept as they are.
+/// Some may be in no world, or no longer exist: their pointers are only compared, and kept as they are.
 void visitIgnored(WorldStream& stream, btCollisionObject& object) {
   auto& ignored = object.*memberOf(PassesThrough());
   const btCollisionObjectArray& objects = stream.world().getCollisionObjectArray();
@@ -87,7 +87,7 @@ void visitClock(WorldStream& stream) {
   visitMembers(stream, world);
   visitSettings(stream, world.getSolverInfo());
   visitSettings(stream, world.getDispatchInfo());
-  // The order in which the solver takes rows is random, if the application wants that.
+  // The solver takes rows in random order, if the application wants that.
   auto& solver = static_cast<btSequentialImpulseConstraintSolver&>(*world.getConstraintSolver());
   unsigned long seed = solver.getRandSeed();
   auto word = static_cast<std::uint64_t>(seed);
@@ -110,7 +110,7 @@ void visitObjects(WorldStream& stream) {
   if (!stream.restoring()) return;
   for (int k = 0; k < objects.size(); ++k) {
     btRigidBody* body = btRigidBody::upcast(objects[k]);
-    if (body) world.synchronizeSingleMotionState(body);  // sleepers', too
+    if (body) world.synchronizeSingleMotionState(body);  // including sleeping ones
   }
 }
 

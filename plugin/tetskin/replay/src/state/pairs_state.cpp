@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Pairs, and the contact points that their algorithms keep from step to step. An algorithm creates its manifold on
-// construction or at its first run, as the bodies are then; here it is given one if the saved one had it. Algorithms of
-// soft bodies keep nothing, and are never asked for manifolds: Bullet's would read members that it has not set.
+// construction or in its first run, depending on the bodies at that time; here it gets one if the saved one had it.
+// Algorithms of soft bodies keep nothing, and are never asked for manifolds: Bullet's would read uninitialised members.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btBoxBoxCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -29,10 +29,10 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Where an algorithm for two convex shapes keeps its cache of points.
+/// Where an algorithm for two convex shapes keeps its manifold.
 struct PointCache {
   btPersistentManifold** manifold = nullptr;
-  bool* owned = nullptr;  ///< null: it is always there
+  bool* owned = nullptr;  ///< null: the manifold always exists
 };
 
 template <class Algorithm>
@@ -83,7 +83,8 @@ PointCache cacheOf(btConvexConcaveCollisionAlgorithm& algorithm) {
 
 enum class AlgorithmKind : unsigned char { None, Stateless, Convex, Compound, TwoCompounds, Unknown };
 
-/// Bullet's algorithms, as it makes them for these shapes, and its dispatcher: by them, those of a world are known.
+/// Samples of Bullet's dispatcher and algorithms, as Bullet creates them for these shapes: a world's objects are
+/// recognised by comparison.
 class BulletClasses {
  public:
   static const BulletClasses& get() {
@@ -146,8 +147,8 @@ class BulletClasses {
   const btCollisionAlgorithm* empty_ = made(&planeShape_, &planeShape_);
 };
 
-/// Goes through the pairs, and notes where each cache of points is in the dispatcher's list, in whose order the solver
-/// takes them.
+/// Goes through the pairs, and notes each manifold's index in the dispatcher's list, in whose order the solver takes
+/// them.
 class PairVisitor {
  public:
   explicit PairVisitor(WorldStream& stream)
@@ -161,7 +162,7 @@ class PairVisitor {
     visit(pair.m_algorithm, first, second);
   }
 
-  /// The caches in the order of the dispatcher's list; and their points.
+  /// The manifolds in the order of the dispatcher's list, and their points.
   void visitCaches() {
     int count = dispatcher_.getNumManifolds();
     stream_(count);
@@ -210,7 +211,7 @@ class PairVisitor {
     if (kind == AlgorithmKind::TwoCompounds) visitTwo(static_cast<TwoCompoundsAlgorithm&>(*algorithm), first, second);
   }
 
-  /// Makes or destroys it. Returns false if there is none.
+  /// Creates or destroys the algorithm as wanted. Returns false if there is none afterwards.
   bool make(btCollisionAlgorithm*& algorithm, bool wanted, const btCollisionObjectWrapper& first,
             const btCollisionObjectWrapper& second) {
     if (wanted && !algorithm) {
@@ -323,7 +324,7 @@ class PairVisitor {
     for (int k = 0; k < points; ++k) visitPoint(m.getContactPoint(k));
   }
 
-  /// `m_userPersistentData` is the application's, and is lost.
+  /// `m_userPersistentData` belongs to the application, and is lost.
   void visitPoint(btManifoldPoint& p) {
     if (stream_.restoring()) p.m_userPersistentData = nullptr;
     visitAll(stream_, p.m_localPointA, p.m_localPointB, p.m_positionWorldOnB, p.m_positionWorldOnA, p.m_normalWorldOnB,
@@ -339,7 +340,7 @@ class PairVisitor {
   std::vector<Found> found_;
 };
 
-/// Pairs that a filter would refuse now were let through when they were found.
+/// Accepts pairs that a filter would refuse now but accepted when they were found.
 class AllPairs : public btOverlapFilterCallback {
  public:
   explicit AllPairs(btOverlappingPairCache& cache) : cache_(cache), before_(cache.getOverlapFilterCallback()) {

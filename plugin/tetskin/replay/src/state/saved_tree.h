@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to snapshots: a tree of Bullet's, node by node, because contacts come in the order in which it is walked.
+// Internal to snapshots: one of Bullet's trees, node by node, because contacts come in its order.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
@@ -18,7 +18,7 @@ struct SavedNode {
 };
 using SavedTree = std::vector<SavedNode>;
 
-/// Appends a node and what is below it. `itemOf` gives a leaf a number of 0 or more.
+/// Appends a node and its descendants. `itemOf` gives each leaf a number of 0 or more.
 template <class ItemOf>
 void readTree(const btDbvtNode* node, const ItemOf& itemOf, SavedTree& to) {
   if (!node) return;
@@ -30,7 +30,7 @@ inline void visitTree(WorldStream& stream, SavedTree& tree) {
   stream.each(tree, [&](SavedNode& node) { visitAll(stream, node.item, node.low, node.high); });
 }
 
-/// True if it is one tree, and takes(item) is true for each leaf.
+/// True if this is exactly one tree, and takes(item) is true for each leaf.
 template <class Takes>
 bool isTree(const SavedTree& tree, const Takes& takes) {
   std::size_t missing = tree.empty() ? 0 : 1;  // nodes whose parents have been seen
@@ -56,9 +56,9 @@ btDbvtNode* makeNodes(const SavedNode*& from, btDbvtNode* parent, const Place& p
   return node;
 }
 
-/// Puts a tree in place of another one.
+/// Replaces a tree by another one.
 /// tree   see `isTree`
-/// place  (item, leaf): sets the leaf's data, and lets the item know it
+/// place  (item, leaf): sets the leaf's data, and the item's pointer to it
 template <class Place>
 void makeTree(const SavedTree& tree, btDbvt& in, const Place& place) {
   in.clear();

@@ -9,7 +9,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// Errors  NotSaved, which names what it is
+/// Errors  NotSaved, with a message that names the obstacle
 Status checkIsSaved(btDeformableMultiBodyDynamicsWorld& world, const DeformableSolver& solver);
 
 }  // namespace tetskin::bullet_detail

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A snapshot is a header, and a payload of parts in the machine's own numbers. All of it is checked before the world is
-// changed: its hash by all bytes, the world by the directory, which is the payload's first part.
+// A snapshot is a header, and a payload of parts in the machine's own numbers. Everything is checked before the world
+// is changed: the bytes by their hash, the world by the directory, which is the payload's first part.
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/replay/src/state/saved_worlds.h>
 #include <tetskin/replay/src/state/snapshot_bytes.h>
@@ -25,10 +25,10 @@ namespace {
 using World = btDeformableMultiBodyDynamicsWorld;
 
 constexpr std::uint64_t kMagic = 0x544F485350414E54u;  // "TNAPSHOT"
-constexpr std::uint32_t kByteLayout = 4;               ///< rises with every change of what is written
+constexpr std::uint32_t kByteLayout = 4;               ///< increases with every change of the format
 
 using VisitPart = void (*)(WorldStream&, DeformableSolver&);
-/// In the order in which they depend on each other.
+/// In the order of their dependences.
 constexpr VisitPart kParts[] = {
     [](WorldStream& s, DeformableSolver&) { visitObjects(s); },
     [](WorldStream& s, DeformableSolver&) { visitSoftBodies(s); },
@@ -39,7 +39,7 @@ constexpr VisitPart kParts[] = {
     [](WorldStream& s, DeformableSolver&) { visitContactSearch(s); },
     [](WorldStream& s, DeformableSolver& solver) { visitForces(s, solver); },
 };
-/// Of these parts.
+/// Number of these parts.
 constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
 
 struct Header {
@@ -48,7 +48,7 @@ struct Header {
   std::uint32_t scalarBytes = sizeof(btScalar), byteOrder = 0x01020304u;
   std::uint64_t length = 0;                 ///< of the payload
   std::uint64_t hash = 0;                   ///< at kHashAt
-  std::uint64_t ends[kPartCount + 1] = {};  ///< of the directory and of each part, from the payload's beginning
+  std::uint64_t ends[kPartCount + 1] = {};  ///< ends of the directory and of each part, from the payload's beginning
 
   void visit(StateStream& stream) {
     stream(magic, layout, library, scalarBytes, byteOrder, length, hash);
@@ -68,13 +68,13 @@ Status unsupported(const std::string& what) {
   return {StatusCode::UnsupportedFormat, "this snapshot cannot be read here: " + what};
 }
 
-/// Reads the header, and checks that these are the bytes that were written, for a library such as this one.
+/// Reads the header, and checks that the bytes are unchanged and were written by a compatible library.
 Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) {
   StateStream stream(bytes, size);
   header.visit(stream);
   if (stream.failed()) return malformed("it has " + std::to_string(size) + " bytes, less than its header");
   const Header own;
-  if (header.magic != own.magic) return malformed("it does not begin as a snapshot does");
+  if (header.magic != own.magic) return malformed("it does not begin like a snapshot");
   if (header.byteOrder != own.byteOrder) return unsupported("it is from a machine with another byte order");
   if (header.scalarBytes != own.scalarBytes) {
     return unsupported("its numbers have " + std::to_string(header.scalarBytes) + " bytes, Bullet's here " +
@@ -148,7 +148,7 @@ Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
   directory.order(world);
   checkForces(stream, *solver);
   if (stream.failed() || stream.count() != header.ends[0]) {
-    // The lists go back to the order that they have had.
+    // Restores the lists' previous order.
     [[maybe_unused]] const Status found = now.find(WorldDirectory(world));
     assert(found.ok());
     now.order(world);
@@ -159,7 +159,7 @@ Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
   for (std::size_t k = 0; k < kPartCount; ++k) {
     kParts[k](stream, *solver);
     if (stream.failed() || stream.count() != header.ends[k + 1]) {
-      // Only bytes that were changed and hashed anew get here, or settings that no snapshot compares.
+      // Only bytes that were altered and hashed again get here, or settings that no snapshot compares.
       return malformed("part " + std::to_string(k) + " does not fit this world" +
                        (stream.refusal().empty() ? "" : ": " + stream.refusal()));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to recorded runs: snapshots as vectors, and whether two are of one world.
+// Internal to recorded runs: snapshots as vectors, and whether two belong to the same world.
 #pragma once
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
@@ -11,7 +11,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// Saves a snapshot, without force records, which may be there or not where a run is played; keeps the vector's memory.
+/// Saves a snapshot without force records, which need not exist where a run is played; reuses the vector's memory.
 /// Errors: those of `saveSnapshot`.
 Status saveInto(btDeformableMultiBodyDynamicsWorld& world, std::vector<unsigned char>& snapshot);
 

@@ -10,12 +10,12 @@
 
 namespace tetskin::bullet_detail {
 
-/// Where a snapshot has its hash: of all bytes that follow it.
+/// Position of the hash in a snapshot: it covers all bytes after it.
 constexpr std::size_t kHashAt = 32;
 constexpr std::size_t kHashedFrom = kHashAt + 8;
 
-/// A hash of bytes, for some 100 kilobytes within microseconds: lanes do not wait for each other. A step is one-to-one
-/// in each word, as in `Hash`, so that a change of one word never goes unnoticed.
+/// A hash of bytes, for some 100 kilobytes within microseconds: its lanes are independent. A step is one-to-one in each
+/// word, as in `Hash`, so that a change of a single word never goes unnoticed.
 inline std::uint64_t snapshotHash(const unsigned char* bytes, std::size_t count) {
   constexpr std::size_t kLanes = 8;
   std::uint64_t lanes[kLanes] = {};

@@ -32,7 +32,7 @@ void visitStep(WorldStream& stream, btSoftBody& body) {
   visitAll(stream, body.m_timeacc, body.m_bounds[0], body.m_bounds[1], body.m_maxSpeedSquared, body.m_bUpdateRtCst);
 }
 
-/// Objects that are in no world may have been destroyed; they are only compared with, and kept as they are.
+/// Objects in no world may have been destroyed; their pointers are only compared, and kept as they are.
 void visitIgnored(WorldStream& stream, btSoftBody& body) {
   auto& ignored = body.m_collisionDisabledObjects;
   std::vector<const btCollisionObject*> inWorld, others;
@@ -45,8 +45,8 @@ void visitIgnored(WorldStream& stream, btSoftBody& body) {
   }
 }
 
-/// True where a node has more than its position and velocity, because the application has moved or pushed it since the
-/// last step, or it hangs on an anchor.
+/// True if a node has more state than its position and velocity: the application has moved or pushed it since the last
+/// step, or it is anchored.
 bool hasMore(const Node& node) {
   return node.m_q != node.m_x || node.m_vn != node.m_v || !node.m_f.isZero() || node.m_battach != 0;
 }
@@ -79,7 +79,7 @@ void visitNodes(WorldStream& stream, btSoftBody& body) {
   }
 }
 
-/// Nodes are pinned, and given other masses, while a world runs.
+/// Nodes may be pinned, or given other masses, at any time.
 void visitMasses(WorldStream& stream, btSoftBody& body) {
   for (int n = 0; n < body.m_nodes.size(); ++n) stream(body.m_nodes[n].m_im);
 }

@@ -59,7 +59,7 @@ void addShape(Hash& hash, const btCollisionShape& shape) {
   }
 }
 
-/// The nodes of the tets, by their distances in memory. Tets do not wait for each other.
+/// The nodes of the tets, as distances in memory. The tets' computations are independent.
 void addTets(Hash& hash, const btSoftBody& body) {
   hash.add(static_cast<std::uint64_t>(body.m_nodes.size()));
   hash.add(static_cast<std::uint64_t>(body.m_tetras.size()));
@@ -124,13 +124,13 @@ const char* kindOf(int type) {
 }
 
 /// Matches each saved item with the first equal item of the current list that is not taken yet.
-/// Returns the index of the first saved one that is missing, or -1.
+/// Returns the index of the first saved item that is missing, or -1.
 template <class Keys>
 int findKeys(const Keys& saved, const Keys& now, std::vector<int>& at) {
   std::vector<char> taken(now.size(), 0);
   at.clear();
   for (std::size_t k = 0; k < saved.size(); ++k) {
-    // Mostly they are in the same order.
+    // They are mostly in the same order.
     const auto fits = [&](std::size_t n) { return n < now.size() && !taken[n] && now[n] == saved[k]; };
     std::size_t n = k;
     if (!fits(n)) {
@@ -208,7 +208,7 @@ bool WorldDirectory::isSame(const WorldDirectory& now, std::size_t object) const
   return other.type == objects_[object].type && other.fingerprint == objects_[object].fingerprint;
 }
 
-/// True if all ids are there; others may be, too.
+/// True if all ids are there; the world may have others, too.
 bool WorldDirectory::findById(const WorldDirectory& now) {
   std::map<int, int> indices;
   for (std::size_t k = 0; k < now.objects_.size(); ++k) indices[now.objects_[k].id] = static_cast<int>(k);
@@ -275,7 +275,7 @@ Status WorldDirectory::find(WorldDirectory now) {
     same = same && all && isSame(now, k);
   }
   if (!same) {
-    // Built in the same order, but after other objects had come and gone.
+    // The world may have been built in the same order, but after other objects had come and gone.
     const Status byOrder = differenceOfObjects(now, false);
     if (!byOrder.ok()) return all ? differenceOfObjects(now, true) : byOrder;
     objectAt_.resize(objects_.size());
@@ -309,7 +309,7 @@ void WorldDirectory::order(World& world) const {
   btCollisionObjectArray& objects = world.getCollisionObjectArray();
   reorder(objects, objectAt_);
   for (int k = 0; k < objects.size(); ++k) objects[k]->setWorldArrayIndex(k);
-  // A body that has become static or dynamic since is in this list, or not, as when it was saved.
+  // A body that has since become static or dynamic is in this list exactly if it was when saved.
   auto& moving = world.*memberOf(MovingBodiesMember());
   moving.resize(0);
   for (const int k : moving_) moving.push_back(btRigidBody::upcast(objects[k]));

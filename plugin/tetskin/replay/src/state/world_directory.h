@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to snapshots: which objects and joints a world has, and which of them are those of a snapshot.
+// Internal to snapshots: the objects and joints of a world, and how they correspond to those of a snapshot.
 #pragma once
 
 #include <tetskin/bullet/src/base/world_stream.h>
@@ -13,7 +13,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// What a snapshot does not put back, but compares: ids, shapes, sizes, who is joined to whom.
+/// What a snapshot does not restore, but compares: ids, shapes, sizes, connections by joints.
 class WorldDirectory {
  public:
   WorldDirectory() = default;
@@ -21,9 +21,9 @@ class WorldDirectory {
 
   void visit(WorldStream& stream);
 
-  /// Finds its objects among those of a world: by their ids if all are there, else by their order.
-  /// now     of the world
-  /// Errors  SnapshotMismatch, with the name of the first object that is missing, another one, or not in here
+  /// Finds its objects among those of a world: by their ids if all are there, otherwise by their order.
+  /// now     the world's directory
+  /// Errors  SnapshotMismatch, naming the first object that is missing, differs, or is not in this directory
   Status find(WorldDirectory now);
   /// After `find`: gives the world's lists the order that they had when it was saved.
   void order(btDeformableMultiBodyDynamicsWorld& world) const;
@@ -44,7 +44,7 @@ class WorldDirectory {
   std::vector<Object> objects_;
   std::vector<int> moving_, softs_;  ///< indices of objects, in the order of the world's lists of such bodies
   std::vector<Key> multibodies_, joints_, bodyJoints_;
-  // Of `find`: for each of these, the index in the world.
+  // Result of `find`: for each of these, the index in the world.
   std::vector<int> objectAt_, multibodyAt_, jointAt_, bodyJointAt_;
 };
 

@@ -5,7 +5,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// No other library has companions of bodies.
+/// No other library attaches companions to bodies.
 BodyChannel& BodyChannel::of(BodyWithTrees& body) {
   if (!body.companion()) body.setCompanion(std::make_unique<BodyChannel>());
   return static_cast<BodyChannel&>(*body.companion());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::solver: what passes between the searches for contacts of one body and the solver's steps. The
-// body carries it, as its search goes along with it into another world.
+// Internal to tetskin::solver: what the contact searches of one body and the solver's steps pass to each other. The
+// body carries it, because its search moves with it into another world.
 #pragma once
 
 #include <tetskin/bullet/src/base/body_trees.h>
@@ -20,57 +20,57 @@ class WorldStream;
 
 class TETSKIN_SOLVER_API BodyChannel final : public BodyCompanion {
  public:
-  /// The body's one, which is created at the first call. Not while pairs are searched, which may be on several threads.
+  /// The body's channel, created at the first call. Not while pairs are searched: that may run on several threads.
   static BodyChannel& of(BodyWithTrees& body);
 
-  // What searches for contacts.
+  // The searches for contacts.
   /// Finds contacts of points other than the nodes with rigid objects; expired if nothing does.
   const std::weak_ptr<BodyContacts>& surfaceContacts() const { return surfaceContacts_; }
   void setSurfaceContacts(std::weak_ptr<BodyContacts> contacts) { surfaceContacts_ = std::move(contacts); }
   /// Finds the contacts of the nodes; or null.
   const std::shared_ptr<BodyContacts>& nodeContacts() const { return nodeContacts_; }
-  /// size  of the body, when they were made
+  /// size  of the body when they were created
   void setNodeContacts(std::shared_ptr<BodyContacts> contacts, btScalar size) {
     nodeContacts_ = std::move(contacts);
     contactSize_ = size;
   }
   btScalar contactSize() const { return contactSize_; }
-  /// The solver that reads the contacts of the nodes; null if Bullet searches for them. Whether the body is still in
-  /// its world, another solver's name in the body tells.
+  /// The solver that reads the contacts of the nodes; null if Bullet searches for them. If the body names another
+  /// solver, it has left its world.
   const btSoftBodySolver* nodesSolver() const { return nodesSolver_; }
   void setNodesSolver(const btSoftBodySolver* solver) { nodesSolver_ = solver; }
 
   // What a step tells its searches.
-  /// Where kinematic bodies come from, of the world whose steps search for contacts; expired if nothing tells.
+  /// The paths of kinematic bodies in the world whose steps search for contacts; expired if there are none.
   const std::weak_ptr<const KinematicPaths>& kinematicPaths() const { return kinematicPaths_; }
   void setKinematicPaths(std::weak_ptr<const KinematicPaths> paths) { kinematicPaths_ = std::move(paths); }
-  /// While this is set, searches wait until all pairs of the step are known: those of several bodies then run side by
-  /// side.
+  /// While set, searches wait until all pairs of the step are known, so that those of several bodies run in parallel.
   void setSearchWaits(bool waits) { searchWaits_ = waits; }
   bool searchWaits() const { return searchWaits_; }
   void setReach(btScalar beyondNodes) { reach_ = beyondNodes; }
   btScalar reach() const override { return reach_; }
   /// The distance at which a body's points count as touching while a step searches for contacts, in addition to the
-  /// distance that is kept between the objects. Forces that will support both objects are not known yet: a body that
-  /// rests on a resting object is predicted to fall with it, or away from it. 0: none, as outside of steps. Each call
-  /// begins another prediction.
+  /// distance that is kept between the objects. It allows for forces that are not known yet: a body that rests on a
+  /// resting object is predicted to fall with it, or away from it. 0: none, as outside of steps. Each call begins a new
+  /// prediction.
   void setSpeculation(btScalar distance) {
     speculation_ = distance;
     ++predictions_;
   }
   btScalar speculation() const override { return speculation_; }
-  /// Grows from step to step: while it stays the same, and the speculation is above 0, nodes and their paths do, too.
+  /// Grows from step to step. While it stays the same and the speculation is above 0, nodes and their paths stay the
+  /// same, too.
   unsigned predictions() const { return predictions_; }
 
   // What the searches tell the step.
-  /// The points that must stay outside of objects in this step: a search adds them, the solver reads them, and clears
-  /// them when a step begins.
+  /// The points that must stay outside of objects in this step. A search adds them; the solver reads them, and clears
+  /// them at the beginning of a step.
   PointContacts& pointContacts() { return pointContacts_; }
   const PointContacts& pointContacts() const { return pointContacts_; }
 
   void dropStep() override;
   void returnToStart() override;
-  /// Writes or reads what the last step has left.
+  /// Writes or reads the state that the last step has left.
   void visitState(WorldStream& stream);
 
  private:
@@ -85,7 +85,7 @@ class TETSKIN_SOLVER_API BodyChannel final : public BodyCompanion {
   const btSoftBodySolver* nodesSolver_ = nullptr;
 };
 
-/// The channel of a body; null if it has none, as before its first step. From any thread.
+/// The channel of a body; null if it has none, for instance before its first step. From any thread.
 BodyChannel* channelOf(const btSoftBody& body);
 
 }  // namespace tetskin::bullet_detail

@@ -90,7 +90,7 @@ void BodyGravity::reinitialize(bool) {
   }
 }
 
-/// A body wakes as its gravity changes: not so by being restored.
+/// A change of gravity wakes the body; restoring it does not.
 void BodyGravity::visitState(WorldStream& stream) {
   bool isSet = own_.has_value();
   stream(isSet);
@@ -139,14 +139,14 @@ void BodyGravity::stopSleepers() {
   }
 }
 
-/// The gravity that Bullet has found. Forces of this library that stand behind this one still answer, so that there is
-/// always one.
+/// The gravity that Bullet has found. Forces of this library that come after this one still answer, so there is always
+/// one.
 btVector3 BodyGravity::requestedGravity() const {
   for (int i = list_->size() - 1; i >= 0; --i) {
     if ((*list_)[i]->getForceType() != BT_GRAVITY_FORCE) continue;
     return static_cast<const btDeformableGravityForce*>((*list_)[i])->m_gravity;
   }
-  assert(false && "Bullet has asked for a gravity, and this one was not there");
+  assert(false && "Bullet asked for gravity, but this force was not in the list");
   return m_gravity;
 }
 

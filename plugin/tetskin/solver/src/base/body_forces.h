@@ -4,8 +4,8 @@
 // Internal to tetskin::solver: the force objects of one DeformableBody.
 //
 // Bullet keeps all force objects of a world in one list, and its `addForce` only looks at their types: a second body
-// joins the first object of the same type, whoever owns it, with its gravity and its material. Therefore the objects of
-// this library have a type of their own, and are put into the list without `addForce`.
+// joins the first object of the same type, whoever owns it, with its gravity and its material. Therefore this library's
+// objects have their own type, and are put into the list without `addForce`.
 #pragma once
 
 #include <BulletSoftBody/btDeformableGravityForce.h>
@@ -40,14 +40,13 @@ class TETSKIN_SOLVER_API InactiveForce : public btDeformableLagrangianForce {
   void buildDampingForceDifferentialDiagonal(btScalar, TVStack&) override {}
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
 
-  /// Writes or reads what it remembers from step to step, for snapshots.
+  /// Writes or reads, for snapshots, what the force remembers from step to step.
   virtual void visitState(WorldStream& /*stream*/) {}
-  /// Writes what a snapshot takes for granted; refuses, while reading, where it is not so.
+  /// Writes what a snapshot relies on; when reading, refuses a world that differs.
   virtual void checkState(WorldStream& /*stream*/) {}
-  /// Forgets what it remembers of a body from the steps before: the body has been put elsewhere, or into the state in
-  /// which it was created.
+  /// Forgets what it remembers of a body's earlier steps: the body was moved elsewhere, or reset to its initial state.
   virtual void forget(const btSoftBody& /*body*/) {}
-  /// Moves what it remembers in world space, together with everything else in the world, which has been moved already.
+  /// Moves remembered positions, together with everything else in the world, which has been moved already.
   virtual void shift(const btVector3& /*by*/) {}
 
  private:
@@ -62,7 +61,7 @@ inline bool isSilent(const btDeformableLagrangianForce& force) {
   return OwnObject::is(OwnObject::Kind::InactiveForce, &force);
 }
 
-/// True if a force has left the list, and something that does nothing is in its place.
+/// True if a force has left the list, and a placeholder that does nothing is in its place.
 bool isPlaceholder(const btDeformableLagrangianForce* force);
 
 /// True if a force needs the deformation gradients that Bullet updates for each tet in every step.
@@ -92,19 +91,19 @@ class OwnForce : public Force {
 /// The owner of a body, which has created its gravity and its elasticity.
 class BodyOwner {
  public:
-  /// Writes or reads its own data of the body, beside Bullet's state.
+  /// Writes or reads the owner's own data of the body, beside Bullet's state.
   virtual void visitState(WorldStream& stream) = 0;
 
  protected:
   ~BodyOwner() = default;
 };
 
-/// Gravity of one body: that of the world in each substep, unless it is set.
+/// Gravity of one body: the world's in each substep, unless set.
 ///
 /// In implicit worlds Bullet asks the list for the last force of type BT_GRAVITY_FORCE, gives all bodies that gravity
-/// before it looks for contacts, and reads a variable that was never set if there is none. Therefore this force has
-/// that type only while Bullet asks. It stands in the list before all forces of the application, so that these are
-/// asked later, and gives its own body the difference.
+/// before it looks for contacts, and reads an uninitialised variable if there is none. Therefore this force has that
+/// type only while Bullet asks. It precedes all of the application's forces in the list, so that these are asked later,
+/// and gives its own body the difference.
 class BodyGravity : public OwnForce<btDeformableGravityForce> {
  public:
   /// isToldOfRemovals  the solver calls `reinitialize` when a body has been removed, as Bullet's does
@@ -115,11 +114,11 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   /// gravity  world units per second squared; empty: the world's
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
 
-  /// Writes or reads the gravity, and what else its owner has of the body.
+  /// Writes or reads the gravity, and its owner's other data of the body.
   void visitState(WorldStream& stream);
 
   btDeformableLagrangianForceType getForceType() override;
-  /// Called for any body: forces are told before it leaves the world.
+  /// Called for any body: Bullet tells the forces before the body leaves the world.
   void removeSoftBody(btSoftBody* body) override;
   /// Called at the beginning of each substep, and by Bullet's solver when a body has been removed. Wakes the body if
   /// gravity has changed.
@@ -132,8 +131,8 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
 
  private:
   btVector3 requestedGravity() const;
-  /// A body falls asleep after the step has begun: Bullet then does not solve for it, but moves its nodes by their
-  /// velocities.
+  /// A body falls asleep after the step has begun: Bullet then no longer solves for it, but still moves its nodes by
+  /// their velocities.
   void stopSleepers();
 
   OwnObject registered_{OwnObject::Kind::BodyGravity, static_cast<const btDeformableLagrangianForce*>(this)};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: a point that nodes of a soft body carry.
+// Between the libraries: a point carried by nodes of a soft body.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -40,7 +40,7 @@ struct CarriedPoint {
     nodes[count] = node;
     weights[count++] = weight;
   }
-  /// The weighted sum of what the nodes have.
+  /// The weighted sum of the nodes' values.
   /// valueOf  (int node) -> btVector3
   template <class ValueOf>
   btVector3 sum(ValueOf&& valueOf) const {
@@ -51,7 +51,7 @@ struct CarriedPoint {
   btVector3 velocity(const btSoftBody& body) const {
     return sum([&](int n) -> const btVector3& { return body.m_nodes[n].m_v; });
   }
-  /// The sum is of offsets from its first node, so that little is lost in rounding far from the origin.
+  /// Sums offsets from the first node, so that little is lost in rounding far from the origin.
   btVector3 position(const btSoftBody& body) const {
     assert(count > 0);
     const btVector3 first = body.m_nodes[nodes[0]].m_x;

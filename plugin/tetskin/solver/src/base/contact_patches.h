@@ -16,11 +16,11 @@
 
 namespace tetskin::bullet_detail {
 
-/// Points that are carried by the same few nodes: the vertices in a tet, or the samples on a triangle.
+/// Points carried by the same few nodes: the vertices in a tet, or the samples on a triangle.
 ///
-/// Samples are the corners of the small triangles into which the triangle's edges are cut, without its own corners,
-/// which are vertices. They are not stored: the sample at (i, j), with weight i / divisions of the second corner and
-/// j / divisions of the third, has the number firstPoint + i * (divisions + 1) + j.
+/// Samples are the corners of the small triangles into which the triangle's edges are cut, except its own corners,
+/// which are vertices. They are not stored: the sample at (i, j), with weight i / divisions of the second corner and j
+/// / divisions of the third, has the number firstPoint + i * (divisions + 1) + j.
 struct ContactPatch {
   std::uint32_t firstNode = 0;    ///< index in ContactPatches::nodes
   std::uint32_t nodeCount = 0;    ///< 4 for a tet, up to kMaxCarriers for a triangle
@@ -31,7 +31,7 @@ struct ContactPatch {
   btScalar spread = 1;            ///< the points are within the ball around the nodes' box, scaled by this
 
   bool isTriangle() const { return divisions > 0; }
-  /// How many numbers it uses for its points.
+  /// How many point numbers it occupies.
   std::uint32_t numberCount() const { return isTriangle() ? (divisions + 1) * (divisions + 1) : pointCount; }
 };
 
@@ -44,7 +44,7 @@ struct PatchCluster {
 
 constexpr std::size_t kMaxCarriers = kMaxPointNodes;
 /// Largest number of samples of a body: their numbers must not reach those of other points. A spacing that needs more
-/// is most likely in another unit.
+/// is most likely in the wrong unit.
 constexpr double kMaxSamples = 10'000'000;
 
 struct ContactPatches {
@@ -57,12 +57,12 @@ struct ContactPatches {
   std::vector<int> clusterOf;     ///< by node of the tree: its cluster; -1: not a leaf
 
   /// The weights of a point's nodes: nodeCount values.
-  /// point  its number less the patch's first one
+  /// point  its number minus the patch's first one
   void weightsOf(const ContactPatch& patch, std::uint32_t point, btScalar* weights) const;
   CarriedPoint carriedPoint(const ContactPatch& patch, std::uint32_t point) const;
 };
 
-/// A patch that is yet to be put into a cluster.
+/// A patch not yet in a cluster.
 struct LoosePatch {
   std::vector<int> nodes;
   std::vector<btScalar> weights;                       ///< of the nodes: point by point, or corner by corner

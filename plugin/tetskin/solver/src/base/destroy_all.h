@@ -6,8 +6,8 @@
 
 namespace tetskin::bullet_detail {
 
-/// Clears a list of Bullet's and destroys its elements, as those about multibodies own memory. resize(0) would do the
-/// same with a default element, for which GCC warns.
+/// Clears one of Bullet's lists and destroys its elements: those about multibodies own memory. resize(0) would do the
+/// same with a default element, but GCC warns about it.
 template <class Element>
 void destroyAll(btAlignedObjectArray<Element>& elements) {
   while (elements.size() > 0) elements.pop_back();

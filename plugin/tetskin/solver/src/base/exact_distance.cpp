@@ -83,7 +83,7 @@ ShapeDistance ExactShape::distance(const btVector3& point) const {
   }
 }
 
-/// At the centre, no direction is distinguished: any one is valid.
+/// At the centre no direction is special: any one is valid.
 ShapeDistance ExactShape::fromBall(const btVector3& point) const {
   const btScalar length = point.length();
   return {length - radius_, length > SIMD_EPSILON * radius_ ? point / length : alongAxis((axis_ + 1) % 3, 1)};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: the distances of points from shapes for which there are formulas.
+// Between the libraries: exact distances of points from shapes that have formulas for them.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -25,8 +25,8 @@ class TETSKIN_SOLVER_API ExactShape {
   /// Empty for any other shape.
   static std::optional<ExactShape> exactShape(const btCollisionShape& shape);
 
-  /// The signed distance. A point inside gets the distance to the nearest point of the surface; if there are several
-  /// nearest points, to one of them. Cost O(1)
+  /// The signed distance. Inside, it is the distance to the nearest point of the surface; if several are nearest, to
+  /// one of them. Cost O(1)
   ShapeDistance distance(const btVector3& point) const;
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What an application moves once per frame, between its places: a curve whose velocity continues that of the frame
-// before, and ends with the one that the last three frames let expect. On straight paths between the places, velocities
-// would jump with each frame, in a single step: what is held would be torn off, or creep.
+// The path, between two places, of something that an application moves once per frame: a curve that starts with the
+// velocity of the frame before, and ends with the velocity that the last three frames suggest. On straight paths,
+// velocities would jump once per frame, within a single step: held objects would be torn off, or creep.
 //
-// A cubic in Hermite's form; its end velocity is that of the cubic through the last four places. Of motions whose third
-// differences are not small (the application stops it at once, or its places are noisy), nothing is expected.
+// A cubic in Hermite form; its end velocity is that of the cubic through the last four places. If a motion's third
+// differences are not small (the application stops it at once, or its places are noisy), nothing is extrapolated.
 #pragma once
 
 #include <LinearMath/btVector3.h>
@@ -17,11 +17,11 @@
 
 namespace tetskin::bullet_detail {
 
-/// The way from the beginning of a frame, of positions in m or of rotation vectors in radians.
+/// The path from the beginning of a frame, of positions in m or of rotation vectors in radians.
 struct FrameCurve {
-  btVector3 way{0, 0, 0};    ///< in the whole frame
-  btVector3 early{0, 0, 0};  ///< by how much more it would be at the velocity of the beginning
-  btVector3 late{0, 0, 0};   ///< by how much more it would be at the velocity of the end
+  btVector3 way{0, 0, 0};    ///< over the whole frame
+  btVector3 early{0, 0, 0};  ///< extra path if it kept the velocity of the beginning
+  btVector3 late{0, 0, 0};   ///< extra path if it had the velocity of the end throughout
 
   /// fraction  of the frame's time, 0 to 1
   btVector3 at(btScalar fraction) const {
@@ -42,13 +42,12 @@ struct FrameCurve {
   }
 };
 
-/// The motion in the frames before. All zero: it stands.
+/// The motion in the frames before. All zero: at rest.
 struct FrameMotion {
   btVector3 velocity{0, 0, 0};               ///< at the end of the last frame, per second
   btVector3 mean{0, 0, 0}, before{0, 0, 0};  ///< mean velocities of the last frame and of the one before
   btScalar seconds = 0, secondsBefore = 0;   ///< of these frames
 
-  /// The curve of the next frame.
   FrameCurve next(const btVector3& way, btScalar duration) {
     assert(duration > 0);
     const btVector3 now = way / duration;
@@ -56,7 +55,7 @@ struct FrameMotion {
     FrameCurve curve;
     curve.way = way;
     curve.early = velocity * duration - way;
-    // Of a motion that is not smooth: no overshoot, as far as its places allow it (Fritsch and Carlson's bound).
+    // For a motion that is not smooth: no overshoot, as far as its places allow it (Fritsch and Carlson's bound).
     const btScalar most = 2 * way.length(), early = curve.early.length();
     if (!smooth && early > most) curve.early *= most / early;
     velocity = smooth ? endVelocity(now, duration) : now;
@@ -79,8 +78,8 @@ struct FrameMotion {
   }
 
  private:
-  /// Of frames of uneven length, that of the parabola through the last three places: where Bullet's steps do not fit
-  /// into the application's frames, its places are not where the steps' times would have them, and more would be noise.
+  /// With frames of uneven length, the end velocity of the parabola through the last three places: when Bullet's steps
+  /// do not fit into the application's frames, places do not match the steps' times, and a higher order would be noise.
   btVector3 endVelocity(const btVector3& now, btScalar duration) const {
     constexpr btScalar kEven = btScalar(0.01);
     const btVector3 second = (now - mean) / (duration + seconds);

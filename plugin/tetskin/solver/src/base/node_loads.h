@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// For other libraries: constant forces on nodes that act for a number of steps. The solver owns them, so that a
-// snapshot holds those that act, and brings them back.
+// For other libraries: constant forces on nodes, for a number of steps. The solver owns them, so that a snapshot holds
+// and restores the active ones.
 #pragma once
 
 #include <tetskin/solver/src/base/row_source.h>
@@ -26,7 +26,7 @@ class NodeLoads : public RowSource {
   void add(btSoftBody& body, NodePushes forces, int steps);
   bool empty() const { return loads_.empty(); }
   void drop(const btSoftBody& body);
-  /// Drops loads on bodies that are not in their world any more.
+  /// Drops loads on bodies that are no longer in their world.
   void dropAllBut(const btAlignedObjectArray<btSoftBody*>& world);
 
   std::vector<PointJoint>* joints(btScalar seconds) override;

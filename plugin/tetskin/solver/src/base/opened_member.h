@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Members of Bullet's classes that it does not show. Access is not checked where a template is instantiated explicitly
-// ([temp.spec.general]), so that this is C++ as it is written, and breaks at compile time when a member is renamed.
-// Only snapshots, and what must not change a world by looking at it, may reach into Bullet in this way.
+// Access to private members of Bullet's classes. Access is not checked in an explicit instantiation of a template
+// ([temp.spec.general]): this is valid C++, and fails to compile when a member is renamed. Only snapshots, and code
+// that must not change a world by looking at it, may reach into Bullet in this way.
 #pragma once
 
 #include <tetskin/core/src/base/compiler.h>
@@ -12,7 +12,7 @@ namespace tetskin::bullet_detail {
 
 TETSKIN_FRIENDS_OF_TEMPLATES
 
-/// The only member of a type, of a class, that is opened: after
+/// Tag of one private member of a class, by the types of both: after
 ///     using ThatMember = Hidden<Object, Type>;
 ///     template struct Opened<ThatMember, &Object::m_hidden>;
 /// `object.*memberOf(ThatMember())` is that member.

@@ -9,7 +9,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// By how much the products of a rotation's columns may differ from those of exact ones.
+/// By how much products of a rotation's columns may differ from exact ones.
 constexpr btScalar kNotRigid = btScalar(1e-3);
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::solver: a rigid motion that takes bodies, and what is remembered of them, to another place. In
-// double, so that it neither stretches what it turns, nor takes digits from what it moves.
+// Internal to tetskin::solver: a rigid motion that takes bodies, and all that is remembered of them, to another place.
+// In double, so that it neither stretches what it turns nor loses digits of what it moves.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -14,7 +14,7 @@ namespace tetskin::bullet_detail {
 
 struct Placement {
   bool turns = false;
-  std::array<double, 9> turn{};  ///< a rotation about the origin, by rows; not used where nothing turns
+  std::array<double, 9> turn{};  ///< a rotation about the origin, by rows; unused if nothing turns
   std::array<double, 3> by{};    ///< after the rotation
 
   explicit Placement(const btVector3& translation);
@@ -37,10 +37,9 @@ struct Placement {
   Eigen::Vector3d turnedExactly(const btVector3& vector) const;
 };
 
-/// True for a place that a surface can follow: finite, and not beyond Limits::kMaxCoordinate.
+/// True for a position that a surface can be in: finite, and not beyond Limits::kMaxCoordinate.
 bool isUsable(const btVector3& place);
-/// True for a rotation and a translation, the latter to a usable place; false where a transform scales, shears or
-/// mirrors.
+/// True for a rotation and a translation to a usable position; false if a transform scales, shears or mirrors.
 bool isRigid(const btTransform& motion);
 
 }  // namespace tetskin::bullet_detail

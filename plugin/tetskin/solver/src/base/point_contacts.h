@@ -16,16 +16,16 @@ namespace tetskin::bullet_detail {
 struct PointContact {
   btSoftBody* body = nullptr;                 ///< the body of the point
   std::uint32_t point = 0;                    ///< number of the point, the same in each step
-  std::uint32_t sample = 0;                   ///< which of the places that have this number
+  std::uint32_t sample = 0;                   ///< tells apart the places that share this number
   CarriedPoint at;                            ///< the point
   const btCollisionObject* object = nullptr;  ///< rigid body, link or any other collision object; or a soft body
-  CarriedPoint onObject;                      ///< where the point is in a soft body; of other objects: none
-  btVector3 position;                         ///< when the step begins
+  CarriedPoint onObject;                      ///< the point in the object, if that is a soft body; otherwise unused
+  btVector3 position;                         ///< at the beginning of the step
   btVector3 normal;                           ///< away from the object, of unit length
-  btScalar distance = 0;                      ///< along the normal, when the step begins, minus the distance to be kept
-  btScalar predicted = 0;  ///< the distance that the step would reach without contact; of rigid objects only
+  btScalar distance = 0;   ///< along the normal, at the beginning of the step, minus the distance to be kept
+  btScalar predicted = 0;  ///< the distance that the step would reach without contact; for rigid objects only
   btScalar friction = 0;   ///< coefficient of the pair
-  /// The impulse of the object on the soft body in the step: force times seconds. Written by the solver.
+  /// The impulse of the object on the soft body in the step: force times seconds. The solver writes it.
   btVector3 impulse{0, 0, 0};
 };
 

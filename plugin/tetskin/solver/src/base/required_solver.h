@@ -19,7 +19,7 @@ namespace tetskin::bullet_detail {
 constexpr const char* kUseDeformableSolver =
     "create the world and its constraint solver with a DeformableSolver in place of Bullet's";
 
-/// The solver as one of these; null if it is another one.
+/// The solver as a DeformableSolver; null if it is another class.
 TETSKIN_SOLVER_API DeformableSolver* deformableSolver(btSoftBodySolver* solver);
 /// The solver of the body's world; null if the body is in none, or its world has another solver.
 TETSKIN_SOLVER_API DeformableSolver* deformableSolverOf(const btSoftBody& body);
@@ -32,7 +32,7 @@ TETSKIN_SOLVER_API DeformableSolver* deformableSolverOf(btDeformableMultiBodyDyn
 /// True within a step, and between the steps of a `stepSimulation`: the state of the world is not complete.
 TETSKIN_SOLVER_API bool isWithinStep(const DeformableSolver& solver);
 
-/// Ok if nothing must be changed; otherwise InvalidOption, with a message about everything that must be.
+/// Ok if nothing needs to be changed; otherwise InvalidOption, with a message that lists everything that must be.
 /// subject  what was requested: "surface contact"
 TETSKIN_SOLVER_API Status refusal(const std::string& subject, const std::vector<std::string>& changes);
 
@@ -44,17 +44,18 @@ template <>
 struct Access<DeformableSolver> {
   /// What only the library sees: see step.h.
   static DeformableSolver::Impl& impl(const DeformableSolver& solver);
-  /// `requireOwnSolve` of a world's solver, which knows the world from then on: in the middle of a step, it can tell
-  /// which objects are there.
+  /// `requireOwnSolve` of a world's solver. The solver knows the world from then on, and can tell during a step which
+  /// objects are in it.
   static TETSKIN_SOLVER_API void requireOwnSolve(DeformableSolver& solver, btDeformableMultiBodyDynamicsWorld& world);
   /// Applies forces in the next steps. Wakes the body, which is in the solver's world.
   /// forces  world space, mass times length / s^2
   /// steps   1 or more
   static TETSKIN_SOLVER_API void addLoads(DeformableSolver& solver, btSoftBody& body, bullet_detail::NodePushes forces,
                                           int steps);
-  /// Forgets all that the solver remembers of a body, and what acts on it for a number of steps. Not within a step.
+  /// Forgets all that the solver remembers of a body, including loads that act on it for a number of steps. Not within
+  /// a step.
   static void reset(DeformableSolver& solver, btSoftBody& body);
-  /// Forgets what the body has touched, and how it has slept; takes the nodes that are led along. Not within a step.
+  /// Forgets a body's contacts and its sleep history; moves its driven nodes along. Not within a step.
   /// moveNodes  moves the nodes of the body
   static void teleport(DeformableSolver& solver, btSoftBody& body, const bullet_detail::Placement& placement,
                        const std::function<void()>& moveNodes);

@@ -14,7 +14,7 @@ class btSoftBody;
 
 namespace tetskin::bullet_detail {
 
-/// The product a a^T, which projects to the direction of a vector of unit length.
+/// The product a a^T, which projects onto the direction of a unit vector.
 inline btMatrix3x3 outerSquare(const btVector3& a) {
   return {a.x() * a.x(), a.x() * a.y(), a.x() * a.z(), a.y() * a.x(), a.y() * a.y(),
           a.y() * a.z(), a.z() * a.x(), a.z() * a.y(), a.z() * a.z()};
@@ -23,26 +23,26 @@ inline btMatrix3x3 outerSquare(const btVector3& a) {
 /// A constraint between a point of a soft body and a point of a rigid object, or a point in space. World space.
 struct PointJoint {
   btSoftBody* body = nullptr;
-  CarriedPoint at;                                      ///< the body's point
-  const btCollisionObject* object = nullptr;            ///< null: a point in space, which does not move
-  btVector3 anchor{0, 0, 0};                            ///< on the object, when the step begins
-  btVector3 offset{0, 0, 0};                            ///< from there to the body's point; the constraint removes it
-  btScalar stiffness = 0;                               ///< impulse over velocity; 0: as stiff as possible
-  btScalar maximum = BT_LARGE_FLOAT;                    ///< bound of the impulse
+  CarriedPoint at;                            ///< the body's point
+  const btCollisionObject* object = nullptr;  ///< null: a point in space, which does not move
+  btVector3 anchor{0, 0, 0};                  ///< on the object, when the step begins
+  btVector3 offset{0, 0, 0};                  ///< on the object, at the beginning of the step
+  btScalar stiffness = 0;                     ///< from there to the body's point; the constraint drives it to 0
+  btScalar maximum = BT_LARGE_FLOAT;          ///< bound of the impulse
   btMatrix3x3 directions = btMatrix3x3::getIdentity();  ///< projection to the constrained directions
-  /// The impulse of the object on the soft body in the step: force times seconds. Written by the solver, unless it is
+  /// The impulse of the object on the soft body in the step: force times seconds. The solver writes it, unless it is
   /// constant.
   btVector3 impulse{0, 0, 0};
-  bool constant = false;  ///< a load: there is no constraint, and the impulse is given
+  bool constant = false;  ///< a load: a given impulse, not a constraint
 };
 
-/// An entry in the world's list of forces, where a DeformableSolver finds it and calls it in each step. It applies no
-/// force itself.
+/// An entry in the world's list of forces, in which a DeformableSolver finds it; the solver calls it in each step. It
+/// applies no force itself.
 class TETSKIN_SOLVER_API RowSource : public InactiveForce {
  public:
-  /// Contacts of points of awake soft bodies with soft bodies, another one or another part of the same one.
-  /// Positions are those at the beginning of the step, velocities those that the bodies would have at its end without
-  /// constraints. The result stays valid until the next call; the solver writes the impulses.
+  /// Contacts of points of awake soft bodies with soft bodies: another one, or another part of the same one. Positions
+  /// are those at the beginning of the step; velocities are those at its end if there were no constraints. The result
+  /// stays valid until the next call; the solver writes the impulses.
   /// threads  of the solver, or null
   virtual PointContacts* contacts(btScalar /*seconds*/, ParallelFor* /*threads*/) { return nullptr; }
   virtual std::vector<PointJoint>* joints(btScalar /*seconds*/) { return nullptr; }

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Tells whether an object still has the shape that something was computed from. Applications scale shapes, and change
-// them in other ways, without telling anybody; and another shape may have been created at the address of one.
+// Tells whether an object still has the shape from which something was computed. Applications scale and change shapes
+// without notice, and a new shape may have been created at the address of an old one.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
 namespace tetskin::bullet_detail {
 
-/// A shape, as far as its address and its box tell it from others: hulls of equal boxes may differ (see
-/// HullFaces::fits).
+/// Identifies a shape by its address and its box; hulls with equal boxes may still differ (see HullFaces::fits).
 struct ShapeKey {
   const btCollisionShape* shape = nullptr;
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< its box, in its own space

@@ -9,7 +9,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// A body has none before its first step, as in a world that was newly built.
+/// A body has none before its first step, for instance in a world that was newly built.
 void visitNodeContacts(WorldStream& stream, BodyWithTrees& body, BodyChannel& channel) {
   btScalar size = channel.nodeContacts() ? channel.contactSize() : btScalar(0);
   const btScalar now = size;
@@ -30,7 +30,7 @@ void visitContactSearch(WorldStream& stream) {
     BodyChannel& channel = BodyChannel::of(*body);
     channel.visitState(stream);
     visitNodeContacts(stream, *body, channel);
-    // There or not, as `checkForces` has found.
+    // `checkForces` has found that both worlds have it, or neither.
     if (const std::shared_ptr<BodyContacts> atSurface = channel.surfaceContacts().lock()) atSurface->visitState(stream);
     if (stream.failed()) return;
   }

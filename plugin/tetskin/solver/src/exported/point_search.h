@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// For other libraries: contact of points of a body with rigid objects, in place of contact at its nodes.
+// For other libraries: contact of a body's surface points with rigid objects, in place of contact at its nodes.
 #pragma once
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
@@ -17,13 +17,13 @@ class BodyContacts;
 /// Distances of a search, world lengths.
 struct SearchDistances {
   btScalar margin = 0;       ///< kept between the points and rigid objects
-  btScalar slack = 0;        ///< beyond it, up to which clearances are computed and kept
+  btScalar slack = 0;        ///< range beyond the margin within which clearances are computed and kept
   btScalar thickness = 0;    ///< depth up to which a point behind a mesh's surface still belongs to it
-  btScalar beyondNodes = 0;  ///< by which points may be outside of the nodes' box
+  btScalar beyondNodes = 0;  ///< how far points may be outside of the nodes' box
 };
 
-/// Finds the contacts of these points from the next step on, for as long as it exists. It, the body and the world may
-/// be destroyed in any order.
+/// Finds the contacts of these points from the next step on, as long as it exists. It, the body and the world may be
+/// destroyed in any order.
 class TETSKIN_SOLVER_API PointSearch {
  public:
   /// world  with a btCollisionDispatcher

@@ -32,13 +32,13 @@ BodyGravity* gravityOf(btDeformableLagrangianForce* force) {
   return asOwn<BodyGravity>(OwnObject::Kind::BodyGravity, force);
 }
 
-/// Tells classes apart: the application's by the type that they have for Bullet, the library's by what they write.
+/// Tells classes apart: the application's by Bullet's type number, the library's by what they write.
 std::int64_t kindOf(btDeformableLagrangianForce* force) {
   if (inactiveForce(force)) return -1;
   return gravityOf(force) ? -2 : static_cast<std::int64_t>(force->getForceType());
 }
 
-/// Where the leaves of a tree are, by their places in the body's list of nodes or faces.
+/// The order of a tree's leaves, by their indices in the body's list of nodes or faces.
 template <class Item>
 void addLeaves(Hash& hash, const btDbvtNode* node, const btAlignedObjectArray<Item>& items) {
   if (!node) return;
@@ -47,8 +47,8 @@ void addLeaves(Hash& hash, const btDbvtNode* node, const btAlignedObjectArray<It
   for (int k = 0; k < 2 && node->isinternal(); ++k) addLeaves(hash, node->childs[k], items);
 }
 
-/// In the order in which Bullet's own search walks these trees, it finds contacts. They keep their form in steps;
-/// moving a body by hand changes that of the nodes, and appending to a body that of both.
+/// Bullet's own search finds contacts in the order of these trees. Steps keep the form of the trees; moving a body by
+/// hand changes that of the nodes, and appending to a body that of both.
 std::int64_t treesOf(const btSoftBody& body) {
   Hash hash;
   addLeaves(hash, body.m_ndbvt.m_root, body.m_nodes);
@@ -112,7 +112,7 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
     if (bodies[b]->m_clusters.size() > 0) stream.refuse("a soft body with clusters");
     bool byBullet = solvedHere.count(bodies[b]) == 0 || collidesByBulletsTrees(*bodies[b]);
     stream(byBullet);
-    if (byBullet) stream.same(treesOf(*bodies[b]), "a soft body that Bullet searches contacts of had other trees");
+    if (byBullet) stream.same(treesOf(*bodies[b]), "a soft body whose contacts Bullet searches had other trees");
     const BodyChannel* channel = channelOf(*bodies[b]);
     const bool atSurface = channel && channel->surfaceContacts().lock();
     stream.same(atSurface, "a soft body had contact at its surface, or had none");
@@ -126,7 +126,7 @@ void visitForces(WorldStream& stream, DeformableSolver& solver) {
   }
 }
 
-/// A record that is there now but was not there then begins anew; one that was there then is left out.
+/// A record that exists now but did not then begins anew; one that existed only then is skipped.
 void visitRecord(WorldStream& stream, const std::weak_ptr<RecordedForces>& inSolver) {
   const std::shared_ptr<RecordedForces> recorded = inSolver.lock();
   bool wasThere = recorded != nullptr && stream.withRecords();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// For other libraries: what a DeformableSolver, its forces and its search for contacts remember, and which classes of
-// its own a world has. This is all that snapshots see of it.
+// For other libraries: what a DeformableSolver, its forces and its search for contacts remember, and which of their
+// classes a world contains. Snapshots see nothing else of it.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btActionInterface.h>
@@ -12,17 +12,17 @@
 
 namespace tetskin::bullet_detail {
 
-// Each of these serves both directions. What is only prepared, or computed anew in each step, is in none of them.
+// Each of these serves both directions. Data that is only prepared, or recomputed in each step, is in none of them.
 /// What the solver remembers from step to step.
 TETSKIN_SOLVER_API void visitSolver(WorldStream& stream, DeformableSolver& solver);
-/// How the application has set the solver: not part of a snapshot.
+/// The application's settings of the solver: not part of a snapshot.
 TETSKIN_SOLVER_API void visitSolverSettings(WorldStream& stream, DeformableSolver& solver);
 /// The entries of the solver's list of forces: elasticity, soft contacts, joints at surfaces.
 TETSKIN_SOLVER_API void visitForces(WorldStream& stream, DeformableSolver& solver);
-/// Before any of the others: what the solver's bodies and forces must be. Refuses what cannot be saved, and, while a
-/// snapshot is restored, a world with others.
+/// Call it before the others: checks the solver's bodies and forces. Refuses what cannot be saved and, while a snapshot
+/// is restored, a world that differs.
 TETSKIN_SOLVER_API void checkForces(WorldStream& stream, DeformableSolver& solver);
-/// What the search for contacts of soft bodies with rigid objects remembers.
+/// State of the search for contacts of soft bodies with rigid objects.
 TETSKIN_SOLVER_API void visitContactSearch(WorldStream& stream);
 
 /// True for the broadphase, and for the dispatcher, of a `DeformableWorld`.

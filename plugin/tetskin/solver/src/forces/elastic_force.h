@@ -9,12 +9,12 @@
 
 namespace tetskin::bullet_detail {
 
-/// A `DeformableSolver` finds the body here, and solves for it: for Bullet, the force is always 0. It is in the list so
-/// that Bullet reports when the body leaves the world, and can ask for its energy.
+/// A `DeformableSolver` finds the body by this entry and solves for it; to Bullet the force is always 0. It is in the
+/// list so that Bullet reports when the body leaves the world, and can ask for its energy.
 ///
-/// Corotated linear elasticity: every tet's rotation is removed from its deformation. The tet therefore neither resists
-/// rotation nor, as with linear elasticity, swells by it; it recovers from being flat or inside out. A quadratic tet
-/// has four such rotations.
+/// Corotated linear elasticity: every tet's rotation is removed from its deformation. So a tet neither resists rotation
+/// nor swells by it, as in linear elasticity, and it recovers from being flat or inverted. A quadratic tet has four
+/// such rotations.
 class ElasticForce : public InactiveForce {
  public:
   /// linear          tets of the body: see `restTetsOf`
@@ -26,14 +26,14 @@ class ElasticForce : public InactiveForce {
                std::vector<QuadraticShape> quadratic, const SolverSettings& settings);
 
   void setMaterial(const ElasticMaterial& material);
-  /// Forgets all steps. The body must have the tets and rest shapes with which it was created.
+  /// Forgets all steps. The body must still have the tets and rest shapes with which it was created.
   void reset();
   /// The world that its body is about to enter.
   void setWorld(btDeformableMultiBodyDynamicsWorld& world);
   const SolverSettings& settings() const { return settings_; }
   ForcedBody& body() { return body_; }
 
-  /// Called in each step: rebuilds what the application has changed in the body.
+  /// Called in each step: rebuilds whatever the application has changed in the body.
   void reinitialize(bool nodeUpdated) override;
   double totalElasticEnergy(btScalar dt) override;
 

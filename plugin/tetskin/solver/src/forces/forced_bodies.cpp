@@ -13,9 +13,9 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// By how much a tet may differ from its nodes at rest, as a share of its size, because of rounding of the rest shapes
-/// from one tet to the next. There is no such bound for the nodes of a cage: the tets were made of rounded ones, at the
-/// place in the world where the body was created, which may be anywhere.
+/// By how much a tet may differ from its nodes at rest, as a share of its size, because rest shapes are rounded tet by
+/// tet. A cage's nodes have no such bound: the tets were made of rounded nodes, wherever in the world the body was
+/// created.
 constexpr double kRoundedTets = 3e-5;
 
 /// 0: it is pinned.
@@ -47,8 +47,8 @@ btScalar restMeasureOf(const btSoftBody& body) {
   return sum;
 }
 
-/// Bullet's own `transform` would make the present lengths of links those at rest. Where a node is at its own position
-/// in double, it stays there.
+/// Bullet's own `transform` would take the present lengths of links for rest lengths. A node whose position did not
+/// change in double keeps it.
 void carryNodes(btSoftBody& body, Dynamics* dynamics, const Placement& placement) {
   const int count = body.m_nodes.size();
   if (dynamics && dynamics->nodeCount() != static_cast<std::size_t>(count)) dynamics = nullptr;
@@ -180,7 +180,7 @@ bool ForcedBody::hasItsRestShapes() const {
   return hasOwnCounts() && restMeasureOf(*body) == restMeasure;
 }
 
-/// A body that has been scaled, or has got nodes, since the last step gets new dynamics as the next one begins.
+/// A body that was scaled or got nodes since the last step gets new dynamics at the beginning of the next.
 void ForcedBody::visitState(WorldStream& stream) {
   bool isCurrent = hasItsRestShapes();
   stream(isCurrent);
@@ -200,7 +200,7 @@ void ForcedBody::visitState(WorldStream& stream) {
       dynamics->setMass(at, mass);
     } else {
       outdated |= dynamics->matrix().mass(at) != mass;
-      // Pinned nodes are led to where the application has them: the next step finds out whether they jump.
+      // Pinned nodes are led to where the application puts them: the next step finds out whether they jump.
       continues &= !(node.m_im > 0) || dynamics->continues(at, node.m_x, node.m_vn);
     }
   }
@@ -208,7 +208,7 @@ void ForcedBody::visitState(WorldStream& stream) {
     const btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
     btVector3 reached = node.m_vn;
     if (node.m_im == 0) {
-      // The application may have stopped it since, or led it on.
+      // The application may since have stopped it, or moved it on.
       if (stream.saving()) reached = fromPoint(velocity);
       stream(reached);
     }

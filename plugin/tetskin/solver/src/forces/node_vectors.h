@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::solver: conversion between Bullet's vectors and those of the elastic library, which stores a
-// point in 3 contiguous scalars or in 3 wide ones.
+// Internal to tetskin::solver: conversion between Bullet's vectors and the elastic library's, which store a point in 3
+// contiguous scalars or in 3 wide ones.
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>
@@ -39,8 +39,8 @@ inline btVector3 fromSmall(const Small3& v) {
   return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
 }
 
-/// A velocity without components too small to move a position within the step: far from the origin, contacts at rounded
-/// positions would keep such velocities forever.
+/// A velocity without the components that are too small to move a position within the step: far from the origin,
+/// contacts at rounded positions would keep such velocities forever.
 inline btVector3 movingComponent(const btVector3& from, btVector3 velocity, btScalar dt) {
   for (int k = 0; k < 3; ++k) {
     if (from[k] + dt * velocity[k] == from[k]) velocity[k] = 0;

@@ -13,10 +13,10 @@ namespace {
 
 using elastic_detail::RestQuadraticTet;
 using elastic_detail::RestTets;
-using Gradients = Eigen::Matrix<double, 4, 3>;  // of the four barycentric weights, by rows
+using Gradients = Eigen::Matrix<double, 4, 3>;  // of the four barycentric weights, one per row
 
-/// By how much the gradients of the eight tets may differ, as a share: more than rounding makes of nodes that are a
-/// thousand edges away from the origin, while what a quadratic tet leaves out of account is not larger.
+/// By how much the gradients of the eight tets may differ, relatively: more than the rounding of nodes a thousand edges
+/// away from the origin, and no more than the error of a quadratic tet itself.
 constexpr double kTolerance = 1e-2;
 
 Gradients gradientsOf(const std::array<double, 9>& ofOthers) {
@@ -26,7 +26,8 @@ Gradients gradientsOf(const std::array<double, 9>& ofOthers) {
   return all;
 }
 
-/// The gradients of the quadratic tet's weights by the rest shape of one of its parts; empty if it is not its part.
+/// The gradients of the quadratic tet's weights, from the rest shape of one of its parts; empty if it is not a part of
+/// it.
 std::optional<Gradients> gradientsBy(const RestTets& linear, std::size_t part, const QuadraticTet& tet) {
   const Gradients own = gradientsOf(linear.gradients[part]);
   Gradients whole = Gradients::Zero();
@@ -38,7 +39,7 @@ std::optional<Gradients> gradientsBy(const RestTets& linear, std::size_t part, c
   return whole;
 }
 
-/// The quadratic tet with the rest shape that its parts have in common; empty if they have none.
+/// The quadratic tet with the rest shape that its parts agree on; empty if they do not.
 std::optional<RestQuadraticTet> restOf(const RestTets& linear, const QuadraticShape& shape) {
   Gradients mean = Gradients::Zero();
   std::array<Gradients, kSubTets> byPart;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Some limits of joints are impulses per step: those of a hinge's motor, of a multibody's motors and stops, and that at
-// which a joint breaks. Where a world divides the application's step, each part has its share of them.
+// Some limits of joints are impulses per step: those of a hinge's motor, of a multibody's motors and stops, and a
+// joint's breaking threshold. When a world divides the application's step, each part gets its share of them.
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -12,10 +12,11 @@
 
 namespace tetskin::bullet_detail {
 
-/// Divides the limits of all joints of a world, as long as it exists. What the application sets meanwhile stays.
+/// Divides the limits of all joints of a world, as long as this exists. Limits that the application sets meanwhile
+/// stay.
 class DividedLimits {
  public:
-  /// parts  1 or more; of 1, nothing happens
+  /// parts  1 or more; with 1 nothing happens
   DividedLimits(btMultiBodyDynamicsWorld& world, int parts);
   ~DividedLimits();
   DividedLimits(const DividedLimits&) = delete;
@@ -29,7 +30,7 @@ class DividedLimits {
 
   btMultiBodyDynamicsWorld& world_;
   btScalar parts_;
-  // By joint: a callback may have removed it.
+  // By joint, because a callback may have removed it.
   std::vector<std::pair<const btTypedConstraint*, Limit>> breaking_, motors_;
   std::vector<std::pair<const btMultiBodyConstraint*, Limit>> multibodies_;
 };

@@ -10,11 +10,11 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Seconds. A node that is moved again after a longer pause begins a new motion.
+/// Seconds. After a longer pause, a node that is moved again begins a new motion.
 constexpr btScalar kMaxFrame = btScalar(0.1);
-/// Intervals: a node that is moved again after more than these has stood.
+/// In intervals: a node that is moved again after a longer pause has been at rest.
 constexpr btScalar kStood = btScalar(1.5);
-/// Fraction of a step's path: a node nearer than this to its target has arrived. Bullet may have bounded its velocity.
+/// Fraction of a step's path: a node nearer to its target has arrived. Bullet may have bounded its velocity.
 constexpr btScalar kArrived = btScalar(1e-3);
 
 bool wasMoved(const btSoftBody::Node& node) {
@@ -30,7 +30,7 @@ bool isAState(const btSoftBody& body) {
   return false;
 }
 
-/// Sets the velocities to 0: they would otherwise stay, and move the nodes further.
+/// Sets the velocities to 0: otherwise they would stay, and move the nodes further.
 void stop(btSoftBody& body, const std::vector<DrivenNode>& nodes) {
   for (const DrivenNode& driven : nodes) {
     if (driven.node >= body.m_nodes.size()) continue;
@@ -113,7 +113,7 @@ void DrivenNodes::beginBody(btSoftBody& body, btScalar dt) {
   if (known || !found_.empty()) bodies_[&body].swap(found_);
 }
 
-/// Where they were compared with those of the body, positions and velocities are the same bits afterwards, too.
+/// Positions and velocities that had the body's bits before still have them afterwards.
 void DrivenNodes::carry(btSoftBody& body, const Placement& placement, const std::function<void()>& moveNodes) {
   Nodes* nodes = find(body);
   if (!nodes) return moveNodes();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bullet's deformable world adds forces and gravity to the velocities of rigid bodies before it solves, takes gravity
-// out of the forces, and solves as the plain world does, whose solver adds the forces: they count twice, and contacts,
-// joints, and damping see velocities that gravity has changed already. Here its solver adds all of them, once.
+// Bullet's deformable world adds forces and gravity to the velocities of rigid bodies before it solves, removes gravity
+// from the forces, and then solves as the plain world does, whose solver adds the forces again. So forces count twice,
+// and contacts, joints and damping see velocities already changed by gravity. Here the solver adds all of them, once.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -18,14 +18,14 @@ class RigidForces {
  public:
   using Bodies = btAlignedObjectArray<btRigidBody*>;
 
-  /// bodies  those of the world that are not static; they must live as long as this
+  /// bodies  those of the world that are not static; must outlive this
   explicit RigidForces(const Bodies& bodies) : bodies_(bodies) {}
 
-  /// When a step begins: notes the velocities.
+  /// At the beginning of a step: stores the velocities.
   void begin();
-  /// After Bullet's prediction: gives the velocities back, and gravity to the forces. Predicted transforms stay.
+  /// After Bullet's prediction: restores the velocities, and adds gravity to the forces. Predicted transforms stay.
   void afterPrediction(btScalar seconds);
-  /// After Bullet's solve: takes gravity from the forces, which are the application's again.
+  /// After Bullet's solve: removes gravity from the forces, which are again the application's.
   void end();
 
  private:
@@ -34,7 +34,7 @@ class RigidForces {
     btVector3 velocity, turning;
     bool hasGravity = false;
   };
-  /// What was noted of a body of the world, by its number there; null for one that was not there.
+  /// The record of a body, by its number in the world; null for one that was not there.
   Before* noted(int number);
 
   const Bodies& bodies_;

@@ -8,13 +8,13 @@
 
 namespace tetskin::bullet_detail {
 
-/// Bullet's operations in Bullet's order: where its C library rounds sine and cosine correctly, these are its bits.
+/// Bullet's operations in Bullet's order: the same bits, if the C library rounds sine and cosine correctly.
 btMatrix3x3 turned(const btTransform& from, const btVector3& velocity, btScalar seconds) {
   const btScalar squared = velocity.length2();
   btScalar speed = squared > SIMD_EPSILON ? btSqrt(squared) : btScalar(0);
   if (speed * seconds > ANGULAR_MOTION_THRESHOLD) speed = ANGULAR_MOTION_THRESHOLD / seconds;
   const SineAndCosine half = sineAndCosine(static_cast<double>(btScalar(0.5) * speed * seconds));
-  constexpr auto kSlow = btScalar(0.001);  // below, a series takes the place of the sine
+  constexpr auto kSlow = btScalar(0.001);  // below, a series replaces the sine
   const btScalar part =
       speed < kSlow ? btScalar(0.5) * seconds - seconds * seconds * seconds * btScalar(0.020833333333) * speed * speed
                     : static_cast<btScalar>(half.sine) / speed;

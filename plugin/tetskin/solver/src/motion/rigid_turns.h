@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Turns of rigid bodies as Bullet makes them, but by our own sine: that of the C library, which Bullet takes, has other
-// last bits elsewhere.
+// Rotations of rigid bodies as Bullet computes them, but with our own sine: that of the C library, which Bullet uses,
+// has other last bits on other platforms.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -12,20 +12,20 @@
 
 namespace tetskin::bullet_detail {
 
-/// Rotation after a time, as of `btTransformUtil::integrateTransform`.
+/// Rotation after a time, as `btTransformUtil::integrateTransform` computes it.
 /// velocity  radians per second, world space
 btMatrix3x3 turned(const btTransform& from, const btVector3& velocity, btScalar seconds);
 
-/// Does for a world what Bullet does, once more.
+/// Repeats, for a world, the rotations that Bullet has computed.
 class RigidTurns {
  public:
   using Bodies = btAlignedObjectArray<btRigidBody*>;
 
   /// Turns the predicted transforms (`getInterpolationWorldTransform`), after Bullet's prediction.
   static void predict(const Bodies& bodies, btScalar seconds);
-  /// Notes the rotations from which Bullet is about to integrate.
+  /// Stores the rotations from which Bullet is about to integrate.
   void begin(const Bodies& bodies);
-  /// After that: turns the bodies. Those that Bullet's continuous detection has stopped on their way stay as they are.
+  /// Call it after that: turns the bodies, except those that Bullet's continuous detection has stopped on their way.
   void end(const Bodies& bodies, btScalar seconds) const;
 
  private:

@@ -15,10 +15,10 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Steps until the broadphase knows all neighbours of a body that was added in the state of sleep.
+/// Steps until the broadphase knows all neighbours of a body that was added asleep.
 constexpr int kStepsToPair = 2;
 
-/// True if the body sleeps, or is about to.
+/// True if the body sleeps, or is about to fall asleep.
 bool rests(const btSoftBody& body) {
   return !body.isActive() || body.getActivationState() == WANTS_DEACTIVATION || body.getDeactivationTime() > 0;
 }
@@ -49,7 +49,6 @@ Neighbour neighbourOf(const btCollisionObject& object) {
   return neighbour;
 }
 
-/// True if a neighbour has changed.
 bool wasChanged(const Neighbour& before, const Neighbour& now) {
   if (before.isObstacle != now.isObstacle) return true;
   if (!before.stands || !now.stands) return false;
@@ -84,8 +83,8 @@ Neighbour* findNeighbour(const btCollisionObject& object, RestingBody& sleeper) 
   return nullptr;
 }
 
-/// Records an object beside the body. An obstacle that is new has moved there by itself: while the body sleeps, its own
-/// box does not change.
+/// Records an object beside the body. A new obstacle has moved there by itself: while the body sleeps, its own box does
+/// not change.
 void see(const btCollisionObject& object, RestingBody& sleeper) {
   Neighbour* known = findNeighbour(object, sleeper);
   if (known) known->isHere = true;
@@ -119,8 +118,8 @@ void removeStale(RestingBody& sleeper) {
                            sleeper.neighbours.end());
 }
 
-/// Compares the body with what was stored of it. Bullet sets the velocities of a sleeping body to 0 in each step; one
-/// that the application has put to sleep may have some in the first, and may have been moved since.
+/// Compares the body with its stored state. Bullet sets the velocities of a sleeping body to 0 in each step; a body
+/// that the application has put to sleep may still have some in the first step, and may have been moved since.
 void seeItself(RestingBody& sleeper) {
   btSoftBody& body = *sleeper.body;
   if (body.isActive()) return;
@@ -134,7 +133,7 @@ void seeItself(RestingBody& sleeper) {
   sleeper.disturbed |= changed || (now.moves && !isNew);
 }
 
-/// The shape is that of the object, unless the application has given it another one since.
+/// The shape is the object's, unless the application has replaced it since.
 void visitState(WorldStream& stream, Neighbour& neighbour) {
   stream.object(neighbour.object);
   stream(neighbour.isSoft, neighbour.isObstacle, neighbour.stands, neighbour.transform, neighbour.friction,
@@ -149,14 +148,14 @@ void visitState(WorldStream& stream, Neighbour& neighbour) {
 
 }  // namespace
 
-/// A pinned node has the inverse mass 0. The products of one node do not wait for those of the one before.
+/// A pinned node has the inverse mass 0. The products of one node do not depend on those of the one before.
 SleepingState::SleepingState(const btSoftBody& body) : friction(body.m_cfg.kDF) {
   constexpr std::uint64_t kOdd[4] = {0x9E3779B97F4A7C15u, 0xC2B2AE3D27D4EB4Fu, 0x165667B19E3779F9u,
                                      0xD6E8FEB86659FD93u};
   const auto bitsOf = [](btScalar value) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof value);
-    // A product keeps nothing of the upper bits of a double but themselves: the signs of two would cancel out.
+    // In a product, the upper bits of a double affect only the upper bits: the signs of two would cancel.
     return bits ^ (bits >> 32);
   };
   for (int n = 0; n < body.m_nodes.size(); ++n) {

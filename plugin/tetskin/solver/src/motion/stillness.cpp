@@ -12,22 +12,22 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Bullet's threshold of sleep is a speed, 0.04 unless the application sets it. It is taken as that of a body of size 1
-/// under this gravity: others move as they do, at sqrt(gravity x size) times the speed.
+/// Bullet's threshold of sleep is a speed, 0.04 unless the application sets it. It is taken to be that of a body of
+/// size 1 under this gravity; for other bodies it scales with sqrt(gravity x size).
 constexpr btScalar kGravityOfThreshold = btScalar(9.81);
-/// Sizes per second that count as a speed of 1 where there is less gravity.
+/// Minimum of the speed unit, in sizes per second, for low gravity.
 constexpr btScalar kSizesPerSecond = btScalar(0.1);
-/// Sizes by which a node may be displaced while the body waits, at a threshold of 1.
+/// Bound of a node's displacement while the body waits, in body sizes, at a threshold of 1.
 constexpr btScalar kDisplacement = btScalar(0.025);
-/// Fraction of gravity by which a body is accelerated at most as it falls asleep, at a threshold of 1: forces stay as
-/// they are from then on, and are to add up to its weight. It is the mean over this fraction of the time in which
-/// gravity takes the body over its own size, as what is left of single steps' solves is larger.
+/// Largest acceleration of a body that falls asleep, as a fraction of gravity, at a threshold of 1: its forces stay as
+/// they are from then on, and should add up to its weight. A mean over time, because residuals of single steps' solves
+/// are larger: over this fraction of the time in which gravity moves the body by its own size.
 constexpr btScalar kUnbalanced = btScalar(0.025), kMeanTime = btScalar(0.3);
-/// Fraction of the threshold of sleep below which nodes are as a body falls asleep: faster ones still swing, and load
+/// Fraction of the sleep threshold that nodes must be below when a body falls asleep: faster ones still swing, and load
 /// one support after the other.
 constexpr btScalar kCalm = btScalar(0.1);
-/// Rounding of positions, in units of the last digit: far from the origin, nodes at rest jump by one now and then, and
-/// so do the forces of contacts.
+/// Rounding of positions, in units of the last digit: far from the origin, nodes at rest occasionally jump by one, and
+/// contact forces jump with them.
 constexpr btScalar kLastDigits = 4;
 
 btScalar gravityOf(const SolvedBody& solved) {
@@ -42,7 +42,7 @@ bool isPinned(const btSoftBody& body) {
   return false;
 }
 
-/// True if anything keeps the body from flying freely; contacts of Bullet's own bodies are not known.
+/// True if anything keeps the body from flying freely; contacts of Bullet's own bodies are not known here.
 bool isHeld(const SolvedBody& solved) {
   return !solved.elastic || *solved.hasRows || isPinned(*solved.body);
 }
@@ -60,7 +60,7 @@ btVector3 meanVelocity(const btSoftBody& body) {
   return mass > 0 ? momentum / mass : momentum;
 }
 
-/// An object that has waited long enough, by Bullet's count, has to wait on if it has not by ours.
+/// An object that has waited long enough by Bullet's count, but not by ours, must wait on.
 void setTime(btCollisionObject& object, btScalar time) {
   if (time == object.getDeactivationTime()) return;
   object.setDeactivationTime(time);
@@ -75,8 +75,8 @@ std::vector<btSoftBody*> Stillness::fallAsleep(const std::vector<btDiscreteDynam
   return asleep;
 }
 
-/// The islands are those of the step before. A soft body that has to wait for others must not be put to sleep by Bullet
-/// either, should the islands be others in this step.
+/// The islands are those of the last step. A soft body that has to wait for others must not be put to sleep by Bullet
+/// either, should its island differ in this step.
 void Stillness::sleepByIslands(const btCollisionObjectArray& objects, std::vector<btSoftBody*>& asleep) {
   std::unordered_map<int, bool> awake;  // by island with a soft body that has waited long enough
   for (int k = 0; k < objects.size(); ++k) {
@@ -134,7 +134,7 @@ void Stillness::judge(SolverBodies& bodies, const RigidUnknowns& rigids, btScala
   }
 }
 
-/// The time for which the body has been still: below 0 if it moves, and less than Bullet demands if it is not yet calm.
+/// The time for which the body has been still: below 0 if it moves, and below Bullet's limit if it is not yet calm.
 btScalar Stillness::timeOf(const SolvedBody& solved, btScalar seconds) {
   const btSoftBody& body = *solved.body;
   const btScalar size = sizeOf(body), gravity = gravityOf(solved), threshold = body.m_sleepingThreshold;
@@ -160,7 +160,7 @@ btScalar Stillness::timeOf(const SolvedBody& solved, btScalar seconds) {
   return isCalm ? time : std::min(time, std::max(gDeactivationTime - 2 * seconds, btScalar(0)));
 }
 
-/// Stores the positions anew if a node is not where it was.
+/// Stores the positions anew if a node has been displaced.
 bool Stillness::wasDisplaced(const btSoftBody& body, Wait& wait) {
   const auto count = static_cast<std::size_t>(body.m_nodes.size());
   const bool begins = wait.positions.size() != count;
@@ -175,8 +175,8 @@ bool Stillness::wasDisplaced(const btSoftBody& body, Wait& wait) {
   return !begins;
 }
 
-/// Each of them has been still for as long as the one that has been so for the shortest time. Bullet's islands do not
-/// know contacts of soft bodies, nor joints. Multibodies have their own count of time.
+/// Each is as long still as the one that has been still for the shortest time. Bullet's islands do not know contacts of
+/// soft bodies, nor joints. Multibodies have their own timer.
 void Stillness::waitForEachOther(const SolverBodies& bodies, const SolvedSystem& system,
                                  const RigidUnknowns& rigids) const {
   std::vector<btCollisionObject*> members;

@@ -3,7 +3,7 @@
 //
 // Internal to DeformableSolver: which bodies may fall asleep. Bullet puts a body to sleep that has been slower than a
 // speed in world units for two seconds, wherever it is. Here a body sleeps only if it would stay in place anyway: slow
-// relative to its size and gravity, about where it was when these two seconds began, and held by something.
+// relative to its size and gravity, near its place at the start of these two seconds, and supported.
 #pragma once
 
 #include <tetskin/solver/src/rows/rigid_unknowns.h>
@@ -16,13 +16,13 @@ namespace tetskin::bullet_detail {
 
 class Stillness {
  public:
-  /// Call it when a step begins, before it is known which bodies are awake: puts the bodies to sleep that have waited
-  /// long enough, with all others of their islands in the worlds, as Bullet does. But Bullet does so in the middle of a
-  /// step, and then solves a part of it only; the forces on the bodies shall be those of a whole step.
+  /// Call it when a step begins, before it is known which bodies are awake. Puts the bodies that have waited long
+  /// enough to sleep, with all others of their islands in the worlds, as Bullet does. But Bullet does so in the middle
+  /// of a step, and then solves only a part of it; the forces on the bodies should be those of a whole step.
   /// Returns  the soft bodies among them
   std::vector<btSoftBody*> fallAsleep(const std::vector<btDiscreteDynamicsWorld*>& worlds);
   /// Call it in each step when velocities and contacts are known, before Bullet judges by `m_maxSpeedSquared`: a body
-  /// that does not stay begins to wait anew, and bodies that are solved for together wait for each other.
+  /// that does not stay starts to wait anew, and bodies that are solved for together wait for each other.
   void judge(SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
 
   void shift(const btVector3& by);
@@ -35,10 +35,10 @@ class Stillness {
  private:
   /// A body that waits to fall asleep.
   struct Wait {
-    std::vector<btVector3> positions;  ///< of its nodes, when it began to
-    btVector3 velocity{0, 0, 0};       ///< of its centroid: the mean of the last steps
-    btScalar displacement = 0;         ///< by which a node may be displaced
-    btScalar speed = 0;                ///< which no node may reach
+    std::vector<btVector3> positions;  ///< of its nodes, when the wait began
+    btVector3 velocity{0, 0, 0};       ///< of its centroid, averaged over the last steps
+    btScalar displacement = 0;         ///< bound of a node's displacement
+    btScalar speed = 0;                ///< bound of a node's speed
     unsigned step = 0;                 ///< the last step in which it waited
   };
   btScalar timeOf(const SolvedBody& solved, btScalar seconds);

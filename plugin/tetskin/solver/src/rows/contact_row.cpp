@@ -16,7 +16,7 @@ btVector3 jointImpulse(const ContactRow& row, const btVector3& u, ContactRow::St
   return length > row.highest ? wanted * (row.highest / length) : wanted;
 }
 
-/// The derivative of a joint's impulse, bounded by its largest force as friction is bounded by the normal force.
+/// The derivative of a joint's impulse, which its largest force bounds as the normal force bounds friction.
 btMatrix3x3 jointTangent(const ContactRow& row, const btVector3& u, ContactRow::State state, btScalar kept) {
   if (state == ContactRow::State::Sticks) return row.directions * row.stiffness;
   const btVector3 direction = row.directions * (u + row.offsetVelocity);
@@ -24,7 +24,7 @@ btMatrix3x3 jointTangent(const ContactRow& row, const btVector3& u, ContactRow::
   return (row.directions - outerSquare(direction / length) * (1 - kept)) * (row.highest / length);
 }
 
-/// The velocity along the surface, including the one that would undo the offset within the step.
+/// The velocity along the surface, including the velocity that would undo the offset within the step.
 btVector3 slip(const ContactRow& row, const btVector3& u) {
   return u - row.normal.dot(u) * row.normal + row.offsetVelocity;
 }

@@ -12,41 +12,42 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// D over effective masses: gaps are violated by a twentieth of what the nodes alone would move. With 0.01, a box of
-/// `tetskin_measure` (stop/equal steps/k50) stops 3 % too early.
+/// D over effective masses: a gap is violated by a twentieth of the distance that the nodes alone would move. With
+/// 0.01, a box of `tetskin_measure` (stop/equal steps/k50) stops 3 % too early.
 constexpr double kStiffness = 20.0;
-/// By how much of the body's size an impact may violate a gap: D is so much higher where a twentieth of the way towards
-/// the object in this step is more. Otherwise fast bodies sink in by 5 % of their way, and pass through thin walls.
+/// By how much of the body's size an impact may violate a gap: D is raised if a twentieth of the path towards the
+/// object in this step is more than that. Otherwise fast bodies sink in by 5 % of their path, and tunnel through thin
+/// walls.
 constexpr double kViolation = 1e-3;
 /// Upper bound of the factor by which D is raised for this: beyond it, the rounding of float dominates.
 constexpr double kMostStiffening = 100.0;
-/// This many times the way that gravity adds in a step is left out: a small body at rest falls by a visible part of
-/// its size in each step, and jumps on contacts that are stiff to that.
+/// The path that gravity adds in a step, times this, is left out: a small body at rest falls by a visible part of its
+/// size in each step, and would jump on contacts stiffened for that.
 constexpr btScalar kFallsAtRest = 2;
-/// T over D. Slopes and stops keep their promises in `tetskin_measure` with 0.0003 and with 100, too, as the
-/// offset of what sticks grows until it suffices. But 100 takes 19 iterations per step in stop/equal steps/k50, where
-/// this value takes 4.
+/// T over D. Slopes and stops in `tetskin_measure` also pass with 0.0003 and with 100, because the offset of a sticking
+/// point grows until it suffices. But 100 takes 19 iterations per step in stop/equal steps/k50, where this value takes
+/// 4.
 constexpr btScalar kTangentShare = btScalar(0.3);
-/// D of joints and anchors over effective masses, to what is free to move and to what is not. What hangs on a soft body
-/// is pushed by the residual of a solve, and by more with a higher D. A beam 16 times as long as thick that sags by a
-/// thousandth of its length hangs lower by 1.5 % of that on its anchors; with 1000, by 8 %; with 1e5, slender ones in
-/// float do not converge.
+/// D of joints and anchors over effective masses, if the object is free to move (Joint) or not (Mount). What hangs on a
+/// soft body is pushed by the residual of a solve, and more so with a higher D. A beam 16 times as long as thick that
+/// sags by a thousandth of its length hangs lower by 1.5 % of that on its anchors; with 1000, by 8 %; with 1e5, slender
+/// ones in float do not converge.
 constexpr double kJointStiffness = 1000.0, kMountStiffness = 1e4;
-/// Share by which the usual length of steps follows each step: with a tenth, what rests under steps of 4 to 30 ms in
-/// random order moves visibly; with a thousandth, it takes a minute to follow a change.
+/// Share by which each step moves the usual length of steps: with a tenth, bodies at rest move visibly under steps of 4
+/// to 30 ms in random order; with a thousandth, following a change takes a minute.
 constexpr double kFollowed = 0.01;
-/// Most by which a step that is no usual one makes contacts stiffer or softer: more would take many iterations.
+/// Largest factor by which an unusual step length makes contacts stiffer or softer: more would take many iterations.
 constexpr double kMostOtherwise = 25.0;
-/// Body's sizes per second: bound of the velocity at which penetrating bodies are pushed apart.
+/// Bound of the velocity at which penetrating bodies are pushed apart, in body sizes per second.
 constexpr btScalar kPushingOut = 1;
 /// Rounding of a position, in units of the last digit.
 constexpr btScalar kPositionDigits = 2;
-/// Weights below this one are ignored where rows share a node.
+/// Smaller weights are ignored when rows share a node.
 constexpr btScalar kSmallWeight = btScalar(0.02);
-/// Cosine: contacts of one point whose normals differ by less than this angle count as the same contact from step to
+/// Cosine: contacts of one point whose normals differ by less than this angle count as the same contact in the next
 /// step.
 constexpr btScalar kSameNormal = btScalar(0.7);
-/// Contacts that Bullet finds at faces are numbered from here on.
+/// Numbers of contacts that Bullet finds at faces begin here.
 constexpr std::uint32_t kFirstFace = 0x80000000U;
 
 std::array<double, 3> numbersOf(const btVector3& v) {
@@ -58,8 +59,8 @@ int indexIn(const btSoftBody& body, const btSoftBody::Node* node) {
   return static_cast<int>(node - &body.m_nodes[0]);
 }
 
-/// What all of Bullet's own contacts have in common.
-/// speculation  distance that Bullet takes for part of the margin
+/// The common part of all of Bullet's own contacts.
+/// speculation  distance that Bullet treats as part of the margin
 PointContact bulletsContact(const btSoftBody& body, const btSoftBody::DeformableRigidContact& from,
                             btScalar speculation) {
   PointContact contact;
@@ -102,7 +103,7 @@ btVector3 velocityBefore(const SolvedBody& body, const CarriedPoint& point) {
   return point.sum([&](int n) { return fromPoint(body.dynamics->velocity(static_cast<std::size_t>(n))); });
 }
 
-/// The part of a point's position that rounding has cut off: a body at rest on something moves by less than that.
+/// The part of a point's position that rounding has cut off: bodies at rest on something move by less than that.
 btVector3 remainderAt(const SolvedBody& body, const CarriedPoint& point) {
   if (!body.elastic) return {0, 0, 0};
   return point.sum([&](int n) {
@@ -112,14 +113,14 @@ btVector3 remainderAt(const SolvedBody& body, const CarriedPoint& point) {
   });
 }
 
-/// The velocity of the first end relative to the rigid object that it meets, before the solve.
+/// The velocity of the first end relative to the rigid object in contact, before the solve.
 btVector3 relativeVelocity(const SolvedBody& body, const RowOrigin& origin, const RigidPoint& rigid,
                            RigidUnknowns& rigids, btScalar seconds) {
   return velocityBefore(body, origin.points[0]) - rigids.velocityAt(rigid, *origin.object, seconds);
 }
 
-/// When Bullet detects contacts, a kinematic body is already at the position where the step takes it. The gap found
-/// there is smaller than at the beginning of the step by how much the body moves: this difference.
+/// When Bullet detects contacts, a kinematic body is already where the step takes it. So the gap found there is smaller
+/// than at the beginning of the step by the body's motion: this difference.
 btScalar leadOf(const ContactRow& row, const btCollisionObject& object, RigidUnknowns& rigids, btScalar seconds) {
   if (!rigids.isLed(object)) return 0;
   return seconds * row.normal.dot(rigids.velocityAt(row.ends[1].rigid, object, seconds));
@@ -154,7 +155,7 @@ btScalar seenGap(btScalar gap, const PointContact& contact) {
   return gap < 0 ? std::min(gap + contact.normal.absolute().dot(roundingOf(contact.position)), btScalar(0)) : gap;
 }
 
-/// The offset without its components that are below the rounding.
+/// The offset without the components below the rounding.
 btVector3 visibleOffset(const btVector3& offset, const btVector3& position) {
   const btVector3 rounding = roundingOf(position);
   btVector3 seen = offset;
@@ -164,8 +165,8 @@ btVector3 visibleOffset(const btVector3& offset, const btVector3& position) {
   return seen;
 }
 
-/// The anchor that the step before has stored for this contact, with the same sample, or with another one of the point:
-/// samples may take turns. Or null.
+/// The anchor that the last step stored for this contact, with the same sample or with another one of the point,
+/// because samples may take turns; or null.
 const FrictionAnchor* anchorFrom(const std::vector<FrictionAnchor>& anchors, const ContactRow& row,
                                  const RowOrigin& origin) {
   const auto less = [](const FrictionAnchor& a, const FrictionAnchor& b) { return a.point < b.point; };
@@ -181,13 +182,13 @@ const FrictionAnchor* anchorFrom(const std::vector<FrictionAnchor>& anchors, con
   return found;
 }
 
-/// Reads from the step before where the point sticks, and the impulse that acted on it.
+/// Reads from the last step where the point sticks, and the impulse that acted on it.
 /// remainder  of the point: see `remainderAt`
 /// frame      the object's
 void warmStart(const SolvedBody& body, const btVector3& remainder, const btTransform& frame, btScalar seconds,
                ContactRow& row, RowOrigin& origin) {
   assert(body.frictionAnchors && seconds > 0);
-  // In the object's frame, where sums keep the digits that a place far from the origin has not.
+  // In the object's frame, where sums keep digits that a position far from the origin lacks.
   const btVector3 here = frame.invXform(origin.position) + remainder * frame.getBasis();
   origin.stickingPosition = here;
   const FrictionAnchor* known = anchorFrom(*body.frictionAnchors, row, origin);
@@ -201,9 +202,9 @@ void warmStart(const SolvedBody& body, const btVector3& remainder, const btTrans
   row.stuck = known->stuck;
 }
 
-/// Inverse effective mass of an end's point in a direction: that of its nodes by themselves, plus that of the rigid
-/// motion of their component.
-/// seconds  length of the step for which it is
+/// Inverse effective mass of an end's point in a direction: that of its nodes alone, plus that of the rigid motion of
+/// their component.
+/// seconds  length of the step that it is for
 double compliance(const SolvedBody& body, const CarriedPoint& point, const btVector3& position,
                   const btVector3& direction, double seconds) {
   assert(point.count > 0);
@@ -223,7 +224,7 @@ double compliance(const SolvedBody& body, const CarriedPoint& point, const btVec
   return sum + body.dynamics->rigidCompliance(node, numbersOf(position), numbersOf(direction));
 }
 
-/// seconds  length of the step for which it is
+/// seconds  length of the step that it is for
 double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const RowOrigin& origin,
                      const RigidUnknowns& rigids, double seconds) {
   const auto along = [&](const btVector3& direction) {
@@ -239,7 +240,7 @@ double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const Ro
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-/// The offset from the sticking position at the end of the step; where the point slides, the offset that friction can
+/// The offset from the sticking position at the end of the step; for a sliding point, the offset that friction can
 /// hold.
 FrictionAnchor frictionAnchorOf(const ContactRow& row, const RowOrigin& origin, btScalar seconds) {
   assert(origin.object && seconds > 0);
@@ -269,13 +270,13 @@ btScalar gravityOn(const SolvedBody& body) {
   return world ? world->getGravity().length() : btScalar(0);
 }
 
-/// The speed at which a point would go into the object, beside what gravity adds in the step.
+/// The speed at which a point would penetrate the object, without what gravity adds in the step.
 btScalar approach(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
   const btScalar falls = gravityOn(bodies.bodies()[row.ends[0].body]) * seconds;
   return -row.normal.dot(row.relative) - row.gapVelocity - kFallsAtRest * falls;
 }
 
-/// The factor of a contact's D by which the way towards the object violates the gap no more than is seen.
+/// The factor on a contact's D that keeps the violation of the gap invisible at this approach speed.
 double stiffening(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
   assert(!row.joined && row.ends[0].isSoft());
   btScalar size = sizeOf(*bodies.bodies()[row.ends[0].body].body);
@@ -421,7 +422,7 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
   }
 }
 
-/// False if the point neither is as near as the way that gravity adds in a usual step, nor comes near.
+/// False if the point is farther away than gravity moves it in a usual step, and does not come near.
 bool ContactRows::mayTouch(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) const {
   const auto usual = static_cast<btScalar>(usualStep_);
   const btScalar near = kFallsAtRest * gravityOn(bodies.bodies()[row.ends[0].body]) * usual * usual;
@@ -439,7 +440,8 @@ btScalar ContactRows::likeUsual(btScalar seconds) const {
   return static_cast<btScalar>(std::min(std::max(steps * steps, 1.0 / kMostOtherwise), kMostOtherwise));
 }
 
-/// Counts rows that touch, and others only if they are as near as in a usual step: longer steps have more of them.
+/// Counts touching rows, and others only if they are as near as in a step of usual length: longer steps have more of
+/// them.
 void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
   loads_.resize(bodies.bodies().size());
   for (std::size_t b = 0; b < loads_.size(); ++b) {
@@ -475,7 +477,7 @@ btScalar ContactRows::sharing(std::size_t row) const {
   return most;
 }
 
-/// Nodes that several rows share get no stiffer than with one row.
+/// A node shared by several rows gets no stiffer than with one row.
 void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds) {
   const auto now = static_cast<double>(seconds);
   followStep(seconds);
@@ -485,7 +487,7 @@ void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& 
     if (row.constant) continue;
     const double mass = effectiveMass(bodies, row, origins_[r], rigids, now);
     const double usualMass = now == usualStep_ ? mass : effectiveMass(bodies, row, origins_[r], rigids, usualStep_);
-    // A higher stiffness makes no visible difference, and the residual left by the solve would push with it.
+    // A higher stiffness makes no visible difference, and would amplify the residual of the solve.
     const bool mounted = !row.ends[1].isSoft() && row.ends[1].rigid.unknown < 0;
     const double times = !row.joined ? kStiffness * stiffening(bodies, row, seconds)
                          : mounted   ? kMountStiffness

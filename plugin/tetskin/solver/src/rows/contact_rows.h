@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: the contacts and anchors of a step as rows, with what they store from step to step.
+// Internal to DeformableSolver: the contacts and anchors of a step as rows, and what they store from step to step.
 #pragma once
 
 #include <tetskin/core/src/base/state/state_stream.h>
@@ -18,23 +18,24 @@ class ContactRows {
   /// Collects the rows of all bodies that are elastic here: the points that a search has left in the body, Bullet's
   /// contacts of nodes and faces with rigid objects, and the body's anchors. Call it after velocities have been read.
   void collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
-  /// Adds contacts among soft bodies, and joints. Of those of sleeping bodies there are none.
+  /// Adds contacts among soft bodies, and joints. Sleeping bodies have none.
   void add(PointContacts& contacts, SolverBodies& bodies, btScalar seconds);
   void add(std::vector<PointJoint>& joints, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
-  /// Call it when all of these are there.
+  /// Call it when all rows have been added.
   void setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
-  /// The factor of a contact's D by which what it bears gives way as in a usual step; known after `setStiffness`.
+  /// The factor on a contact's D with which its load gives way as in a step of usual length; known after
+  /// `setStiffness`.
   btScalar likeUsual(btScalar seconds) const;
-  /// Writes or reads what it remembers beside what is in the bodies.
+  /// Writes or reads the state that is not in the bodies.
   void visitState(StateStream& stream) { stream(usualStep_); }
-  /// Adds any other row, such as one of rigid bodies alone.
+  /// Adds any other row, such as one between rigid bodies.
   void add(const ContactRow& row, const RowOrigin& origin);
-  /// Stores what the next step begins with, and reports the impulses to the contacts.
+  /// Stores what the next step starts with, and reports the impulses to the contacts.
   void finish(SolverBodies& bodies, btScalar seconds) const;
 
   std::vector<ContactRow>& rows() { return rows_; }
   const std::vector<ContactRow>& rows() const { return rows_; }
-  /// row  of `rows`
+  /// row  one of `rows`
   const RowOrigin& originOf(const ContactRow& row) const {
     return origins_[static_cast<std::size_t>(&row - rows_.data())];
   }
@@ -48,8 +49,8 @@ class ContactRows {
   void listLoads(const SolverBodies& bodies, btScalar seconds);
   btScalar sharing(std::size_t row) const;
 
-  /// Seconds: a step's usual length, which follows the steps slowly. 0: there was none. What bears a weight gives way
-  /// as in such a step, whatever the present one: otherwise, each change of the step would be a push.
+  /// A step's usual length in seconds, which slowly follows the steps; 0: none so far. A supported weight gives way as
+  /// in a step of this length, whatever the present one is: otherwise each change of the step would act as a push.
   double usualStep_ = 0.0;
   std::vector<std::vector<btScalar>> loads_;  ///< by body and node: weights of the rows that may touch in this step
   std::vector<ContactRow> rows_;

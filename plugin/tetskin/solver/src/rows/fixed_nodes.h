@@ -10,13 +10,13 @@ class btDeformableContactProjection;
 
 namespace tetskin::bullet_detail {
 
-/// Lists the nodes whose velocity must stay, in some directions, as Bullet's constraints have set it: for bodies under
-/// Bullet's forces all nodes with constraints, for elastic ones those of contacts that only Bullet handles.
+/// Lists the nodes whose velocity must stay as Bullet's constraints have set it, in some directions: all constrained
+/// nodes of bodies under Bullet's forces; of elastic bodies, nodes in contacts that only Bullet handles.
 void listFixedNodes(const btDeformableContactProjection& projection, SolverBodies& bodies);
-/// Fixes these nodes in the matrix; call it after everything that is added to its diagonal.
+/// Fixes these nodes in the matrix; call it after everything else has been added to the diagonal.
 void fixNodes(const SolvedBody& body);
 
-/// Adds the impulses of friction on sliding nodes, where Bullet solves for contacts.
+/// Adds the friction impulses on sliding nodes whose contacts Bullet solves.
 /// residual  by node number
 void addDynamicFriction(const btDeformableContactProjection& projection, SolverBodies& bodies, VectorStack& residual);
 

@@ -10,7 +10,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Writes a vector, by the factors of a body's freedom, into three rows of a column.
+/// Writes a vector, scaled by the body's linear or angular factor, into three rows of a column.
 void put(double* column, int at, const btVector3& vector, const btVector3& factor) {
   for (int k = 0; k < 3; ++k) column[at + k] = static_cast<double>(vector[k] * factor[k]);
 }
@@ -85,8 +85,8 @@ void JointImpulses::end() {
   joints_.clear();
 }
 
-/// Bullet tells the sum of all rows on either body; the impulses are those that give it, the smallest ones if several
-/// do.
+/// Bullet reports the sum of all rows on either body; these are the impulses with that sum, the smallest ones if
+/// several fit.
 std::array<btScalar, JointRows::kMaxRows> JointImpulses::of(const btTypedConstraint& joint, const JointRows& rows,
                                                             btScalar seconds) {
   std::array<btScalar, JointRows::kMaxRows> impulses{};

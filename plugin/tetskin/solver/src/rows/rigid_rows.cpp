@@ -19,8 +19,8 @@ namespace {
 
 /// D over effective masses: higher than for soft bodies, as both bodies are rigid.
 constexpr double kRigidStiffness = 200.0;
-/// Most bodies of one step to which rows are followed: a bound of its cost. Heaps of 300 and 1,000 boxes on a mat cost
-/// as much per box.
+/// Most bodies per step to which rows are followed: bounds the cost. Heaps of 300 and 1,000 boxes on a mat cost the
+/// same per box.
 constexpr std::size_t kMaxUnknowns = 2000;
 /// Fraction of the bound of friction: below it, Bullet's contact sticks.
 constexpr btScalar kStuck = btScalar(0.99);
@@ -50,7 +50,7 @@ class RigidRowCollector {
       btTypedConstraint* joint = world.getConstraint(c);
       if (joint->isEnabled()) addEdge(joint->getRigidBodyA(), joint->getRigidBodyB(), {nullptr, joint});
     }
-    // The list grows by the bodies that those before in it touch, nearest first.
+    // The list grows by the bodies that earlier ones touch, nearest first.
     std::size_t next = 0;
     while (next < rigids_.list().size()) followFrom(RigidUnknowns::keyOf(rigids_.list()[next++]));
   }
@@ -93,7 +93,7 @@ class RigidRowCollector {
     return point;
   }
 
-  /// Bullet's contacts are between straight paths; only the path of a kinematic body is known from its transforms.
+  /// Bullet's contacts assume straight paths; only the path of a kinematic body is known from its transforms.
   btVector3 velocityAt(const RigidPoint& point, const btCollisionObject& object) {
     return rigids_.velocityAt(point, object, object.isKinematicObject() ? seconds_ : 0);
   }
@@ -133,11 +133,11 @@ class RigidRowCollector {
   RigidUnknowns& rigids_;
   ContactRows& rows_;
   std::vector<Edge> edges_;
-  std::unordered_map<const void*, std::vector<std::size_t>> edgesOf_;  ///< by the bodies' keys: in `edges_`
+  std::unordered_map<const void*, std::vector<std::size_t>> edgesOf_;  ///< indices in `edges_`, by the bodies' keys
 };
 
 /// The velocity that a row lacks because its impulse is at a bound: all that the bound has cost, as far as the impulse
-/// may still grow or shrink.
+/// may still change.
 btScalar missingVelocity(const JointRows& rows, std::size_t row, btScalar impulse, btScalar velocity) {
   const btScalar missing = rows.number(rows.rest, row) - velocity;
   const btScalar lowest = rows.number(rows.lowest, row), highest = rows.number(rows.highest, row);
@@ -147,8 +147,8 @@ btScalar missingVelocity(const JointRows& rows, std::size_t row, btScalar impuls
   return 0;
 }
 
-/// Each row begins with the impulse that Bullet has left it, and adds what else is needed. That impulse is of interest
-/// only where it is bounded: any other may grow and shrink as it likes.
+/// Each row starts with the impulse of Bullet's solve, and adds what else is needed. That impulse only matters if it is
+/// bounded: any other may grow and shrink freely.
 void RigidRowCollector::addJoint(btTypedConstraint& joint) {
   const JointRows from(joint, seconds_);
   const btRigidBody &a = joint.getRigidBodyA(), &b = joint.getRigidBodyB();

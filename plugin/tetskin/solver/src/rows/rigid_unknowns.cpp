@@ -14,7 +14,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// By how much Bullet's velocities of kinematic bodies may be off: radians per step, and a fraction of the velocity.
+/// How far Bullet's velocities of kinematic bodies may be off: radians per step, and a fraction of the velocity.
 constexpr btScalar kUnseenTurn = btScalar(1e-3), kUnseenShare = btScalar(1e-2);
 
 /// The inverse mass matrix that btRigidBody::applyImpulse applies; symmetric unless factors lock single axes.
@@ -44,14 +44,14 @@ Eigen::MatrixXd inverseMassOf(btMultiBody& body) {
     force[k] = 0;
     for (int i = 0; i < size; ++i) inverse(i, k) = static_cast<double>(answer[i]);
   }
-  // Makes it symmetric, as it is up to rounding.
+  // It is symmetric up to rounding; now exactly.
   for (int k = 0; k < size; ++k) {
     for (int i = 0; i < k; ++i) inverse(i, k) = inverse(k, i) = 0.5 * (inverse(i, k) + inverse(k, i));
   }
   return inverse;
 }
 
-/// Of the path on which turning takes a point within a step: the difference to the straight path, per second.
+/// The difference between a turning point's path in a step and a straight path, per second.
 btVector3 bend(const btVector3& turning, const btVector3& arm, btScalar seconds) {
   const btScalar rate = turning.length();
   if (!(rate * seconds > SIMD_EPSILON)) return {0, 0, 0};
@@ -66,7 +66,7 @@ const btMultiBodyLinkCollider* linkOf(const btCollisionObject& object) {
   return btMultiBodyLinkCollider::upcast(&object);
 }
 
-/// True if nothing that the object meets changes its motion.
+/// True if no contact changes the object's motion.
 bool movesFreely(const btCollisionObject& object) {
   if (const btMultiBodyLinkCollider* link = linkOf(object)) return link->m_multiBody != nullptr;
   const btRigidBody* rigid = btRigidBody::upcast(&object);
@@ -185,7 +185,7 @@ btVector3 RigidUnknowns::velocityAt(const RigidPoint& at, const btCollisionObjec
   return rigid->isKinematicObject() ? carriedBy(*rigid, at.arm, velocity, seconds) : velocity;
 }
 
-/// The angular velocity of a link before the solve, world space. Bullet finds those of all links at once.
+/// The angular velocity of a link before the solve, world space. Bullet computes those of all links at once.
 btVector3 RigidUnknowns::turningOf(const btCollisionObject& link, RigidUnknown& unknown) {
   const btMultiBody& body = *unknown.multiBody;
   const int index = linkOf(link)->m_link;
@@ -199,7 +199,7 @@ btVector3 RigidUnknowns::turningOf(const btCollisionObject& link, RigidUnknown& 
 }
 
 /// Bullet computes the angular velocity of a kinematic body from the arc cosine of its rotation in a step, which leaves
-/// few digits. Its transforms in this step and the one before have all of them.
+/// few digits. Its transforms in this step and the last one have all of them.
 btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm, const btVector3& velocity,
                                    btScalar seconds) const {
   assert(body.isKinematicObject());
@@ -211,7 +211,7 @@ btVector3 RigidUnknowns::carriedBy(const btRigidBody& body, const btVector3& arm
   };
   const btVector3 carried = way(path->now()) / seconds;
   if (path->done > 1) return carried;
-  // If the difference is larger, the body was put there, or it is a different one.
+  // If the difference is larger, the body was put there, or it is a different body.
   const btScalar frame = static_cast<btScalar>(path->steps) * seconds;
   const btVector3 expected = body.getVelocityInLocalPoint(arm) + bend(body.getAngularVelocity(), arm, frame);
   const btScalar maximum = kUnseenTurn * arm.length() / frame + kUnseenShare * expected.length();

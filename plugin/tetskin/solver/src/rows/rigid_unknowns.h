@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: rigid bodies and multibodies that a step solves for together with the soft bodies they
-// meet.
+// Internal to DeformableSolver: rigid bodies and multibodies that a step solves for together with the soft bodies in
+// contact with them.
 //
-// The unknowns are the changes of their velocities by the solve, relative to the velocities that Bullet has found.
-// They have few degrees of freedom, and are eliminated: with J the derivative of a row's point's velocity by these, H
-// the stiffness of the row and M the masses,
+// The unknowns are the changes of their velocities by the solve, relative to the velocities that Bullet has found. They
+// have few degrees of freedom, and are eliminated: with J the derivative of the velocity of a row's point by the
+// unknowns, H the stiffness of the row and M the masses,
 //   (M + sum J^T H J) dV = sum J^T f,    dV = (1 + M^-1 sum J^T H J)^-1 M^-1 sum J^T f
-// in which only inverse masses occur, so that an axis may be locked.
+// which contains only inverse masses, so that an axis may be locked.
 #pragma once
 
 #include <LinearMath/btTransform.h>
@@ -26,7 +26,6 @@ class btRigidBody;
 
 namespace tetskin::bullet_detail {
 
-/// A point of a rigid object.
 struct RigidPoint {
   int unknown = -1;   ///< index in RigidUnknowns; below 0: the object's motion is prescribed
   btVector3 arm;      ///< of a rigid body: from its centre of mass
@@ -38,13 +37,13 @@ struct RigidUnknown {
   btRigidBody* rigid = nullptr;
   btMultiBody* multiBody = nullptr;
   Eigen::Index size = 6;        ///< degrees of freedom
-  Eigen::Index first = 0;       ///< index of the first of them in its system's vectors
+  Eigen::Index first = 0;       ///< index of the first in its system's vectors
   Eigen::MatrixXd inverseMass;  ///< size x size
-  /// Of the base and the links of a multibody before the solve, in their own frames; empty: not asked for yet.
+  /// Angular velocities of a multibody's base and links before the solve, in their own frames; empty until needed.
   std::vector<btVector3> turning;
 };
 
-/// The derivative of the velocity of a point of a rigid body by those of the body.
+/// The derivative of the velocity of a point of a rigid body by the body's velocities.
 Small3x6 bodyJacobian(const RigidPoint& at);
 
 class RigidUnknowns {
@@ -59,20 +58,20 @@ class RigidUnknowns {
   RigidPoint at(const btCollisionObject& object, const btVector3& position);
   /// Its index in `list`; negative if the object is not an unknown (yet).
   int find(const btCollisionObject& object) const;
-  /// For a RigidPoint of a rigid body: a row of a joint, which has a velocity along x only.
+  /// For a RigidPoint of a rigid body: a row of a joint, whose velocity has an x component only.
   int addScalarJacobian(const btVector3& linear, const btVector3& angular);
-  /// The velocity of the object at the point, as Bullet has left it: that of the straight path on which the point goes
-  /// in the step.
+  /// The velocity of the object at the point, as Bullet has left it: along the straight path that the point takes in
+  /// the step.
   btVector3 velocityAt(const RigidPoint& at, const btCollisionObject& object, btScalar seconds);
 
-  /// Where the object is when the step begins.
+  /// Where the object is at the beginning of the step.
   const btTransform& startOf(const btCollisionObject& object) const { return paths_->startOf(object); }
-  /// True if the object is kinematic, and moves in this step: Bullet has it where the step ends.
+  /// True if the object is kinematic and moves in this step: Bullet already has it at its place at the end of the step.
   bool isLed(const btCollisionObject& object) const;
   KinematicPaths& paths() { return *paths_; }
   const std::shared_ptr<KinematicPaths>& sharedPaths() const { return paths_; }
 
-  /// What tells bodies apart: the rigid body, or the multibody of a link.
+  /// The identity of a body: the rigid body itself, or the multibody of a link.
   static const void* keyOf(const btCollisionObject& object);
   static const void* keyOf(const RigidUnknown& unknown);
 
@@ -81,14 +80,14 @@ class RigidUnknowns {
   Jacobian jacobianOf(const RigidPoint& at) const;
   static Jacobian toJacobian(const Small3x6& of);
 
-  // The functions below use vectors of a system: the unknowns' indices in it must be set.
-  /// The change of the point's velocity that changed velocities of the unknowns cause.
+  // The functions below use vectors of a system: the unknowns' indices in it must have been set.
+  /// The change of the point's velocity due to changed velocities of the unknowns.
   btVector3 velocity(const RigidPoint& at, const Eigen::VectorXd& change) const;
   /// Adds J^T times the impulse on the object.
   void addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const;
-  /// By how much a unit impulse at the point changes its velocity in a direction.
+  /// By how much a unit impulse at the point changes the point's velocity in a direction.
   double compliance(const RigidPoint& at, const btVector3& direction) const;
-  /// Changes the velocities of a body in Bullet.
+  /// Applies a change of velocities to a body in Bullet.
   static void apply(const RigidUnknown& unknown, const Eigen::VectorXd& change);
 
  private:
@@ -100,7 +99,7 @@ class RigidUnknowns {
   std::vector<RigidUnknown> unknowns_;
   std::unordered_map<const void*, int> indices_;  ///< index in the list, by rigid body or multibody
   std::vector<Jacobian> jacobians_;
-  std::vector<btVector3> moving_;  ///< scratch: of links, which Bullet finds with their turning
+  std::vector<btVector3> moving_;  ///< scratch: velocities of links, which Bullet computes together with `turning`
   std::shared_ptr<KinematicPaths> paths_ = std::make_shared<KinematicPaths>();
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDigit = std::numeric_limits<double>::epsilon();
 
-/// Numbers of which each is `stride` behind the one before: a part of a column or of a row.
+/// Strided access to a part of a column or a row: neighbours are `stride` apart.
 template <class Number>
 struct Numbers {
   Number& operator[](std::size_t k) const { return first[k * stride]; }
@@ -24,8 +24,8 @@ struct Numbers {
 using Changed = Numbers<double>;
 using Read = Numbers<const double>;
 
-/// Of numbers v the reflection 1 - factor (1, w) (1, w)^T that leaves v with its first number alone; w replaces the
-/// others. Returns the factor.
+/// The reflection 1 - factor (1, w) (1, w)^T that zeroes all numbers of v but the first; w replaces the others. Returns
+/// the factor.
 double makeReflection(Changed v) {
   double squared = 0.0;
   for (std::size_t k = 1; k < v.count; ++k) squared += v[k] * v[k];
@@ -41,8 +41,8 @@ double makeReflection(Changed v) {
   return (length - first) / length;
 }
 
-/// v = (1 - factor (1, w) (1, w)^T) v, where w is all but the first of `by`.
-/// isRow  the order of the multiplications is that for a row
+/// v = (1 - factor (1, w) (1, w)^T) v, where w is `by` without its first number.
+/// isRow  multiplies in the order for a row
 void reflect(Read by, double factor, Changed v, bool isRow = false) {
   assert(by.count == v.count && v.count > 1);
   if (factor == 0.0) return;
@@ -91,7 +91,7 @@ void SmallestSolution::exchangeWithLongest(std::size_t k) {
   std::swap(order_[k], order_[with]);
 }
 
-/// Of the columns behind k, without row k. They are computed anew where digits are lost.
+/// Updates the lengths of the columns behind k, now without row k. They are recomputed when digits are lost.
 void SmallestSolution::shortenLengths(std::size_t k) {
   for (std::size_t j = k + 1; j < count_; ++j) {
     if (lengths_[j] == 0.0) continue;
@@ -114,7 +114,7 @@ void SmallestSolution::findRank() {
   for (std::size_t k = 0; k < pivots_; ++k) rank_ += std::abs(at(k, k)) > least ? 1 : 0;
 }
 
-/// R = (T 0) Z with T of as many columns as the rank.
+/// R = (T 0) Z, where T has as many columns as the rank.
 void SmallestSolution::reduceRows() {
   const std::size_t size = count_ - rank_ + 1, last = rank_ - 1;
   for (std::size_t k = rank_; k-- > 0;) {

@@ -17,15 +17,15 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Results for shapes near the body are kept, with some 100 bytes per tet and shape, as far as these bytes suffice, and
-/// for at least this many shapes. If there are more, those that came first are kept: each is asked for once per step,
-/// so that a least recently used rule would drop each one just before its turn.
+/// Results for shapes near the body take some 100 bytes per tet and shape. They are kept within this many bytes, but
+/// for at least the number of shapes below. If there are more, the first ones are kept: each is asked for once per
+/// step, so a least recently used rule would drop each one just before its turn.
 constexpr std::size_t kMaxMemoryBytes = std::size_t(32) << 20;
 constexpr std::size_t kMinRemembered = 64;
-/// Of nodes, relative to the body's size: the distance around them within which a search finds clearances, and the
-/// depth up to which one behind a mesh's surface still belongs to it. As of surfaces: see SurfaceContact.
+/// For nodes, relative to the body's size: the distance around them within which a search finds clearances, and the
+/// depth up to which a node behind a mesh's surface still belongs to it. For surfaces see SurfaceContact.
 constexpr btScalar kNodesSlack = btScalar(0.005), kMeshThickness = btScalar(0.03);
-/// Steps after which a shape that was not near is forgotten.
+/// A shape that has not been near for this many steps is forgotten.
 constexpr unsigned kForgottenAfter = 64;
 
 std::size_t maxRemembered(const ContactPatches& patches) {
@@ -34,16 +34,15 @@ std::size_t maxRemembered(const ContactPatches& patches) {
   return std::max(kMinRemembered, kMaxMemoryBytes / std::max(bytes, std::size_t(1)));
 }
 
-/// The number of a child shape among all shapes of an object, however deep compounds are nested. It is the same in each
-/// step, as results are kept by it. It is a hash: two children have the same number as rarely as two random numbers of
-/// 64 bits are equal.
+/// The number of a child shape among all shapes of an object, however deep compounds are nested. Results are stored
+/// under it, so it is the same in each step. It is a hash: two children collide as rarely as two random 64-bit numbers.
 std::uint64_t numberOfChild(std::uint64_t compound, int child) {
   return compound * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(child) + 1;
 }
 
-/// Gathers the items of the leaves.
+/// Collects the items of the leaves.
 struct LeafGatherer : btDbvt::ICollide {
-  // Not marked as an override: for MSVC, Bullet's functions are templates, and this one of its classes not virtual.
+  // Not marked as an override: for MSVC, Bullet's functions are templates, and this one of its classes is not virtual.
   // NOLINTNEXTLINE(modernize-use-override,cppcoreguidelines-explicit-virtual-functions)
   void Process(const btDbvtNode* leaf) { items.push_back(leaf->dataAsInt); }
   std::vector<int> items;
@@ -56,8 +55,8 @@ btTransform predictedOf(const btCollisionObject& object) {
   return moves ? object.getInterpolationWorldTransform() : object.getWorldTransform();
 }
 
-/// How far a shape that turns may leave the box around both ends of its path: the height of the arc of its farthest
-/// point, at most.
+/// How far a turning shape may leave the box around both ends of its path: at most the height of its farthest point's
+/// arc.
 btScalar beyondBox(const btCollisionShape& shape, const ShapePath& path) {
   btVector3 low, high;
   shape.getAabb(btTransform::getIdentity(), low, high);
@@ -65,7 +64,7 @@ btScalar beyondBox(const btCollisionShape& shape, const ShapePath& path) {
   return turned > 0 ? turned * turned * (low.length() + high.length()) : btScalar(0);
 }
 
-/// The path of a shape on the object: a child of a compound has a transform within it.
+/// The path of one shape of the object: a child of a compound has a transform within it.
 /// paths  null outside of steps
 ShapePath pathOf(const btCollisionObjectWrapper& rigid, const KinematicPaths* paths) {
   const btCollisionObject& object = *rigid.getCollisionObject();
@@ -86,7 +85,7 @@ BodyContacts::BodyContacts(const btDispatcher* dispatcher, BodyWithTrees& body, 
       thickness_(thickness),
       maxRemembered_(maxRemembered(search_.patches())) {}
 
-/// Sleeping objects are searched for at once: a contact wakes them, before Bullet finds out what moves.
+/// Sleeping objects are searched at once: a contact wakes them, before Bullet decides what moves.
 void BodyContacts::collide(const btCollisionObjectWrapper& rigid) {
   assert(bodyLives());
   const btCollisionObject& object = *rigid.getCollisionObject();
@@ -141,7 +140,7 @@ WorldBox BodyContacts::boxAround(const btCollisionShape& shape, const ShapePath&
   return box;
 }
 
-/// Tests the box that Bullet keeps.
+/// Tests against the box that Bullet keeps for the body.
 bool BodyContacts::isNear(const WorldBox& box) const {
   const btBroadphaseProxy* body = body_.getBroadphaseHandle();
   if (!body) return true;
@@ -167,7 +166,7 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   ShapeProbe* probe = probeOf(shape, known);
   if (!probe) return;
   readNodes();
-  // Points count as touching a mesh up to some depth behind it, and a shape that turns leaves the box on its way.
+  // Points count as touching a mesh up to some depth behind it, and a turning shape leaves the box on its way.
   const WorldBox around = box.grownBy((shape.isConcave() ? thickness_ : btScalar(0)) + beyondBox(shape, path));
   bool touches = false;
   for (const PointContact& touch : search_.find(*probe, path, memoryOf(known), &around)) {
@@ -181,7 +180,7 @@ void BodyContacts::collideShape(const btCollisionShape& shape, std::uint64_t num
   if (touches && !object.isActive()) const_cast<btCollisionObject&>(object).activate();
 }
 
-/// Anchors hold nodes where they are, and what is pinned does not move.
+/// Anchored nodes are held in place, and pinned ones do not move.
 bool BodyContacts::passesOver(const CarriedPoint& point) const {
   if (point.count > 1) return false;
   const btSoftBody::Node& node = body_.m_nodes[point.nodes[0]];
@@ -295,7 +294,7 @@ ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape, KnownShape& kno
   return &mesh_;
 }
 
-/// The numbers of shapes are sorted, as they are in no order that another run would have.
+/// Shapes are sorted by number, because the map's order may differ in another run.
 void BodyContacts::visitState(WorldStream& stream) {
   if (stream.restoring()) {
     waiting_.clear();

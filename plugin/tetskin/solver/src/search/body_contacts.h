@@ -21,23 +21,23 @@
 
 namespace tetskin::bullet_detail {
 
-/// What is stored about one shape of one object.
+/// Stored about one shape of one object.
 struct KnownShape {
-  ShapeKey key;                           ///< without a shape: the next one with this box is meant
-  std::shared_ptr<const HullFaces> hull;  ///< of a convex hull: its faces, kept for the probe
+  ShapeKey key;                           ///< without a shape: stands for the next shape with this box
+  std::shared_ptr<const HullFaces> hull;  ///< the faces of a convex hull, kept for the probe
   unsigned lastStep = 0;                  ///< last step in which it was near
-  bool isRemembered = false;              ///< it has an entry in `memory`
+  bool isRemembered = false;              ///< has an entry in `memory`
   ShapeMemory memory;
 };
 
 struct KnownObject {
   std::unordered_map<std::uint64_t, KnownShape> shapes;  ///< by number of the shape
-  unsigned step = 0;                                     ///< number of the last step in which the object was met
+  unsigned step = 0;                                     ///< number of the last step with this object nearby
 };
 
 class BodyContacts {
  public:
-  /// dispatcher  the one whose pairs are handled, only compared; null: any
+  /// dispatcher  whose pairs are handled, used only for comparison; null: any
   /// body        created by `createSoftBody`
   /// thickness   depth up to which a point behind a mesh's surface still belongs to it
   BodyContacts(const btDispatcher* dispatcher, BodyWithTrees& body, PointCollider search, btScalar thickness);
@@ -50,28 +50,27 @@ class BodyContacts {
   /// If this is false, only `forget` and the accessors may be called.
   bool bodyLives() const { return !lifetime_.expired(); }
 
-  /// Adds the contacts with an object to the body's, shape by shape; at once, or, if the body's search waits, in
+  /// Adds the contacts with an object to the body's, shape by shape: at once or, if the body's search waits, in
   /// `searchWaiting`.
   void collide(const btCollisionObjectWrapper& rigid);
   bool isWaiting() const { return !waiting_.empty(); }
   void searchWaiting();
 
-  /// Forgets an object that is not met any more, or not at present.
+  /// Forgets an object that is no longer near, or not at present.
   void forget(const btCollisionObject& object);
 
-  /// Forgets all objects.
   void forgetAll();
-  /// The body and all objects have been moved by as much.
+  /// Call it after the body and all objects have been moved by as much.
   void shift(const btVector3& by);
 
-  /// Writes or reads which points have touched. What was found to be clear is searched again, with the same result.
+  /// Writes or reads which points have touched. Clearances are found again, with the same result.
   void visitState(WorldStream& stream);
 
   BodyWithTrees& body() const { return body_; }
   const PointCollider& search() const { return search_; }
 
  private:
-  /// An object that is met, and its shape and path at that moment.
+  /// An object near the body, with its shape and path at that moment.
   struct Met {
     const btCollisionObject* object;
     const btCollisionShape* shape;
@@ -94,31 +93,31 @@ class BodyContacts {
   const btDispatcher* dispatcher_;
   BodyWithTrees& body_;
   BodyChannel& channel_;
-  std::weak_ptr<const void> lifetime_;  ///< of the body: afterwards, another one may have its address
+  std::weak_ptr<const void> lifetime_;  ///< of the body: after its end, another one may have its address
   PointCollider search_;
   btScalar thickness_;
   btScalar margin_ = 0;  ///< of the last search
   std::vector<NodePath> nodes_;
-  unsigned nodesRead_ = 0;    ///< BodyChannel::predictions when they were read; 0: they must be read
-  std::vector<Met> waiting_;  ///< those that are yet to be searched for
+  unsigned nodesRead_ = 0;    ///< BodyChannel::predictions when they were read; 0: not read yet
+  std::vector<Met> waiting_;  ///< still to be searched
   ExactProbe exact_;
   HullProbe hull_;
   ConvexProbe convex_;
   MeshProbe mesh_;
   std::unordered_map<const btCollisionObject*, KnownObject> known_;
   std::size_t remembered_ = 0, maxRemembered_;  ///< numbers of shapes
-  ShapeMemory overflow_;                        ///< used for shapes beyond the limit: nothing about them is kept
+  ShapeMemory overflow_;                        ///< for shapes beyond the limit: nothing about them is kept
 };
 
-/// What finds the contacts of the body's nodes. Its order of points is that of the positions with which the body was
-/// created, so that a body that is created again has the same.
+/// Creates the search for contacts of the body's nodes. It orders points by their positions when the body was created,
+/// so that a body that is created again has the same order.
 /// size  of the body
 std::shared_ptr<BodyContacts> makeNodeContacts(BodyWithTrees& body, btScalar size);
 /// The longest side of the box around its nodes.
 btScalar sizeOfNodes(const BodyWithTrees& body);
 
-/// What finds the body's contacts in a world with this dispatcher; null if Bullet does.
-/// nodes  whether it finds those of nodes
+/// The search that finds the body's contacts in a world with this dispatcher; null if Bullet does.
+/// nodes  true: contacts of nodes
 std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body, const btDispatcher& dispatcher, bool nodes);
 
 }  // namespace tetskin::bullet_detail

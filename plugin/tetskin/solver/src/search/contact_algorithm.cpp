@@ -17,12 +17,12 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// True for types of rigid objects with whose shapes a soft body collides.
+/// True for types of rigid objects that collide with soft bodies.
 bool isRigidType(int type) {
   return btBroadphaseProxy::isConvex(type) || btBroadphaseProxy::isConcave(type) || btBroadphaseProxy::isCompound(type);
 }
 
-/// What makes Bullet's own algorithms for the pair.
+/// Bullet's own factory of algorithms for the pair.
 btCollisionAlgorithmCreateFunc* bulletsMaker(const btCollisionDispatcher& dispatcher, int a, int b, bool closest) {
   auto& bullets = const_cast<btCollisionConfiguration&>(*dispatcher.getCollisionConfiguration());
   return closest ? bullets.getClosestPointsAlgorithmCreateFunc(a, b) : bullets.getCollisionAlgorithmCreateFunc(a, b);
@@ -31,7 +31,7 @@ btCollisionAlgorithmCreateFunc* bulletsMaker(const btCollisionDispatcher& dispat
 /// Creates the algorithms for pairs in which the soft body is the first, or the second.
 class Maker : public btCollisionAlgorithmCreateFunc {
  public:
-  /// others  what serves nodes and other bodies, if the application has registered that; null: Bullet's own
+  /// others  the application's registered factory, for nodes and other bodies; null: Bullet's own
   Maker(btCollisionAlgorithmCreateFunc* others, bool softIsSecond, bool closestPoints)
       : others_(others), closestPoints_(closestPoints) {
     m_swapped = softIsSecond;
@@ -42,7 +42,7 @@ class Maker : public btCollisionAlgorithmCreateFunc {
   std::shared_ptr<BodyContacts> contactsOf(const btSoftBody& body, const btDispatcher& dispatcher) const {
     return bullet_detail::contactsOf(body, dispatcher, others_ == nullptr);
   }
-  /// The algorithm that would be there without this.
+  /// The algorithm that the pair would have without this library.
   btCollisionAlgorithm* makeOther(btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* first,
                                   const btCollisionObjectWrapper* second) const;
 
@@ -51,8 +51,8 @@ class Maker : public btCollisionAlgorithmCreateFunc {
   bool closestPoints_;
 };
 
-/// The algorithm of one pair. Where nothing of this library finds the body's contacts, it calls the one that would be
-/// there without it.
+/// The algorithm of one pair. If nothing in this library finds the body's contacts, it calls the algorithm that would
+/// be there without it.
 class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
  public:
   ContactAlgorithm(const Maker& maker, const btCollisionAlgorithmConstructionInfo& info,
@@ -62,7 +62,7 @@ class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
         soft_(btSoftBody::upcast((softIsSecond ? second : first)->getCollisionObject())),
         rigid_((softIsSecond ? first : second)->getCollisionObject()),
         softIsSecond_(softIsSecond) {
-    contacts_ = maker_.contactsOf(*soft_, *m_dispatcher);  // they may know the object from a snapshot
+    contacts_ = maker_.contactsOf(*soft_, *m_dispatcher);  // a restored snapshot may know the object
   }
   ~ContactAlgorithm() override {
     if (const auto contacts = contacts_.lock()) contacts->forget(*rigid_);
@@ -89,7 +89,7 @@ class ContactAlgorithm : public btSoftRigidCollisionAlgorithm {
   bool softIsSecond_;
 };
 
-// The elements of the pool, whose size Bullet does not check, are at least as large as the largest of Bullet's own
+// The pool's elements, whose size Bullet does not check, are at least as large as the largest of Bullet's own
 // algorithms.
 static_assert(sizeof(ContactAlgorithm) <= sizeof(btSoftBodyConcaveCollisionAlgorithm), "no room in Bullet's pool");
 
@@ -119,7 +119,7 @@ btCollisionAlgorithm* Maker::CreateCollisionAlgorithm(btCollisionAlgorithmConstr
   return new (memory) ContactAlgorithm(*this, info, first, second, m_swapped);
 }
 
-/// All makers, by what they stand in for: as few as there are algorithms that applications have registered.
+/// All makers, by the factory that each replaces: no more than applications have registered.
 class Makers {
  public:
   /// Null if `others` is itself one of them.
@@ -144,7 +144,7 @@ Makers& makers() {
   return *all;
 }
 
-/// Gives access to members of a base class, whose names a derived class may use.
+/// Gives access to protected members of a base class.
 struct DispatcherMembers : btCollisionDispatcher {
   static btCollisionAlgorithmCreateFunc* registered(btCollisionDispatcher& dispatcher, int a, int b, bool closest) {
     return closest ? (dispatcher.*(&DispatcherMembers::m_doubleDispatchClosestPoints))[a][b]

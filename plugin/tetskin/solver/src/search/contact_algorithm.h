@@ -11,8 +11,8 @@
 namespace tetskin::bullet_detail {
 
 /// From now on, the dispatcher asks the soft body of each new pair of a soft and a rigid body for its contacts: see
-/// `contactsOf`. Bodies without contacts of this kind get Bullet's algorithms. The object that is registered has no
-/// state and is never destroyed, so that nothing need be unregistered. May be called repeatedly.
+/// `contactsOf`. Bodies without such contacts get Bullet's algorithms. The registered object has no state and is never
+/// destroyed, so nothing needs to be unregistered. May be called repeatedly.
 void registerContactAlgorithms(btCollisionDispatcher& dispatcher);
 
 }  // namespace tetskin::bullet_detail

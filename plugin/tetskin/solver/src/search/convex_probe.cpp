@@ -8,7 +8,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// The margin that Bullet adds around a shape as it is drawn; 0 for shapes that are shrunk to make room for the margin.
+/// The margin that Bullet adds around the drawn shape; 0 for shapes that it shrinks to make room for the margin.
 btScalar addedMargin(const btConvexShape& shape) {
   const int type = shape.getShapeType();
   const bool within = type == MULTI_SPHERE_SHAPE_PROXYTYPE || type == CYLINDER_SHAPE_PROXYTYPE;

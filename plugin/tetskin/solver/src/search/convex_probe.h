@@ -9,8 +9,8 @@
 
 namespace tetskin::bullet_detail {
 
-/// Distances to shapes as they are drawn, without a margin around them. A point costs a microsecond or two, but GJK
-/// only runs if the plane that separates the ball's centre from the shape does not already show that the point is far.
+/// Distances to shapes as drawn, without a margin around them. A point costs a microsecond or two, but GJK only runs if
+/// the plane that separates the ball's centre from the shape does not already show that the point is far.
 class ConvexProbe : public ShapeProbe {
  public:
   void take(const btConvexShape& shape) { shape_ = &shape; }

@@ -23,7 +23,7 @@ std::vector<btVector3> cornersOfFace(const btConvexHullComputer& hull, int face)
   return corners;
 }
 
-/// The area vector of a polygon, times two.
+/// Twice the area vector of a polygon.
 btVector3 areaOf(const std::vector<btVector3>& corners) {
   btVector3 area(0, 0, 0);
   for (std::size_t k = 2; k < corners.size(); ++k) {
@@ -56,7 +56,7 @@ HullFaces::HullFaces(const btConvexHullShape& shape) : scaling_(shape.getLocalSc
   hull.compute(scaled[0].m_floats, sizeof(btVector3), count, 0, 0);
   const btVector3 inside = std::accumulate(scaled.begin(), scaled.end(), btVector3(0, 0, 0)) / btScalar(count);
   for (int f = 0; f < hull.faces.size(); ++f) addFace(cornersOfFace(hull, f));
-  // For points in a plane, Bullet makes two faces, back to back.
+  // For points in one plane, Bullet makes two faces, back to back.
   for (std::size_t f = 0; f < planes_.size(); ++f) {
     if (planes_.height(f, inside) < -SIMD_EPSILON) continue;
     planes_.clear();
@@ -128,9 +128,9 @@ bool HullProbe::narrow(const CarrierPaths&, const Ball& ball, btScalar reach) {
   return keepNear(entered_, ball, reach, narrowed_);
 }
 
-/// Keeps the faces that can be the nearest of a point in the ball. A face whose plane is lower below the centre than
+/// Keeps the faces that can be the nearest to a point in the ball. A face whose plane is lower below the centre than
 /// the highest one by more than the ball's diameter is never the highest within the ball. Points beside an edge are
-/// nearest to faces that are lower than the highest, but face the points.
+/// nearest to faces that are lower than the highest one, but in front of those faces.
 bool HullProbe::keepNear(const std::vector<std::size_t>& from, const Ball& ball, btScalar reach,
                          std::vector<std::size_t>& kept) {
   assert(!from.empty() && &from != &kept);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::solver: distances to convex hulls by their faces.
+// Internal to tetskin::solver: distances to convex hulls, computed from their faces.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
@@ -15,7 +15,6 @@
 
 namespace tetskin::bullet_detail {
 
-/// The planes of the faces.
 struct FacePlanes {
   std::vector<btScalar> x, y, z, offsets;
 
@@ -33,7 +32,7 @@ struct FacePlanes {
 class HullFaces {
  public:
   explicit HullFaces(const btConvexHullShape& shape);
-  /// True if the shape still has the points that the faces were made of.
+  /// True if the shape still has the points from which the faces were made.
   bool fits(const btConvexHullShape& shape) const;
 
   bool empty() const { return planes_.offsets.empty(); }
@@ -45,23 +44,24 @@ class HullFaces {
   void addFace(const std::vector<btVector3>& corners);
 
   FacePlanes planes_;                         ///< planes by face
-  std::vector<std::uint32_t> firstTriangle_;  ///< first triangle by face, and the end
+  std::vector<std::uint32_t> firstTriangle_;  ///< first triangle of each face, and the end
   std::vector<TriangleCorners> triangles_;
   btVector3 scaling_;
   std::vector<btVector3> points_;
 };
 
-/// Tests only the faces that can be the nearest of a point in the ball.
+/// Tests only faces that can be the nearest to a point in the ball.
 class HullProbe : public ShapeProbe {
  public:
   /// Selects a hull; false if it has no faces.
   bool take(const btConvexHullShape& shape);
   bool enter(const Ball& ball, btScalar reach) override;
   bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override;
-  /// Inside, the distance to the nearest face; outside, to the nearest point of those faces that face the point.
+  /// Inside, the distance to the nearest face; outside, to the nearest point of those faces that the point is in front
+  /// of.
   ShapeDistance at(const btVector3& point) const override;
   ShapeBound bound() const override { return bound_; }
-  /// The faces of the selected hull. Whoever keeps them saves their computation when the hull is selected again.
+  /// The faces of the selected hull. Keeping them saves their computation when the hull is selected again.
   const std::shared_ptr<const HullFaces>& faces() const { return faces_; }
 
  private:

@@ -13,7 +13,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Most steps per frame: what takes longer counts as no motion.
+/// Most steps per frame: a longer pause counts as no motion.
 constexpr int kMaxSteps = 64;
 /// By how much the number of steps may differ from an integer: Bullet's angular velocities have few digits.
 constexpr btScalar kWholeStep = btScalar(0.1);
@@ -21,7 +21,7 @@ constexpr btScalar kWholeStep = btScalar(0.1);
 /// and the angular velocity no longer tells how many steps the frame has.
 constexpr btScalar kSeenTurn = btScalar(5e-3);
 
-/// The sine of the angle between two rotations: unlike its cosine, it has all digits of a small angle.
+/// The sine of the angle between two rotations: unlike the cosine, it has all digits of a small angle.
 btScalar sineBetween(const btTransform& from, const btTransform& to) {
   const btMatrix3x3 turn = to.getBasis() * from.getBasis().transpose();
   return btVector3(turn[2][1] - turn[1][2], turn[0][2] - turn[2][0], turn[1][0] - turn[0][1]).length() / 2;
@@ -45,7 +45,7 @@ btQuaternion turnedBy(const btQuaternion& rotation, const btVector3& vector) {
   return (btQuaternion(part.x(), part.y(), part.z(), static_cast<btScalar>(half.cosine)) * rotation).normalized();
 }
 
-/// Seconds in which the body's velocity takes it from one transform to the other; 0 if it does not.
+/// Seconds that the body takes from one transform to the other at its velocity; 0 if it does not get there.
 btScalar timeOf(const btTransform& from, const btTransform& to, const btRigidBody& body) {
   const btVector3 moved = to.getOrigin() - from.getOrigin(), &velocity = body.getLinearVelocity();
   if (velocity.length2() > 0) return moved.dot(velocity) / velocity.length2();
@@ -57,8 +57,8 @@ btScalar timeOf(const btTransform& from, const btTransform& to, const btRigidBod
   return angle / rate;
 }
 
-/// The number of steps in which the body moves from one transform to the other; 0 if it cannot be told.
-/// last  steps between the two moves before, for turns that are too small; 0: not known
+/// The number of steps that the body takes from one transform to the other; 0 if unknown.
+/// last  steps between the two moves before, used if turns are too small; 0: unknown
 int stepsOf(const btTransform& from, const btTransform& to, const btRigidBody& body, btScalar seconds, int last) {
   const bool onlyTurns = body.getLinearVelocity().isZero() && from.getOrigin() == to.getOrigin();
   if (onlyTurns && sineBetween(from, to) < kSeenTurn) return last > 0 && last <= kMaxSteps ? last : 1;
@@ -78,7 +78,7 @@ btTransform KinematicPath::now() const {
 
 void KinematicPath::leadTo(const btTransform& place, int frame, btScalar seconds) {
   assert(frame >= 0 && seconds > 0);
-  if (done > steps) motion = turning = {};  // it has stood
+  if (done > steps) motion = turning = {};  // it has been at rest
   from = before;
   to = place;
   steps = std::max(frame, 1);
@@ -125,7 +125,7 @@ const KinematicPath& KinematicPaths::advance(const btRigidBody& body, btScalar s
     if (path.done <= kMaxSteps) ++path.done;
     return path;
   }
-  // The earlier motion tells nothing if the body has stood for long, or has been moved only once.
+  // The earlier motion tells nothing if the body has been at rest for long, or was moved only once.
   path.last = path.last > 0 || path.done > 1 ? path.done : 0;
   path.leadTo(to, stepsOf(path.before, to, body, seconds, path.last), seconds);
   return path;
@@ -153,14 +153,14 @@ void KinematicPaths::beginStep(const std::vector<btDiscreteDynamicsWorld*>& worl
   }
 }
 
-/// Contacts at nodes are searched for at the interpolation transform.
+/// Contacts at nodes are searched at the interpolation transform.
 void KinematicPaths::shift(btDiscreteDynamicsWorld& world, int index, btRigidBody& body, const btTransform& now) {
   shifted_.push_back({&world, index, &body, now, body.getInterpolationWorldTransform()});
   body.setWorldTransform(now);
   body.setInterpolationWorldTransform(now);
 }
 
-/// A body may have been removed in the step, and destroyed, or moved again.
+/// A body may have been removed during the step, and destroyed, or moved again.
 void KinematicPaths::endStep() {
   for (const Shifted& shifted : shifted_) {
     const btCollisionObjectArray& objects = shifted.world->getCollisionObjectArray();
@@ -185,7 +185,7 @@ void KinematicPaths::forget(const std::unordered_set<const btCollisionObject*>& 
   }
 }
 
-/// The rest of a path is set as the next step begins.
+/// The rest of a path is set when the next step begins.
 void KinematicPaths::visitState(WorldStream& stream) {
   stream.byObject(paths_, [&](const btRigidBody&, KinematicPath& path) {
     stream(path.from, path.to, path.steps, path.done, path.last);

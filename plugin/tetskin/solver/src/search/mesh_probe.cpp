@@ -13,18 +13,18 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// A btGImpactMeshShape reads its triangles by pointers that each query sets, counts and clears again.
+/// A btGImpactMeshShape reads its triangles through pointers that each query sets, counts and clears again.
 std::mutex& impactMutex() {
   static std::mutex mutex;
   return mutex;
 }
 
-/// If a ball has more triangles than this, the shape is asked again for those near a smaller ball: its tree finds them
-/// faster than a look at each.
+/// If a ball has more triangles than this, the shape is queried again for those near a smaller ball: its tree is faster
+/// than a test of each.
 constexpr std::size_t kManyTriangles = 64;
 /// Cosine between normals of triangles in one plane, up to rounding.
 constexpr btScalar kParallel = btScalar(0.999999);
-/// Distance of corners from a plane that is common to triangles, as a fraction of the reach: far below the margin.
+/// Distance of corners from the plane that triangles share, as a fraction of the reach: far below the margin.
 constexpr btScalar kInPlane = btScalar(0.01);
 
 /// Collects the triangles that meet a box; Bullet's own test uses coarse boxes.
@@ -41,7 +41,7 @@ class TriangleGatherer : public btTriangleCallback {
   std::vector<ProbeTriangle>& out_;
 };
 
-/// Below 0: the scaling mirrors.
+/// Negative if the scaling mirrors.
 btScalar handedness(const btVector3& scaling) {
   return scaling.x() * scaling.y() * scaling.z();
 }
@@ -61,8 +61,8 @@ bool isBeside(const ProbeTriangle& triangle, const btVector3& point, btScalar di
   return true;
 }
 
-/// The offset of a point from the closest point of the triangle. Computed in double, as near the triangle few digits
-/// are left.
+/// The offset of a point from the closest point of the triangle. In double, because few digits are left near the
+/// triangle.
 btVector3 offsetFrom(const ProbeTriangle& triangle, const btVector3& point) {
   const Eigen::Vector3d p = toEigen(point);
   const auto& [a, b, c] = triangle.corners;
@@ -123,8 +123,8 @@ void MeshProbe::gather(const btVector3& low, const btVector3& high, std::vector<
   shape_->processAllTriangles(&gatherer, low, high);
 }
 
-/// A point that may be behind a triangle is asked for the nearest of those that it is in front of, too, beyond the
-/// reach: outside of a thin wall, it is not inside of the wall's other side.
+/// A point that may be behind a triangle is also tested against triangles beyond the reach that it is in front of: a
+/// point outside of a thin wall is not inside of the wall's other side.
 bool MeshProbe::narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) {
   reach_ = reach;
   const btScalar thick = std::max(reach, thickness_), side = ball.radius + thick;
@@ -165,7 +165,8 @@ ShapeBound MeshProbe::commonPlane() const {
 }
 
 /// If several triangles are equally near, at an edge or a corner, the one whose normal is most nearly along the offset
-/// determines the side. What is in front beyond the reach matters only to a point that would be inside.
+/// determines the side. Triangles beyond the reach that the point is in front of only matter if it would otherwise
+/// count as inside.
 ShapeDistance MeshProbe::at(const btVector3& point) const {
   constexpr btScalar kSame = btScalar(1e-4);  // relative to the distance
   ShapeDistance found{reach_, btVector3(0, 1, 0)};
@@ -177,7 +178,7 @@ ShapeDistance MeshProbe::at(const btVector3& point) const {
     if (distance > minimum * (1 + kSame) || (distance > minimum * (1 - kSame) && btFabs(height) <= facing)) return;
     minimum = std::min(minimum, distance);
     facing = btFabs(height);
-    // For a point on the triangle itself, the offset has no direction, and the normal is used.
+    // For a point on the triangle itself, the offset has no direction, so the normal is used.
     const bool on = !(distance > SIMD_EPSILON);
     found = {height < 0 ? -distance : distance, on ? triangle.normal : (height < 0 ? -away : away) / distance};
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::solver: distances to concave shapes by their triangles.
+// Internal to tetskin::solver: distances to concave shapes, computed from their triangles.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -20,12 +20,13 @@ struct ProbeTriangle {
 };
 
 /// Which side of a shape's triangles is outside: the one from which their corners are counter-clockwise, with mirroring
-/// taken into account. Terrain is wound differently along each axis, so that outside is the side of its up axis.
+/// taken into account. Terrain has its triangles wound differently for each up axis; there, outside is the side of the
+/// up axis.
 class OutwardSide {
  public:
   OutwardSide() = default;
   explicit OutwardSide(const btConcaveShape& shape);
-  /// normal  of the side from which the corners are counter-clockwise
+  /// normal  on the side from which the corners are counter-clockwise
   bool isBehind(const btVector3& normal) const { return (upAxis_ < 0 ? btScalar(1) : normal[upAxis_]) * sign_ < 0; }
 
  private:
@@ -34,13 +35,13 @@ class OutwardSide {
 };
 
 /// Points behind a triangle count as inside up to the depth `thickness`; deeper points belong to something else.
-/// Queries the shape once for each ball entered, and for those narrowed to where there are very many triangles.
+/// Queries the shape once for each ball entered, and again for narrowed ones if there are very many triangles.
 class MeshProbe : public ShapeProbe {
  public:
   void take(const btConcaveShape& shape, btScalar thickness);
   bool enter(const Ball& ball, btScalar reach) override;
   bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override;
-  /// Where all triangles of the last ball are in one plane, that plane; otherwise nothing is known.
+  /// If all triangles of the last ball are in one plane, that plane; otherwise nothing is known.
   ShapeBound bound() const override { return bound_; }
   ShapeDistance at(const btVector3& point) const override;
 

@@ -5,7 +5,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Most shapes that are known; beyond it, all are forgotten, since shapes may have been destroyed.
+/// Most shapes to remember; beyond it all are forgotten, since shapes may have been destroyed.
 constexpr std::size_t kMaxShapes = 10'000;
 
 }  // namespace

@@ -13,9 +13,9 @@
 
 namespace tetskin::bullet_detail {
 
-/// Bullet stores distances to a shape in cells, and never renews them; and it searches for contacts at an object's
+/// Bullet caches distances to a shape in cells and never renews them; and it searches for contacts at an object's
 /// predicted transform, which nothing updates for objects that do not move by themselves or that sleep. This class
-/// finds such changes.
+/// detects such changes.
 class ObstacleChanges {
  public:
   /// Call it before nodes of the body are tested against the object.

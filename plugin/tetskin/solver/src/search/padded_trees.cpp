@@ -8,7 +8,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Padding of the leaves, in collision margins, and for bodies that move faster in steps: with a larger one, rays visit
+/// Padding of the leaves: in collision margins, or in steps of motion for faster bodies. With more padding, rays visit
 /// more leaves, and the trees are refitted less often.
 constexpr btScalar kMinPadding = 2, kPaddingSteps = 10;
 /// Bound of the padding, in diagonals of the body's box.

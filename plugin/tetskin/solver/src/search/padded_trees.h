@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: the trees of bodies' faces, which rays search. Bullet refits them twice per step; here
-// they are refitted only when they must be. The tree of nodes is left alone: PointCollider has its own.
+// Internal to DeformableSolver: the trees of bodies' faces, which ray casts use. Bullet refits them twice per step;
+// here they are refitted only when necessary. The tree of nodes is left alone: PointCollider has its own.
 #pragma once
 
 #include <tetskin/solver/src/forces/forced_bodies.h>
@@ -11,29 +11,29 @@
 
 namespace tetskin::bullet_detail {
 
-/// True if Bullet tests the body against any soft body, itself included.
+/// True if Bullet tests the body against any soft body, including itself.
 bool collidesWithSoftBodies(btSoftBody& body);
-/// True if Bullet's own search for contacts is going to use the body's trees, as the application wants contact at its
-/// faces, or of another kind than at nodes. Its nodes must then be at their predicted positions.
+/// True if Bullet's own contact search is going to use the body's trees, because the application wants contact at its
+/// faces, or some other kind than at nodes. Its nodes must then be at their predicted positions.
 bool needsBulletsTrees(btSoftBody& body);
-/// True if Bullet searches for its contacts by these trees.
+/// True if Bullet searches for the body's contacts with these trees.
 bool collidesByBulletsTrees(btSoftBody& body);
 
-/// Where the nodes were when a body's tree of faces was fitted. The leaves are padded: as long as nodes stay in them,
-/// rays miss nothing.
+/// Positions of the nodes when a body's tree of faces was fitted. The leaves are padded: as long as nodes stay within
+/// the padding, rays miss nothing.
 class PaddedTrees {
  public:
-  /// Fits the tree, unless its boxes still hold the nodes.
+  /// Fits the tree, unless its boxes still contain the nodes.
   /// step  distance that the fastest node moves in this step
   void fit(btSoftBody& body, Dynamics& dynamics, btScalar step);
-  /// Fits the tree again if its boxes do not hold the nodes at the end of the step, as their velocities have
-  /// changed since `fit`.
+  /// Fits the tree again if its boxes do not contain the nodes at the end of the step, because velocities have changed
+  /// since `fit`.
   void fitAgain(btSoftBody& body, Dynamics& dynamics, btScalar step);
-  /// The tree must be fitted in the next step, as others have changed it.
+  /// The tree must be fitted in the next step, because something else has changed it.
   void forget() { ready_ = false; }
 
  private:
-  /// True if the boxes still hold nodes that move this far in this step.
+  /// True if the boxes still contain nodes that move this far in this step.
   bool holds(btScalar step) const { return ready_ && drift_ + step < pad_; }
   btScalar farthest(Dynamics& dynamics) const;
 

@@ -10,14 +10,13 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Largest distance, in units of the slack, of a touching point of a patch from the chosen ones.
+/// Largest distance, in units of the slack, between a patch's touching points and the chosen ones.
 constexpr btScalar kSpacing = 4;
-/// Cosine between normals: a patch in one tet moves as a whole, so that on a plane a few points support it.
+/// Cosine between normals: a patch in one tet moves as a whole, so a few points support it on a plane.
 constexpr btScalar kSamePlane = btScalar(0.9999);
 /// Largest motion towards the plane in a step, in units of the slack.
 constexpr btScalar kMaxApproach = btScalar(0.25);
-/// By how much the distance of another point from the chosen ones must be larger than that of a point that is deeper by
-/// one.
+/// A depth greater by one weighs as much as this much more distance from the chosen points.
 constexpr btScalar kDepthsWorth = 3;
 /// Steps after which clear regions are searched again.
 constexpr unsigned kRemembered = 16;
@@ -50,7 +49,7 @@ void PointCollider::readClusters() {
   if (clustersRead_) return;
   clustersRead_ = true;
   clusterBalls_.resize(patches_.clusters.size());
-  std::size_t c = patches_.clusters.size();  // the tree is filled from its last leaf on
+  std::size_t c = patches_.clusters.size();  // the tree is filled from its last leaf backwards
   const auto readLeaf = [&](const Bvh::Node&) {
     const PatchCluster& cluster = patches_.clusters[--c];
     BoxOfPaths box;
@@ -92,7 +91,7 @@ const PointContacts& PointCollider::find(ShapeProbe& probe, const ShapePath& sha
 }
 
 /// Searches the clusters below a node of the tree. True if all of them are clear.
-/// near  what is outside of this box is clear; null: anything may be near
+/// near  everything outside of this box is clear; null: anything may be near
 bool PointCollider::searchNode(std::size_t node, const WorldBox* near) {
   if (near && !nodeBoxes_[node].collides(*near)) return true;
   const int leaf = patches_.clusterOf[node];
@@ -121,7 +120,7 @@ void PointCollider::prepare(ShapeMemory& memory) const {
   memory.clear.resize(patches_.patches.size(), 0);
 }
 
-/// True if no point has moved by half the slack since all points were found to be clear by that distance.
+/// True if no point has moved by half the slack since all points were found clear by that distance.
 bool PointCollider::isAllClear() const {
   const bool forgotten = memory_->steps >= memory_->clearUntil && !probe_->isKnownByItsBox();
   if (forgotten || memory_->nodes.size() != nodes_->size() ||
@@ -155,7 +154,7 @@ Ball PointCollider::localBall(std::size_t cluster) const {
   return {(now + predicted) * btScalar(0.5), world.radius * (1 + turn_) + (predicted - now).length() * btScalar(0.5)};
 }
 
-/// A lower bound of the cluster's distance from everything, as far as it is known.
+/// A known lower bound of the cluster's distance from everything.
 btScalar PointCollider::clearance(std::size_t cluster, const Ball& ball) const {
   assert(cluster < memory_->clusterClear.size());
   if (!(memory_->clusterClear[cluster] > 0)) return 0;
@@ -164,7 +163,7 @@ btScalar PointCollider::clearance(std::size_t cluster, const Ball& ball) const {
   return memory_->clusterClear[cluster] - speculation_ - (ball.centre - known.centre).length() - grown;
 }
 
-/// Returns by how much the whole cluster is clear, or 0.
+/// Returns the clearance of the whole cluster, or 0.
 btScalar PointCollider::searchCluster(std::size_t cluster, const Ball& ball, bool again) {
   const PatchCluster& patches = patches_.clusters[cluster];
   assert(patches.firstPatch + patches.patchCount <= patches_.patches.size());
@@ -211,7 +210,7 @@ void PointCollider::readPatch(const ContactPatch& patch) {
   }
 }
 
-/// The clearance of a patch that remains after its nodes have moved.
+/// What remains of a patch's clearance after its nodes have moved.
 btScalar PointCollider::clearance(const ContactPatch& patch, btScalar known) const {
   if (!(known > 0)) return 0;
   btScalar moved = 0;
@@ -229,7 +228,7 @@ void PointCollider::remember(std::size_t patch, btScalar clear) {
   for (std::uint32_t n = 0; n < touched.nodeCount; ++n) memory_->carriers[touched.firstNode + n] = carriers_[n].now;
 }
 
-/// Returns by how much all points of the patch are clear where their paths begin.
+/// Returns the clearance of all points of the patch at the beginning of their paths.
 btScalar PointCollider::searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound) {
   if (patch.isTriangle()) return searchTriangle(patch, clusterBound);
   const btScalar far = lowestHeight(patch, clusterBound) - reach_;
@@ -248,8 +247,8 @@ btScalar PointCollider::searchPatch(const ContactPatch& patch, const ShapeBound&
   return nearer > 0 ? nearer : searchPoints(patch);
 }
 
-/// The smallest height above the bound that a point can have on its path: between the heights of its nodes, less what
-/// it may be outside of them.
+/// The smallest height above the bound that a point can have on its path: the lowest of its nodes, minus how far it may
+/// be outside of them.
 btScalar PointCollider::lowestHeight(const ContactPatch& patch, const ShapeBound& bound) {
   btScalar low = BT_LARGE_FLOAT, high = -BT_LARGE_FLOAT;
   for (std::uint32_t n = 0; n < patch.nodeCount; ++n) {
@@ -293,7 +292,7 @@ NodePath PointCollider::pathOf(const ContactPatch& patch, std::uint32_t point) c
   return path;
 }
 
-/// Returns the point's clearance where its path begins.
+/// Returns the point's clearance at the beginning of its path.
 btScalar PointCollider::touch(const ContactPatch& patch, std::uint32_t point) {
   const NodePath path = pathOf(patch, point);
   const PathState met = firstInReach(*probe_, path, reach_);
@@ -321,9 +320,9 @@ void PointCollider::finishPatch(const ContactPatch& patch, std::size_t first) {
   }
 }
 
-/// Chooses points of the patch: first the deepest one, then those that bear a weight already, and then the ones
-/// farthest from those already chosen. Points that touched in the step before get an advantage, so that the choice does
-/// not change from step to step: a resting body sticks at these points.
+/// Chooses points of the patch: first the deepest one, then those that already bear a load, and then those farthest
+/// from the ones already chosen. Points that touched in the last step get an advantage, so that the choice is stable: a
+/// resting body sticks at these points.
 void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) {
   assert(first <= touches_.size());
   if (touches_.size() - first <= 2) return;
@@ -332,7 +331,7 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
     return std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
   };
   const auto lead = [&](const PointContact& touch) { return isKnown(touch) ? kSpacing * slack_ : btScalar(0); };
-  // In a longer step, more points are near; those that bear a weight must not change with that.
+  // In a longer step, more points are near; that must not change which ones bear a load.
   const auto bears = [&](const PointContact& touch) { return touch.distance < 0 && isKnown(touch); };
   chosen_.clear();
   auto next = std::min_element(begin, touches_.end(), [&](const PointContact& a, const PointContact& b) {

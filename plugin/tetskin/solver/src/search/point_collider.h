@@ -14,7 +14,7 @@
 
 namespace tetskin::bullet_detail {
 
-/// The transform of a rigid shape when the step begins, and the one that it would reach without contact.
+/// The transform of a rigid shape at the beginning of the step, and the one that it would reach without contact.
 struct ShapePath {
   btTransform now, predicted;
 };
@@ -48,14 +48,13 @@ class BoxOfPaths {
   btVector3 high_{-BT_LARGE_FLOAT, -BT_LARGE_FLOAT, -BT_LARGE_FLOAT};
 };
 
-/// Regions that a search has found to be clear of a shape, so that it need not search there again until nodes have
-/// moved as far.
+/// Regions found clear of a shape, which need no new search until nodes have moved as far.
 /// Shapes may be changed in place without notice: everything is searched again after some steps.
 struct ShapeMemory {
-  std::vector<Ball> clusterBalls;      ///< shape space, as all positions here
-  std::vector<btScalar> clusterClear;  ///< distance from everything, minus the margin; 0: not known
+  std::vector<Ball> clusterBalls;      ///< shape space, like all positions here
+  std::vector<btScalar> clusterClear;  ///< distance from everything, minus the margin; 0: unknown
   std::vector<btVector3> carriers;     ///< positions of ContactPatches::nodes
-  std::vector<btScalar> clear;         ///< by patch: distance from everything, minus the margin; 0: not known
+  std::vector<btScalar> clear;         ///< by patch: distance from everything, minus the margin; 0: unknown
   std::vector<std::uint32_t> touched;  ///< points that touched in the last step, ascending
   std::vector<btVector3> nodes;        ///< world space, when the whole body was found clear of a resting shape
   btTransform position = btTransform::getIdentity();  ///< transform of that shape
@@ -64,12 +63,12 @@ struct ShapeMemory {
   unsigned steps = 0;
 };
 
-/// Bounds of the number of points per patch and shape: as many as constrain a tet, and more only where it is large.
+/// Bounds of the number of contact points per patch and shape: enough to constrain a tet, and more only if it is large.
 constexpr std::size_t kMinTouches = 4, kMaxTouches = 64;
-/// Bound for the samples on a triangle: between its corners it stays flat, so that more change nothing. Two more than a
-/// tet's, for the points of a concave shape that it will meet next.
+/// Bound for the samples on a triangle: it stays flat between its corners, so more would change nothing. Two more than
+/// a tet's, for the points of a concave shape that it meets next.
 constexpr std::size_t kTriangleTouches = 6;
-/// If this many points touch already, patches that lie flat get at most two each.
+/// If this many points touch already, flat patches get at most two each.
 constexpr std::size_t kManyTouches = 64;
 
 /// A point may pass through a thin shape in one step: it touches what it meets first on its path.
@@ -84,11 +83,11 @@ class PointCollider {
   /// margin       kept from shapes
   /// speculation  height above the margin up to which points still touch
   void begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation);
-  /// The points of the body that would penetrate this shape if nothing stopped them, patch by patch, without object:
-  /// the deepest points of each patch, and others so far apart that none is missed, at most kMaxTouches, or
+  /// The points of the body that would penetrate this shape if nothing stopped them, patch by patch, with `object` not
+  /// set: the deepest points of each patch, and others far enough apart that none is missed; at most kMaxTouches, or
   /// kTriangleTouches. Valid until the next call.
   /// memory  of the same shape, or an empty one
-  /// around  a box around the shape on its path, world space; null: it may be anywhere
+  /// around  a box around the shape's path, world space; null: it may be anywhere
   const PointContacts& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
                             const WorldBox* around = nullptr);
 
@@ -128,7 +127,7 @@ class PointCollider {
   bool clustersRead_ = false;
   std::vector<Ball> clusterBalls_;   ///< world space, around the paths of all their points
   std::vector<WorldBox> nodeBoxes_;  ///< by node of the patches' tree: around the same paths
-  // State of one call of `find`.
+  // State during one call of `find`.
   ShapeProbe* probe_ = nullptr;
   ShapeMemory* memory_ = nullptr;
   ShapePath shape_, toShape_;

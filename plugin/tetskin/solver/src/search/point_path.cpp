@@ -11,18 +11,18 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Most steps along the path of a point. After these, it counts as touching what it has come near to.
+/// Most steps along the path of a point. After these, it counts as touching whatever it has come near to.
 constexpr int kMaxPathSteps = 24;
 /// Distance that counts as touching, as a fraction of the margin, or of the reach.
 constexpr btScalar kMet = btScalar(0.05);
-/// A point that moves aside by less than this fraction of its distance keeps the direction to what it comes near to.
+/// A point that moves sideways by less than this fraction of its distance keeps its direction to the nearest surface.
 constexpr btScalar kSameDirection = btScalar(0.125);
-/// Most halvings of a step of the path in the search for its nearest point.
+/// Most halvings of a step in the search for the nearest point of the path.
 constexpr int kMaxPathHalvings = 4;
 
-/// The nearest point of a path between two of its states: it approaches the shape at the first, and not at the second.
-/// Returns  the second, brought so near to it that where the path begins is above its plane; nothing if the path leads
-///          inside
+/// The nearest point of a path between two of its states: it approaches the shape at the first, and no longer at the
+/// second.
+/// Returns  a state so close to it that the beginning of the path is above its plane; nothing if the path leads inside
 std::optional<PathState> turningState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
                                       PathState near, PathState far) {
   const btVector3 direction = path.predicted - path.now;
@@ -37,8 +37,8 @@ std::optional<PathState> turningState(const ShapeProbe& probe, const NodePath& p
   return isFar() ? near : far;
 }
 
-/// The nearest point of the path that goes on from where the point comes near to the shape and ends outside of it.
-/// Returns  nothing if the path leads inside, or comes nearer all its way
+/// The nearest point of the path between where it comes near to the shape and its end, which is outside.
+/// Returns  nothing if the path leads inside, or approaches all the way
 std::optional<PathState> passingState(const ShapeProbe& probe, const NodePath& path, btScalar margin, btScalar reach,
                                       const PathState& met, const PathState& end) {
   const btVector3 rest = path.predicted - met.where;
@@ -98,7 +98,7 @@ PathState decidingState(const ShapeProbe& probe, const NodePath& path, btScalar 
   const std::optional<PathState> nearest = isLast ? end : passingState(probe, path, margin, reach, met, end);
   const btVector3 foot = met.where - met.distance.distance * met.distance.normal;
   if (!nearest || heightAbove(*nearest, foot) > level) return met;
-  // Its plane would be in the way of a path that goes by at more than the margin and leaves the reach.
+  // Its plane would block a path that passes at more than the margin and leaves the reach.
   const bool passes = !(end.distance.distance < reach) && !(nearest->distance.distance < margin);
   return passes && heightAbove(*nearest, path.predicted) < margin ? PathState{{}, path.now, 0} : *nearest;
 }

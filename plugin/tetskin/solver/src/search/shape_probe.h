@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::solver: the distances of points from one rigid shape. Callers ask ball by ball, so that most of
-// the shape, and most points, are skipped.
+// Internal to tetskin::solver: the distances of points from one rigid shape. Callers ask for one ball after another, so
+// that most of the shape, and most points, are skipped.
 #pragma once
 
 #include <tetskin/solver/src/base/exact_distance.h>
@@ -17,7 +17,7 @@ struct Ball {
   btScalar radius = 0;
 };
 
-/// The position of a node or a point when the step begins, and the one that it would reach without contact.
+/// The position of a node or a point at the beginning of the step, and the one that it would reach without contact.
 struct NodePath {
   btVector3 now, predicted;
 };
@@ -59,20 +59,20 @@ struct ShapeBound {
 class ShapeProbe {
  public:
   virtual ~ShapeProbe() = default;
-  /// True if shapes of this type with the same box are equal, so that a change in place is always noticed by the box.
+  /// True if shapes of this type with the same box are equal, so that the box always reveals a change in place.
   virtual bool isKnownByItsBox() const { return false; }
-  /// True if anything of the shape may be within `reach` of the ball. Then distances of points in the ball may be asked
-  /// for.
+  /// True if any part of the shape may be within `reach` of the ball. If so, distances of points in the ball may be
+  /// asked for.
   virtual bool enter(const Ball& ball, btScalar reach) = 0;
   /// Like `enter`, for a ball within the last one entered that contains these carriers' points.
   virtual bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) = 0;
   /// A bound for all points in the last ball.
   virtual ShapeBound bound() const = 0;
-  /// For points within reach, their distance; for others a value between the reach and their distance.
+  /// The distance of a point within reach; for other points a value between the reach and their distance.
   virtual ShapeDistance at(const btVector3& point) const = 0;
 };
 
-/// Probe of shapes for which there are formulas.
+/// Probe of shapes with exact formulas.
 class ExactProbe : public ShapeProbe {
  public:
   void take(const ExactShape& shape) { shape_ = shape; }

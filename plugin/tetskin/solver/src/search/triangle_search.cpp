@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The part of PointCollider that searches the samples on a triangle: by parts, each cut into four, down to single
-// samples only where the shape is near and curved. Where a part meets a plane, none of its points is deeper than its
-// corners.
+// The part of PointCollider that searches the samples on a triangle. Parts are cut into four, down to single samples
+// only where the shape is near and curved. Where a part meets a plane, none of its points is deeper than its corners.
 #include <tetskin/solver/src/search/point_collider.h>
 
 #include <algorithm>
@@ -13,14 +12,14 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Distance between a shape and a plane that touches it, in units of the slack, up to which the shape counts as flat:
-/// well below the margin, so that nothing is seen of it, and well above rounding.
+/// A shape counts as flat if it is this close to a plane that touches it, in units of the slack: well below the margin,
+/// so it is not visible, and well above rounding.
 constexpr btScalar kFlatShape = btScalar(0.01);
 
 }  // namespace
 
-/// A part of a triangle, with the corners (i, j), (i + size, j) and (i, j + size) among its samples. Below 0: the part
-/// is turned by half a turn.
+/// A part of a triangle, with the corners (i, j), (i + size, j) and (i, j + size) among its samples. A negative size:
+/// the part is turned by half a turn.
 struct PointCollider::TrianglePart {
   int i = 0, j = 0, size = 0;
 };
@@ -35,7 +34,7 @@ NodePath PointCollider::sampleAt(const ContactPatch& patch, int i, int j) const 
   return {between(&NodePath::now), between(&NodePath::predicted)};
 }
 
-/// Returns by how much all samples of the triangle are clear where their paths begin.
+/// Returns the clearance of all samples of the triangle at the beginning of their paths.
 btScalar PointCollider::searchTriangle(const ContactPatch& patch, const ShapeBound& clusterBound) {
   assert(patch.isTriangle());
   const btScalar* weights = &patches_.weights[patch.firstWeight];
@@ -84,8 +83,8 @@ btScalar PointCollider::searchPart(const ContactPatch& patch, const TrianglePart
   return clear;
 }
 
-/// A sample belongs to the part that it is the first corner of, or, along the triangle's third edge, the second; other
-/// parts that have it as a corner leave it out.
+/// A sample belongs to the part whose first corner it is or, along the triangle's third edge, whose second; other parts
+/// with this corner skip it.
 btScalar PointCollider::touchCorners(const ContactPatch& patch, const TrianglePart& part) {
   const int n = static_cast<int>(patch.divisions);
   if (part.size < 0) return slack_;
@@ -99,7 +98,7 @@ btScalar PointCollider::touchCorners(const ContactPatch& patch, const TrianglePa
   return clear;
 }
 
-/// True if at each corner, the shape is as near as the bound allows: it is then as good as a plane. Distances of all
+/// True if the shape is as near as the bound allows at each corner: it is then as good as a plane. Distances of all
 /// points between are no less than their heights above it.
 bool PointCollider::isFlat(const CarrierPaths& corners, const ShapeBound& bound) const {
   assert(corners.count == 3);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The functions that Bullet calls. The stages that they call are in step.cpp.
+// The functions that Bullet calls. Their stages are in step.cpp.
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
@@ -18,8 +18,8 @@
 namespace tetskin {
 namespace {
 
-/// counter  null where Bullet's own code solves: it moves sleeping bodies, too, if they have a velocity, so that all
-///          bodies would count as moved in each step
+/// counter  null if Bullet's own code solves: it also moves sleeping bodies that have a velocity, so all bodies would
+///          count as moved in each step
 void setMovesCounted(const btAlignedObjectArray<btSoftBody*>& bodies, const btSoftBodySolver* counter) {
   for (int b = 0; b < bodies.size(); ++b) {
     if (auto* own = bodyWithTrees(*bodies[b])) own->setMovesCountedBy(counter);
@@ -89,7 +89,7 @@ const StepTimes& DeformableSolver::stepTimes() const {
   return impl_->clock.times();
 }
 
-/// Bullet calls this when a step begins, and, with a time below 0, when a body has left the world.
+/// Bullet calls this when a step begins and, with a negative time, when a body has left the world.
 void DeformableSolver::reinitialize(const btAlignedObjectArray<btSoftBody*>& softBodies, btScalar dt) {
   impl_->loads.dropAllBut(softBodies);
   if (!(dt > 0)) return impl_->dropRemoved(softBodies);
@@ -109,7 +109,7 @@ void DeformableSolver::predictMotion(btScalar dt) {
   Impl& impl = *impl_;
   impl.clock.restart();
   if (impl.solving != ownSolveActive()) {
-    // The world's settings may have changed since the step before.
+    // The world's settings may have changed since the last step.
     impl.solving = ownSolveActive();
     impl.collect(impl.all);
     impl.assign();
@@ -119,12 +119,12 @@ void DeformableSolver::predictMotion(btScalar dt) {
   impl.clock.end(&StepTimes::prediction);
 }
 
-/// Bullet calls this for a body and a rigid object whose boxes overlap, and whose contacts it is to find.
+/// Bullet calls this for a body and a rigid object with overlapping boxes, to find their contacts.
 void DeformableSolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) {
   if (impl_->solving) {
     if (!body->isActive() || !collidesWithRigid(*body, *object->getCollisionObject())) return;
     const SolvedBody* solved = impl_->bodies.find(body);
-    // Otherwise, the algorithm of the pair has called it; but a dispatcher may be none of Bullet's.
+    // Usually the algorithm of the pair has called it already, but the dispatcher may not be one of Bullet's.
     if (solved && !solved->byBullet) return channelOf(*body)->nodeContacts()->collide(*object);
     impl_->obstacleChanges.syncRigidObject(*body, *object);
   }
@@ -179,7 +179,7 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
 void DeformableSolver::applyTransforms(btScalar dt) {
   Impl& impl = *impl_;
   impl.hidden.show(m_softBodies);
-  // A body that has fallen asleep since the step began was not solved for: its velocities are not to be used.
+  // A body that has fallen asleep since the step began was not solved for: its velocities must not be used.
   for (int i = 0; i < m_softBodies.size(); ++i) {
     btSoftBody& body = *m_softBodies[i];
     if (body.isActive() || !impl.solving) continue;

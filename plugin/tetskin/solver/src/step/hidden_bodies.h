@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: bodies that Bullet must not look at in a part of the step.
+// Internal to DeformableSolver: bodies that Bullet must not look at during a part of the step.
 #pragma once
 
 #include <tetskin/solver/src/rows/solver_bodies.h>
@@ -12,9 +12,9 @@
 namespace tetskin::bullet_detail {
 
 /// Bodies that are marked as sleeping for a part of the step. Between the solve and the integration, Bullet looks for
-/// nodes that go through faces of other soft bodies, whether or not the two may collide, removes their relative
-/// velocity, and refits trees for the search. It must not do so for bodies whose contacts are found otherwise, and it
-/// skips bodies that sleep.
+/// nodes that pass through faces of other soft bodies, whether or not the two may collide, removes their relative
+/// velocity, and refits trees for this search. It must not do so for bodies whose contacts are found in another way,
+/// and it skips bodies that sleep.
 class HiddenBodies {
  public:
   void hide(const std::vector<SolvedBody>& bodies, btScalar dt);
@@ -22,7 +22,7 @@ class HiddenBodies {
   void show(const btAlignedObjectArray<btSoftBody*>& alive);
 
  private:
-  std::vector<std::pair<btSoftBody*, int>> hidden_;  ///< with their states before
+  std::vector<std::pair<btSoftBody*, int>> hidden_;  ///< with their former states
 };
 
 }  // namespace tetskin::bullet_detail

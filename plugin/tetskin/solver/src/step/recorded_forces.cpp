@@ -13,10 +13,10 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// In a world without gravity, arrows have the length that they would have under this one.
+/// In a world without gravity, arrows are as long as under this one.
 constexpr btScalar kEarthsGravity = btScalar(9.81);
 
-/// Gives access to members of a base class, whose names a derived class may use.
+/// Gives access to protected members of a base class.
 struct WorldMembers : btDeformableMultiBodyDynamicsWorld {
   static btScalar& fixedTimeStep(btDeformableMultiBodyDynamicsWorld& world) {
     return world.*(&WorldMembers::m_fixedTimeStep);
@@ -49,7 +49,7 @@ void addImpulse(const btVector3& impulse, const btVector3& arm, Wrench& to) {
 }
 
 /// Adds the impulse of a row at one of its ends.
-/// isJoint  rather than an anchor, where the row is joined
+/// isJoint  a joined row is a joint rather than an anchor
 /// sign     of the row's impulse there
 void addRow(const ContactRow& row, bool isJoint, btScalar sign, const btVector3& arm, AppliedForces& to) {
   if (row.joined) return addImpulse(sign * row.impulse, arm, isJoint ? to.joints : to.anchors);
@@ -65,7 +65,7 @@ bool isNothing(const AppliedForces& forces) {
   return true;
 }
 
-/// True if a soft participant is awake; at least one of them is soft.
+/// True if a soft participant is awake; at least one participant is soft.
 template <class Participants>
 bool isAnyAwake(const SolverBodies& bodies, const Participants& participants) {
   return std::any_of(participants.begin(), participants.end(), [&](const auto& participant) {
@@ -94,9 +94,9 @@ void RecordedForces::record(const SolverBodies& bodies, const ContactRows& rows,
   }
 }
 
-/// Bullet tells nobody where a stepSimulation begins. But it sets m_fixedTimeStep there, and reads it only for the
-/// motion states of rigid bodies. This function changes it by one last digit, 5e-10 s for a 240th of a second; the
-/// change is still there in the substeps that follow. It is 0 where a stepSimulation has one substep, of any length.
+/// Bullet does not report the beginning of a stepSimulation. But it sets m_fixedTimeStep there, and reads it only for
+/// the motion states of rigid bodies. This function changes it by one last digit, 5e-10 s for a 240th of a second, and
+/// the change is still there in the following substeps. It is 0 if a stepSimulation has one substep, of any length.
 bool RecordedForces::stepBegins() {
   btScalar& length = WorldMembers::fixedTimeStep(world_);
   if (length == 0) return true;
@@ -116,8 +116,8 @@ void RecordedForces::beginStep() {
   dropRemoved();
 }
 
-/// Drops contacts that have ended, and objects that have been removed. The latter are looked for when the number of
-/// objects in the world has changed: they only cost memory.
+/// Drops contacts that have ended, and objects that have been removed. The latter only cost memory, so they are looked
+/// for only when the number of objects in the world has changed.
 void RecordedForces::dropRemoved() {
   const bool anyRemoved = objectCount_ != world_.getNumCollisionObjects();
   objectCount_ = world_.getNumCollisionObjects();
@@ -179,7 +179,7 @@ RecordedForces::Pair& RecordedForces::pairOf(const Participants& participants) {
   return pair;
 }
 
-// ---- where forces act
+// ---- points of application
 
 btVector3 RecordedForces::armOf(const CarriedPoint& point, const Participant& participant, const btVector3& position) {
   if (!participant.soft) return position - participant.object->getWorldTransform().getOrigin();
@@ -187,7 +187,7 @@ btVector3 RecordedForces::armOf(const CarriedPoint& point, const Participant& pa
   return point.sum([&](int n) { return participant.soft->m_nodes[n].m_x - centroid; });
 }
 
-/// Pinned nodes have no mass that moves; if all nodes of a body are pinned, each has the same weight.
+/// Pinned nodes have no moving mass; if all nodes of a body are pinned, each has the same weight.
 const RecordedForces::Weight& RecordedForces::weightOf(const btSoftBody& body) {
   const auto [entry, isNew] = weights_.emplace(&body, Weight());
   Weight& weight = entry->second;
@@ -204,7 +204,7 @@ const RecordedForces::Weight& RecordedForces::weightOf(const btSoftBody& body) {
   return weight;
 }
 
-// ---- what is asked for
+// ---- queries
 
 AppliedForces RecordedForces::on(const btCollisionObject& object, const btCollisionObject* other) const {
   AppliedForces sum;
@@ -223,8 +223,8 @@ AppliedForces RecordedForces::on(const btCollisionObject& object, const btCollis
 AppliedForces RecordedForces::forcesOf(const Pair& pair, std::size_t side) const {
   const btScalar awake = seconds_ - pair.asleep;
   if (!(awake > 0)) return pair.before[side];
-  // The step in which bodies fall asleep has fewer substeps. A single substep is not exact: the next one makes up for
-  // what its solve leaves out. As the bodies rest, those of the step before count, too.
+  // The stepSimulation in which bodies fall asleep has fewer substeps with them. A single substep is not exact: the
+  // next one makes up for what its solve leaves out. As the bodies rest, those of the last stepSimulation count, too.
   const btScalar before = pair.sleeps && !isNothing(pair.before[side]) ? secondsBefore_ : btScalar(0);
   AppliedForces forces;
   addScaled(1 / (awake + before), pair.impulses[side], forces);
@@ -257,7 +257,7 @@ void RecordedForces::clear() {
   points_.clear();
 }
 
-/// Visits pairs whose objects are in the world: others are not reported.
+/// Only pairs whose objects are in the world: others are not reported.
 void RecordedForces::visitState(WorldStream& stream) {
   stream(mark_, seconds_, secondsBefore_);
   std::vector<Pair> present;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to ForceRecord: the impulses of the rows, added up per stepSimulation and pair of objects.
+// Internal to ForceRecord: the impulses of the rows, summed per stepSimulation and pair of objects.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btActionInterface.h>
@@ -31,13 +31,13 @@ class RecordedForces {
 
   void debugDraw(btIDebugDraw& drawer) const;
 
-  /// Forgets all.
+  /// Forgets everything.
   void clear();
-  /// Moves what is drawn.
+  /// Moves the drawn points.
   void shift(const btVector3& by) {
     for (Point& point : points_) point.position += by;
   }
-  /// Writes or reads the forces, but not what is drawn.
+  /// Writes or reads the forces, but not the drawn points.
   void visitState(WorldStream& stream);
 
  private:
@@ -50,8 +50,8 @@ class RecordedForces {
   using Participants = std::array<Participant, 2>;
   struct Pair {
     Participants participants;
-    std::array<AppliedForces, 2> impulses;  ///< on each of the two objects, of this stepSimulation
-    std::array<AppliedForces, 2> before;    ///< forces of the stepSimulation before, which stay valid while both sleep
+    std::array<AppliedForces, 2> impulses;  ///< on each of the two objects, in this stepSimulation
+    std::array<AppliedForces, 2> before;    ///< forces of the last stepSimulation, valid as long as both sleep
     btScalar asleep = 0;                    ///< seconds of this stepSimulation in which both slept
     bool sleeps = false;                    ///< both slept in the last substep
   };
@@ -88,11 +88,11 @@ class RecordedForces {
   std::unordered_map<const btSoftBody*, Weight> weights_;  ///< of this substep
 };
 
-/// One of the world's actions, so that the world's debug drawing draws what is recorded, if anything is. It goes with
-/// the solver, and stays in the world until then: a world does not tell when it is destroyed.
+/// One of the world's actions, so that the world's debug drawing draws the record, if there is one. Belongs to the
+/// solver, and stays in the world until the solver is destroyed: a world does not report its own destruction.
 class RecordDrawing : public btActionInterface {
  public:
-  /// Adds itself to the world, unless it is there.
+  /// Adds itself to the world, unless it is already there.
   void draw(std::weak_ptr<RecordedForces> recorded, btDeformableMultiBodyDynamicsWorld& world);
 
   void updateAction(btCollisionWorld* /*world*/, btScalar /*seconds*/) override {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world in which all positions change by the same: everything that has one, and everything that is remembered of one.
+// Moves all positions in a world by the same offset: those of objects, and all remembered ones.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletDynamics/ConstraintSolver/btConeTwistConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofConstraint.h>
@@ -38,7 +38,7 @@ void shiftObject(btCollisionObject& object, const btVector3& by) {
   body->getMotionState()->setWorldTransform(shown);
 }
 
-/// `setBasePos` sets both places, unless the base is kinematic.
+/// `setBasePos` sets both the current and the interpolated position, unless the base is kinematic.
 void shiftMultiBody(btMultiBody& body, const btVector3& by) {
   const btVector3 base = body.getBasePos() + by, interpolated = body.getInterpolateBasePos() + by;
   body.setBasePos(base);
@@ -52,7 +52,7 @@ void shiftFrame(btTypedConstraint& joint, bool ofA, const btVector3& by) {
   (ofA ? held.getFrameOffsetA() : held.getFrameOffsetB()).getOrigin() += by;
 }
 
-/// A joint of one body alone has its other frame in world space.
+/// The other frame of a joint with a single body is in world space.
 void shiftJoint(btTypedConstraint& joint, const btVector3& by) {
   const bool ofA = &joint.getRigidBodyA() == &btTypedConstraint::getFixedBody();
   if (!ofA && &joint.getRigidBodyB() != &btTypedConstraint::getFixedBody()) return;
@@ -78,7 +78,7 @@ void shiftJoint(btTypedConstraint& joint, const btVector3& by) {
     case FIXED_CONSTRAINT_TYPE:
       return shiftFrame<btGeneric6DofSpring2Constraint>(joint, ofA, by);
     default:
-      return;  // gears have no places
+      return;  // gears have no positions
   }
 }
 
@@ -89,7 +89,7 @@ void shiftBoxes(btDbvtNode* node, const btVector3& by) {
   for (int k = 0; k < 2 && node->isinternal(); ++k) shiftBoxes(node->childs[k], by);
 }
 
-/// Boxes that were moved one after the other would meet those that are yet to be moved.
+/// If boxes were moved one after the other, they would meet boxes that have not been moved yet.
 void shiftBroadphase(World& world, const btVector3& by) {
   btBroadphaseInterface& broadphase = *world.getBroadphase();
   const bool inPlace = isOfSameClass<btBroadphaseInterface>(broadphase, btDbvtBroadphase());
@@ -131,7 +131,7 @@ void shiftSoft(btSoftBody& body, const btVector3& by) {
   }
 }
 
-/// False if what is at a usable place, or the place from which a body's start is counted, would get to one that is not.
+/// False if a usable position, or a body's stored initial position, would become unusable.
 bool canShift(const World& world, const btVector3& by) {
   const auto remains = [&](const btVector3& place) { return !isUsable(place) || isUsable(place + by); };
   bool all = isUsable(by);

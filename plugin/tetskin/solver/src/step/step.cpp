@@ -57,7 +57,7 @@ void prepareStep(const SolvedBody& solved, btScalar dt) {
   updateBounds(solved);
 }
 
-/// Moves the nodes by their velocities, which are bounded before. Returns the square of the highest speed.
+/// Moves the nodes by their velocities, which it bounds first. Returns the square of the highest speed.
 double moveNodes(btSoftBody& body, btScalar dt) {
   assert(dt > 0);
   const btScalar fastest = (body.m_bounds[1] - body.m_bounds[0]).length() / dt;
@@ -66,7 +66,7 @@ double moveNodes(btSoftBody& body, btScalar dt) {
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     btSoftBody::Node& node = body.m_nodes[n];
     node.m_v *= kept;
-    // In double: the square of a speed may be out of float's range.
+    // In double: the square of a speed may exceed float's range.
     const double squared = toEigen(node.m_v).squaredNorm();
     const auto allowed = static_cast<double>(fastest);
     if (squared > allowed * allowed) node.m_v *= static_cast<btScalar>(allowed / std::sqrt(squared));
@@ -119,7 +119,8 @@ void forEachBody(std::vector<SolvedBody>& bodies, ParallelFor* threads, Task&& t
       [&](std::size_t k, ParallelFor* inner) { task(bodies[k], inner); });
 }
 
-/// True unless the application has moved the body since the last step, or changed its velocities, as sleep does, too.
+/// True unless the application has moved the body since the last step, or has changed its velocities, as sleep also
+/// does.
 bool continuesLastStep(const SolvedBody& solved) {
   if (!solved.dynamics->remembers()) return true;
   for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
@@ -129,7 +130,7 @@ bool continuesLastStep(const SolvedBody& solved) {
   return true;
 }
 
-/// The first step of a held body, and steps of varying length, by BodyDynamics::forceShare. Free bodies go on falling
+/// The first step of a held body, and steps of varying length, by BodyDynamics::forceShare. Free bodies keep falling
 /// beside Bullet's rigid ones.
 void staggerHeld(SolvedBody& solved) {
   Dynamics& dynamics = *solved.dynamics;
@@ -172,7 +173,7 @@ void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& wor
   }
   solver.m_dt = seconds;
   solver.m_objective->setDt(seconds);
-  // These calls may create a body's dynamics anew.
+  // These calls may recreate a body's dynamics.
   for (int i = 0; i < forces().size(); ++i) forces()[i]->reinitialize(changed);
   assign();
   if (seconds > 0 && solving) rigids.paths().beginStep(bodies.worlds(), seconds);
@@ -272,7 +273,7 @@ void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
   }
 }
 
-/// By Bullet's own function, which also refits the trees of nodes and faces.
+/// Uses Bullet's own function, which also refits the trees of nodes and faces.
 void DeformableSolver::Impl::predictByBullet(SolvedBody& body) {
   body.paddedTrees->forget();
   solver.predictDeformableMotion(body.body, dt());
@@ -312,7 +313,7 @@ void DeformableSolver::Impl::assemble() {
   });
 }
 
-/// Reads the result of Bullet's step so far: the change of velocity by its constraints, with which the solution begins,
+/// Reads the result of Bullet's step so far: the change of velocity by its constraints, from which the solution starts,
 /// and the velocities at the beginning of the whole step.
 void DeformableSolver::Impl::readContacts(SolvedBody& body) {
   assert(body.first + static_cast<int>(body.dynamics->nodeCount()) <= solver.m_dv.size());
@@ -333,8 +334,8 @@ void DeformableSolver::Impl::readContacts(SolvedBody& body) {
 
 // ---- solve
 
-/// Systems on which Bullet's forces act are solved here one after the other, each by all threads; of the others, small
-/// ones in parallel.
+/// Systems with Bullet's forces are solved here one after the other, each by all threads; of the others, small ones in
+/// parallel.
 void DeformableSolver::Impl::solve() {
   others.beginStep(bodies, solver.m_residual, solver.m_backupVelocity, dt());
   std::vector<SolvedSystem*> own;
@@ -378,8 +379,8 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
       if (body.elastic) body.dynamics->remember(elastic_detail::SolvedWith::Others, inner);
     }
   } else if (first.elastic) {
-    // A body that has waited for contacts, and has none, is solved with all iterations; another one continues where it
-    // stopped.
+    // A body whose solve was deferred because of possible contacts, but which has none, is solved with all iterations;
+    // any other continues where it stopped.
     if (first.deferSolve) {
       first.dynamics->findResidual(inner);
       solveAlone(first, first.settings->iterations, inner);

@@ -4,12 +4,12 @@
 // Internal to DeformableSolver: its members, and the stages of a step, in their order.
 //
 // A node has four numbers:
-//   node            in its body, as the application has it
-//   number          first + node, in Bullet's vectors over all bodies: its forces and constraints name nodes so
-//   slot            in the body's matrix, sorted by colour, so that rows of one colour are swept side by side
-//   wide            where a slot's three numbers are, in groups of slots, one to each lane of a register
-// The last two are BlockMatrix's alone (`slotOf`, `wideOf`): they would be unnecessary only if the nodes of the
-// application's body were renumbered.
+//   node            in its body, as the application sees it
+//   number          first + node, in Bullet's vectors over all bodies; Bullet's forces and constraints use it
+//   slot            in the body's matrix, sorted by colour, so that rows of one colour are processed side by side
+//   wide            the location of a slot's three numbers, in groups of slots, one slot per lane of a register
+// The last two belong to BlockMatrix alone (`slotOf`, `wideOf`): only renumbering the nodes of the application's body
+// would make them unnecessary.
 #pragma once
 
 #include <tetskin/bullet/src/base/own_objects.h>
@@ -47,55 +47,55 @@ struct DeformableSolver::Impl {
   void finishContacts();
   void writeBack();
 
-  // Steps of the integration of positions; implemented in step_positions.cpp.
+  // Parts of the integration of positions; implemented in step_positions.cpp.
   /// Call it before Bullet moves the nodes: the application may have moved some of them within the step.
   void listForeignNodes(SolvedBody& body) const;
-  /// Call it after Bullet has moved the nodes in its own precision: gives them the positions that the dynamics have.
+  /// Call it after Bullet has moved the nodes in its own precision: gives them the positions of the dynamics.
   void refinePositions(btScalar dt);
-  /// Call it when rows are final: marks bodies that touch a soft one so far from the origin that rounding of positions,
-  /// at which such contacts are found, shakes them.
+  /// Call it when rows are final: marks bodies whose contacts with a soft body are so far from the origin that the
+  /// rounding of positions shakes them.
   void findShaken();
 
   ForceList& forces() { return solver.m_objective->m_lf; }
   const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
   btScalar dt() const { return solver.m_dt; }
 
-  // Steps of the stage `gather`.
+  // Parts of the stage `gather`.
   void fallAsleep();
   bool collect(const btAlignedObjectArray<btSoftBody*>& world);
   void assign();
 
-  /// Bodies are again as the application has them, wherever the step has stopped.
+  /// Restores the bodies to the application's view, wherever the step has stopped.
   void endStep(const btAlignedObjectArray<btSoftBody*>& world);
 
-  /// Writes or reads the settings by which Bullet's world had the last step solved.
+  /// Writes or reads the settings of Bullet's world that the last step was solved with.
   void visitFlags(WorldStream& stream);
 
   // What the application moves between steps.
-  /// Forgets what the body has touched, and how it has slept; implemented in step_placed.cpp.
+  /// Forgets a body's contacts and its sleep history; implemented in step_placed.cpp.
   void forgetTouches(btSoftBody& body);
   /// Moves everything in a world of this solver; implemented in shift_origin.cpp.
   void shift(btDeformableMultiBodyDynamicsWorld& world, const btVector3& by);
 
   // What the application adds and removes in the middle of a step; implemented in step_changes.cpp.
-  /// This is the world whose objects can be told from then on.
+  /// From now on, this is the world whose objects are known.
   void know(btDeformableMultiBodyDynamicsWorld& world);
-  /// The world of these bodies, null if it is not known. A solver may outlive its world, and be used by another one.
+  /// The world of these bodies, null if unknown. A solver may outlive its world, and be used by another one.
   btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
-  /// Call it before a step: what is kept by the addresses of objects that have left the world goes with them, as others
-  /// may have been created there.
+  /// Call it before a step. Drops what is stored under the addresses of objects that have left the world, because
+  /// others may have been created there.
   void forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world);
   void numberAnew();
-  /// Call it before Bullet detects contacts, and again when it has called the application since.
+  /// Call it before Bullet detects contacts, and again if it has called the application since.
   void noteObjects();
   void dropRemovedObjects();
   void dropRemovedForces();
   bool takesPart(const btDeformableLagrangianForce& force) const;
 
-  // Steps of the stage `predict`; those about forces are in step_forces.cpp.
-  /// Sets what Bullet's code uses in a step that is solved here.
+  // Parts of the stage `predict`; those about forces are in step_forces.cpp.
+  /// Sets the values that Bullet's code uses in a step that is solved here.
   void useOwnSettings();
   /// Applies the impulses of other forces.
   void applyOthers();
@@ -112,7 +112,7 @@ struct DeformableSolver::Impl {
   void prepareSearch(SolvedBody& body) const;
   void searchWaiting();
 
-  // Steps of the stage `assemble`; those about rows are in step_rows.cpp.
+  // Parts of the stage `assemble`; those about rows are in step_rows.cpp.
   void readContacts(SolvedBody& body);
   void addOthers();
   /// Collects the rows of contacts and anchors, and of the other constraints of rigid bodies, and adds each to the
@@ -125,10 +125,10 @@ struct DeformableSolver::Impl {
   /// fastest  speed of the body's fastest node
   void speculate(const SolvedBody& body, btScalar fastest) const;
 
-  // Steps of the stage `solve`.
+  // Parts of the stage `solve`.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);
 
-  // Steps of the stage `writeBack`.
+  // Parts of the stage `writeBack`.
   void writeVelocities(SolvedBody& body) const;
 
   DeformableSolver& solver;
@@ -146,12 +146,12 @@ struct DeformableSolver::Impl {
   StepClock clock;
   HiddenBodies hidden;
   StepObjects objects;
-  btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world, which may have been destroyed
+  btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world; it may have been destroyed
   const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
-  RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
-  bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
+  RigidForces* rigidForces = nullptr;                   ///< only in a DeformableWorld, which owns them
+  bool inSimulation = false;                            ///< within `stepSimulation`; only in a DeformableWorld
   bool inStep = false;                                  ///< from `gather` until positions have been integrated
-  std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it
+  std::weak_ptr<RecordedForces> recorded;               ///< null if there is no record
   RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;
   bool deterministic = false;

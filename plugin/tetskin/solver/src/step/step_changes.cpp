@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the application adds and removes where Bullet calls it. Between steps, what has been removed is forgotten. In
-// the middle of a step, it is taken out of the step, which goes on with the rest; what has been added takes part from
-// the next step on.
+// What the application adds and removes when Bullet calls it. Between steps, whatever has been removed is forgotten. In
+// the middle of a step, it is taken out of the step, which continues with the rest; whatever has been added takes part
+// from the next step on.
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/bullet/src/base/body_trees.h>
 #include <tetskin/solver/src/base/body_channel.h>
@@ -90,14 +90,14 @@ void DeformableSolver::Impl::noteObjects() {
   objects.note(worldOf(all));
 }
 
-/// Contacts at the surface are dropped with the pair.
+/// Contacts at the surface are dropped together with the pair.
 void DeformableSolver::Impl::dropRemovedObjects() {
   if (!objects.haveChanged()) return;
   const StepObjects::Gone gone = objects.gone();
   for (int b = 0; b < solver.m_softBodies.size(); ++b) {
     dropContactsWith(gone, solver.m_softBodies[b]->m_nodeRigidContacts);
     dropContactsWith(gone, solver.m_softBodies[b]->m_faceRigidContacts);
-    // The end of a pair tells it, too, but not where an application's own algorithm has handled the pair.
+    // The end of a pair usually reports this, too, but not if an application's own algorithm handled the pair.
     const BodyChannel* channel = channelOf(*solver.m_softBodies[b]);
     if (!channel || !channel->nodeContacts()) continue;
     for (const btCollisionObject* object : gone) channel->nodeContacts()->forget(*object);
@@ -115,8 +115,8 @@ void DeformableSolver::Impl::dropRemovedForces() {
   }
 }
 
-/// False for a force on a body that was added since the step began: Bullet's forces use the numbers of its nodes, which
-/// it has not got yet.
+/// False for a force on a body that was added since the step began: Bullet's forces use its nodes' numbers, which are
+/// not assigned yet.
 bool DeformableSolver::Impl::takesPart(const btDeformableLagrangianForce& force) const {
   const auto& nodes = solver.m_objective->m_nodes;
   for (int b = 0; b < force.m_softBodies.size(); ++b) {

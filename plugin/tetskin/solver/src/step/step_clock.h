@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: how long the stages of its steps take. Read at the ends of stages alone, some ten times
-// in a step.
+// Internal to DeformableSolver: how long the stages of its steps take. Only read at the ends of stages, some ten times
+// per step.
 #pragma once
 
 #include <tetskin/solver/deformable_world.h>
@@ -13,7 +13,7 @@ namespace tetskin::bullet_detail {
 
 class StepClock {
  public:
-  /// Restarts the clock: the time since the last stage belongs to none.
+  /// Restarts the clock: the time since the last stage belongs to no stage.
   void restart() { last_ = std::chrono::steady_clock::now(); }
   /// Adds the time since the last call to a stage.
   void end(double StepTimes::*stage) {

@@ -7,7 +7,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Gives access to a member of a base class, whose name a derived class may use.
+/// Gives access to a protected member of a base class.
 struct IslandFinder : btDeformableMultiBodyDynamicsWorld {
   static void find(btDeformableMultiBodyDynamicsWorld& world) {
     (world.*(&IslandFinder::calculateSimulationIslands))();

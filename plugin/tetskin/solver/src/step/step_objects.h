@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableSolver: which objects Bullet's detection of contacts has seen in a step. Between detection and
-// solve, Bullet calls the application (the tick callback that is to come after a step, the solver callback), which may
-// remove some of them and add others.
+// Internal to DeformableSolver: which objects Bullet's contact detection has seen in a step. Between detection and
+// solve, Bullet calls the application (the post-tick callback and the solver callback), which may remove some of them
+// and add others.
 #pragma once
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
@@ -18,19 +18,19 @@ class StepObjects {
  public:
   using Gone = std::unordered_set<const btCollisionObject*>;
 
-  /// Keeps the world's objects. Cost O(objects)
+  /// Stores the world's objects. Cost O(objects)
   /// world  null: none
   void note(btDeformableMultiBodyDynamicsWorld* world);
   /// The world of this step, or null.
   btDeformableMultiBodyDynamicsWorld* world() const { return world_; }
-  /// True if its objects are not those that were kept. Cost O(objects)
+  /// True if the world's objects differ from the stored ones. Cost O(objects)
   bool haveChanged() const;
-  /// The objects that were kept and are no longer in the world. They may have been deleted, and another object may have
-  /// been created at the address of one: it is not one of those that were detected.
+  /// The stored objects that are no longer in the world. They may have been deleted; an object created since at the
+  /// same address is not one of those that were detected.
   Gone gone() const;
 
  private:
-  /// An object, and the number that the broadphase gives to each object once.
+  /// An object, and the unique number that the broadphase gives it.
   using Noted = std::pair<const btCollisionObject*, int>;
   static Noted noted(const btCollisionObject& object);
   static std::vector<Noted> objectsOf(const btCollisionWorld& world);
@@ -39,8 +39,8 @@ class StepObjects {
   std::vector<Noted> noted_;
 };
 
-/// Lets Bullet find the islands anew. It keeps their objects by index in the world's list, and would otherwise read,
-/// and put to sleep, objects that have been removed from it since.
+/// Makes Bullet find the islands anew. It keeps their objects by index in the world's list, and would otherwise read,
+/// and put to sleep, objects that have since been removed.
 void findIslands(btDeformableMultiBodyDynamicsWorld& world);
 
 }  // namespace tetskin::bullet_detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is remembered of a body that the application puts elsewhere, or back to its start, between two steps.
+// What is remembered of a body that the application moves elsewhere, or resets, between two steps.
 #include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/base/required_solver.h>
 #include <tetskin/solver/src/search/body_contacts.h>

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The positions at the end of a step. Bullet moves the nodes in its own precision; they are then given the positions
-// that the dynamics have in double, except where something else has moved them. Bullet puts anchored nodes where their
-// anchors are; they get their own positions, too, so that an anchor that holds a weight is at rest: otherwise its nodes
-// would fall back in each step, and the damping of their velocity would push what hangs on them.
+// The positions at the end of a step. Bullet moves the nodes in its own precision; they then get the positions that the
+// dynamics hold in double, unless something else has moved them. Bullet puts anchored nodes where their anchors are;
+// they get their own positions back, too, so that a loaded anchor is at rest: otherwise its nodes would fall back in
+// each step, and the damping of their velocity would push what hangs on them.
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/step/step.h>
 
 namespace tetskin {
 namespace {
 
-/// Of a body's size: below this, rounding of positions is not seen.
+/// Relative to the body's size: rounding of positions below this is not visible.
 constexpr btScalar kVisible = btScalar(1e-5);
 
 /// False if the application has appended nodes within the step.
@@ -47,7 +47,7 @@ void DeformableSolver::Impl::findShaken() {
   }
 }
 
-/// Uses the velocities that Bullet has used, since it bounds them.
+/// Uses the velocities that Bullet has used, because it bounds them.
 void DeformableSolver::Impl::refinePositions(btScalar dt) {
   if (!solving) return;
   for (const SolvedBody& solved : bodies.bodies()) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The contacts of a step: the distance within which they are searched for, their rows, and which bodies are solved for
-// together because of them.
+// The contacts of a step: the search distance, their rows, and which bodies they join into one solve.
 #include <tetskin/core/src/base/disjoint_sets.h>
 #include <tetskin/solver/src/base/body_channel.h>
 #include <tetskin/solver/src/forces/node_vectors.h>
@@ -52,8 +51,8 @@ void DeformableSolver::Impl::searchWaiting() {
 /// prediction may let one fall although neither will. A fraction of the body's own path is added: stopping some points
 /// of a body turns others towards the obstacle.
 void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest) const {
-  // Boxes and balls that land, rest or stop keep their promises in `tetskin_measure` with 0, too: it is for bodies that
-  // tip over what stops them. More would cost searches of points that do not arrive.
+  // Boxes and balls that land, rest or stop in `tetskin_measure` also pass with 0: it is for bodies that tip over what
+  // stops them. More would cost searches of points that do not arrive.
   constexpr btScalar kPathFraction = btScalar(0.2);
   auto* own = bodyWithTrees(*body.body);
   const btDiscreteDynamicsWorld* world = body.world();
@@ -68,8 +67,8 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
   body.body->m_bounds[1] += btVector3(more, more, more);
 }
 
-/// A fraction of what gravity adds in a step, so that a world in centimetres is solved for as one in metres; no less
-/// than what rounding takes away, below which a resting body would be solved for in vain.
+/// A fraction of what gravity adds in a step, so that a world in centimetres is solved like one in metres; no less than
+/// the rounding, below which solving for a resting body would be in vain.
 double DeformableSolver::Impl::unseenSpeed(const SolvedBody& body) const {
   constexpr double kUnseen = 1e-3;
   const auto seconds = static_cast<double>(dt());
@@ -107,7 +106,7 @@ void DeformableSolver::Impl::collectRows() {
   });
 }
 
-/// A resting body stays at rest: the solution begins with the velocities of the step before.
+/// A resting body stays at rest: the solution starts from the velocities of the last step.
 void DeformableSolver::Impl::reuseLastVelocity(SolvedBody& body) {
   assert(body.dynamics->nodeCount() == static_cast<std::size_t>(body.body->m_nodes.size()));
   Dynamics& dynamics = *body.dynamics;
@@ -116,7 +115,7 @@ void DeformableSolver::Impl::reuseLastVelocity(SolvedBody& body) {
     if (!(node.m_im > 0)) continue;
     toWide(node.m_vn - fromPoint(dynamics.velocity(n)), dynamics.matrix().solution() + dynamics.matrix().wideOf(n));
   }
-  // The deformation of a stiff body does not persist to the next step.
+  // A stiff body's deformation does not persist into the next step.
   if (dynamics.isStiff()) dynamics.projectToRigidMotion();
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to DeformableWorld: Bullet's dispatcher and broadphase, which tell when things are added or removed where
-// they may not.
+// Internal to DeformableWorld: Bullet's dispatcher and broadphase, which report when objects are added or removed where
+// that is not allowed.
 #pragma once
 
 #include <btBulletCollisionCommon.h>
@@ -11,8 +11,8 @@
 
 namespace tetskin::bullet_detail {
 
-/// True as long as this exists. For detection: while Bullet detects contacts, it goes through pairs and trees that
-/// adding or removing an object changes.
+/// True as long as this exists. For detection: while Bullet detects contacts, it iterates over pairs and trees that
+/// adding or removing an object would change.
 class Running {
  public:
   explicit Running(bool& runs) : runs_(runs), before_(runs) { runs_ = true; }
@@ -22,7 +22,7 @@ class Running {
 
  private:
   bool& runs_;
-  const bool before_;  ///< it may run within another one
+  const bool before_;  ///< it may be nested
 };
 
 class WatchedDispatcher : public btCollisionDispatcher {
@@ -39,7 +39,7 @@ class WatchedDispatcher : public btCollisionDispatcher {
   bool& detects_;
 };
 
-/// Every object that enters or leaves a world has a proxy made or destroyed here.
+/// Every object that enters or leaves a world gets its proxy created or destroyed here.
 class WatchedBroadphase : public btDbvtBroadphase {
  public:
   explicit WatchedBroadphase(bool& detects) : detects_(detects) {}

@@ -15,9 +15,9 @@ namespace {
 
 /// The unit of a spring's frequency: one over Bullet's usual substep.
 constexpr double kUnitRate = 240.0;
-/// Upper bound of stiffness and damping, which either precision can represent.
+/// Upper bound of stiffness and damping that either precision can represent.
 constexpr double kStiffest = 1e9;
-/// Roundings of a position in the world, up to which an anchor is where it was.
+/// Roundings of a position by which an anchor may differ and still count as unmoved.
 constexpr btScalar kRoundings = 4;
 /// Mean over all nodes that can move: the force needed to carry a body does not depend on how light the nodes at the
 /// point are.
@@ -46,7 +46,7 @@ Joint::Joint(const SurfacePoint& point, const JointAnchor& anchor, const JointSe
   if (settings.turns) weld();
   btCollisionObject* other = anchor_.object;
   if (settings.collide || !other) return;
-  // One entry per joint, since another joint between the two may be removed before this one.
+  // One entry per joint, because another joint between the two may be removed before this one.
   point_.body()->m_collisionDisabledObjects.push_back(other);
   hidden_ = true;
 }
@@ -99,7 +99,7 @@ CarriedPoint Joint::pointBeside(const btVector3& at) const {
   return {4, nodes, std::array<btScalar, 4>{x, y, z, 1 - x - y - z}};
 }
 
-/// The points beside are as far from the point as the tet is wide; a flat tet has none.
+/// The points beside are one tet's width away from the point; a flat tet has none.
 void Joint::weld() {
   const btTransform anchor = anchor_.inWorld();
   btScalar farthest = 0;
@@ -130,7 +130,7 @@ btScalar Joint::turn() const {
   return turned.getAngleShortestPath();
 }
 
-/// An end at rest stays at rest, and one that moves wakes the other. The solver lets the two fall asleep together.
+/// An end at rest stays at rest, and a moving end wakes the other. The solver lets the two fall asleep together.
 void Joint::wake() {
   const btTransform anchor = anchor_.inWorld();
   const bool moved = !(anchor == anchorBefore_);
@@ -199,7 +199,7 @@ void Joint::finish(btScalar seconds, const PointJoint* joints) {
   added_ = 0;
 }
 
-/// The previous anchor is rounded differently at the new place: that is no motion.
+/// The previous anchor is rounded differently at the new place; that must not count as motion.
 void Joint::shift(const btVector3& by) {
   if (!anchor_.object) anchor_.frame.getOrigin() += by;
   anchorBefore_.getOrigin() += by;
@@ -213,7 +213,7 @@ void Joint::visitState(WorldStream& stream) {
          torque_);
 }
 
-/// The nodes that carry the point, which is where it was attached.
+/// The nodes that carry the point, that is, where it was attached.
 void Joint::checkState(WorldStream& stream) {
   const char* const kOthers = "other springs or welds";
   stream.same(settings_.turns, kOthers);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: what holds a point of a surface to something: springs, ball joints, welds.
+// Internal to tetskin::touch: the joints at a point of a surface: springs, ball joints, welds.
 //
-// A spring is a row: with c = dt (k dt + d), the impulse -c (u + q s / dt), s the offset from the anchor to the point,
-// u the point's velocity relative to the anchor's at the end of the step, and q = k dt / (k dt + d), which is 1 without
-// damping. It is implicit in both velocities, so that it is stable at any stiffness.
+// A spring is a row with the impulse -c (u + q s / dt), where c = dt (k dt + d), s is the offset from the anchor to the
+// point, u the point's velocity relative to the anchor's at the end of the step, and q = k dt / (k dt + d), which is 1
+// without damping. It is implicit in both velocities, so it is stable at any stiffness.
 //
-// A weld is three such rows, with the stiffness that the solver uses for joints: one of the point, in all directions;
-// one of a point beside it along the anchor's x, in y and z; and one of a point along its y, in z. Together they
-// constrain six directions, which is all that a rigid motion has.
+// A weld is three such rows, with the solver's stiffness for joints: one at the point, in all directions; one at a
+// point beside it along the anchor's x, in y and z; and one at a point along its y, in z. Together they constrain six
+// directions, all degrees of freedom of a rigid motion.
 #pragma once
 
 #include <tetskin/solver/src/base/row_source.h>
@@ -30,7 +30,7 @@ struct JointSettings {
   bool collide = false;
 };
 
-/// It acts while it is among the rows of its world.
+/// Acts while it is among the rows of its world.
 class Joint {
  public:
   /// The point's status must be Ok.
@@ -44,17 +44,18 @@ class Joint {
   const JointAnchor& anchor() const { return anchor_; }
   JointSettings& settings() { return settings_; }
   bool dropped() const { return dropped_; }
-  /// The force of the last step on the point in which the body was awake.
+  /// The force on the point in the last step in which the body was awake.
   const btVector3& force() const { return force_; }
   const btVector3& torque() const { return torque_; }
   /// The current offset from the anchor to the point. The point's status must be Ok.
   btVector3 offset() const;
-  /// Of a weld: the angle between the current and the initial rotation of the point relative to the anchor, in radians.
+  /// For a weld: the angle between the current and the initial rotation of the point relative to the anchor, in
+  /// radians.
   btScalar turn() const;
 
   /// The body on which it acts; null if the body has been destroyed.
   btSoftBody* body() const { return dropped_ ? nullptr : point_.body(); }
-  /// True if its living body is in the world in which it was made.
+  /// True if its body lives and is in the world in which the joint was created.
   bool isInWorld() const;
   /// Called when its body has left the world and may be destroyed unnoticed.
   void drop();
@@ -63,9 +64,9 @@ class Joint {
   /// joints  those that addJoints has added, with their impulses
   void finish(btScalar seconds, const PointJoint* joints);
   void shift(const btVector3& by);
-  /// Writes or reads what changes, for snapshots.
+  /// Writes or reads, for snapshots, what changes.
   void visitState(WorldStream& stream);
-  /// Writes what does not change, and is to be the same in the world that a snapshot is restored in.
+  /// Writes what does not change, and must be the same in the world in which a snapshot is restored.
   void checkState(WorldStream& stream);
 
  private:
@@ -77,14 +78,14 @@ class Joint {
   void makeSpring(btScalar seconds, PointJoint& row) const;
 
   SurfacePoint point_;
-  const btSoftBodySolver* solver_;  ///< of the world in which it acts
+  const btSoftBodySolver* solver_;  ///< of the world in which the joint acts
   JointAnchor anchor_;
   JointSettings settings_;
   double nodeMass_;  ///< mean mass of the body's nodes that can move
   bool dropped_ = false;
   bool hidden_ = false;  ///< this joint keeps the body and the object from colliding
   CarriedPoint carried_;
-  btScalar arm_ = 0;          ///< of a weld: distance of the other two points; 0: the weld holds the point alone
+  btScalar arm_ = 0;          ///< of a weld: distance of the other two points; 0: the weld holds the point only
   CarriedPoint beside_[2];    ///< of a weld: the other two points
   btTransform anchorBefore_;  ///< in world space, when last read
   int added_ = 0;             ///< rows added in this step

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: what springs and welds have in common.
+// Internal to tetskin::touch: the common part of springs and welds.
 #pragma once
 
 #include <tetskin/touch/src/joints/joint_rows.h>
@@ -10,7 +10,7 @@ class btDiscreteDynamicsWorld;
 
 namespace tetskin::touch_detail {
 
-/// Owns a joint in the force of its world.
+/// Owns a joint among the rows of its world.
 class JointOwner {
  public:
   static Status check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point);

@@ -42,14 +42,14 @@ void SurfaceJointRows::remove(const Joint& joint) {
   if (active_.empty()) leave();
 }
 
-/// Bullet may be iterating over the list, which goes with the solver.
+/// Bullet may be iterating over the list, which the solver owns.
 void SurfaceJointRows::leave() {
   if (listed_ && deformableSolver(&solver_)) replaceByNothing(*solver_.getLagrangianForceArray(), this);
   listed_ = false;
 }
 
 void SurfaceJointRows::removeSoftBody(btSoftBody* body) {
-  // One that is known as long as it lives may come back.
+  // A body whose destruction is noticed may come back.
   if (bodyWithTrees(*body)) return;
   for (const auto& joint : active_) {
     if (joint->body() == body) joint->drop();

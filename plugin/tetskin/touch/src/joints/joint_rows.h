@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: the springs and welds of one world, as one entry in its list of forces, where a
+// Internal to tetskin::touch: the springs and welds of one world, as one entry in its list of forces, in which a
 // DeformableSolver finds it and asks for rows.
 #pragma once
 

@@ -8,7 +8,7 @@
 
 namespace tetskin::touch_detail {
 
-/// Reduced bodies have velocities of modes, and none at their nodes.
+/// Reduced bodies have velocities of modes, not of nodes.
 bool isReduced(const btSoftBody& body);
 
 inline bool isFiniteVector(const btVector3& v) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a SurfacePoint holds.
+// The contents of a SurfacePoint.
 #pragma once
 
 #include <tetskin/touch/surface_point.h>
@@ -19,7 +19,7 @@ namespace touch_detail {
 
 using PointData = Access<SurfacePoint>::Data;
 
-/// What a point holds, valid as long as it.
+/// The contents of a point, valid as long as the point.
 inline const PointData& dataOf(const SurfacePoint& point) {
   return Access<SurfacePoint>::data(point);
 }

@@ -32,7 +32,7 @@ struct Turning {
       p -= centroid;
       inertia += p.squaredNorm() * Matrix3d::Identity() - p * p.transpose();
     }
-    // Relative to the third power of the trace (a cube has 1/27): nodes on a line have no inertia about it, but for
+    // Relative to the third power of the trace (a cube has 1/27): nodes on a line have no inertia about it, except for
     // rounding.
     constexpr double kLine = 1e-9;
     const double size = inertia.trace();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: how a point moves with the nodes around it, and the share of a push that each of them
-// gets.
+// Internal to tetskin::touch: how a point moves with the nodes around it, and how a push is divided among them.
 #pragma once
 
 #include <tetskin/touch/src/points/point_data.h>
@@ -22,14 +21,14 @@ struct PointJacobianNode {
 using PointJacobian = std::vector<PointJacobianNode>;  ///< 4 to 12 nodes, all distinct
 
 /// The Jacobian of a point at the current node positions. A corner inside its tet uses barycentric weights. A corner
-/// outside uses those of the tet's closest point, and a couple: with weights that extrapolate, single nodes would get
-/// very large shares.
+/// outside uses those of the tet's closest point, plus a couple: weights that extrapolate would give single nodes very
+/// large shares.
 PointJacobian jacobianAt(const PointData& point, const btSoftBody& body);
 
 /// Inverse mass: the velocity of the point per unit impulse.
 Eigen::Matrix3d linearResponse(const PointJacobian& jacobian, const btSoftBody& body);
 
-/// The mass to which this response belongs: infinite if nothing can move.
+/// The mass that corresponds to this response: infinite if nothing can move.
 double massOf(const Eigen::Matrix3d& response);
 
 }  // namespace tetskin::touch_detail

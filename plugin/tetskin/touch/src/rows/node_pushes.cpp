@@ -21,7 +21,7 @@ void applyImpulses(const NodePushes& impulses, btSoftBody& body) {
     btSoftBody::Node& node = body.m_nodes[push.node];
     const btVector3 change = toBullet(static_cast<double>(node.m_im) * push.push);
     node.m_v += change;
-    node.m_vn += change;  // implicit worlds begin the step with this one
+    node.m_vn += change;  // implicit worlds start the step from this one
   }
   body.activate();
 }

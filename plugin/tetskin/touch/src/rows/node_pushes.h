@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to tetskin::touch: applies the impulses and forces on nodes among which a Jacobian has divided a push.
+// Internal to tetskin::touch: applies a push that a Jacobian has divided into impulses or forces on nodes.
 #pragma once
 
 #include <tetskin/solver/src/base/node_loads.h>
@@ -14,7 +14,7 @@ using bullet_detail::NodePushes;
 
 void addPush(const PointJacobian& jacobian, const Eigen::Vector3d& push, NodePushes& pushes);
 
-/// Adds the impulses to the nodes' velocities at once; those on pinned nodes are lost. Wakes the body.
+/// Adds the impulses to the nodes' velocities at once; pinned nodes absorb theirs. Wakes the body.
 void applyImpulses(const NodePushes& impulses, btSoftBody& body);
 
 /// Applies the forces in the next steps. Wakes the body.

@@ -11,8 +11,8 @@
 namespace tetskin::touch_detail {
 namespace {
 
-/// What rounding may add to a box's distance, relative to the largest coordinate: without it, of the triangles around
-/// an edge or a vertex on which the point lies, the search would miss those whose boxes seem farther away.
+/// What rounding may add to a box's distance, relative to the largest coordinate. Without it, if the point lies on an
+/// edge or a vertex, the search would miss those of the triangles around it whose boxes seem farther away.
 constexpr double kRounding = 1e-14;
 
 }  // namespace

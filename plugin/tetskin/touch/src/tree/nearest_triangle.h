@@ -14,7 +14,7 @@ namespace tetskin::touch_detail {
 struct NearestTriangle {
   int triangle = -1;                       ///< -1: none
   Eigen::Vector3d weights{1.0, 0.0, 0.0};  ///< barycentric weights of the closest point
-  int firstCorner = 0;                     ///< which of its corners is the vertex that was asked for
+  int firstCorner = 0;                     ///< which of its corners is the vertex in question
 };
 
 class RestTriangles {
@@ -23,9 +23,9 @@ class RestTriangles {
   /// mesh  indices in range, coordinates finite. Cost O(triangles)
   explicit RestTriangles(const TriangleMesh& mesh);
 
-  /// The triangle with the largest area around a vertex; of several, that of the lowest number.
+  /// The triangle with the largest area around a vertex; of equal ones, the lowest number.
   NearestTriangle largestAround(int vertex) const;
-  /// The triangle nearest to a point; of several at the same distance, that of the lowest number.
+  /// The triangle nearest to a point; of equally near ones, the lowest number.
   /// mesh  with triangles, the same as before
   /// tree  of all its triangles
   /// Cost  about O(log n) for n triangles; the first call fits the tree to the mesh at rest, O(n)

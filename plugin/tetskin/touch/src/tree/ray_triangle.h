@@ -25,10 +25,10 @@ struct RayHit {
   double second = 0.0, third = 0.0;  ///< weights of the second and third corner
 };
 
-/// Finds where a ray meets a triangle, from either side, without the triangle's numbers; returns false, and writes
-/// nothing, if it does not, or if the triangle has no area.
+/// Finds where a ray meets a triangle, from either side. Does not set the triangle's numbers. Returns false, and writes
+/// nothing, if the ray misses or the triangle has no area.
 inline bool collides(const Ray& ray, const TriangleCorners& triangle, RayHit& hit) {
-  // A tolerance, so that a ray that rounding would let pass between two triangles meets both.
+  // A tolerance, so that a ray that rounding would let pass between two triangles hits both.
   constexpr double kEdge = 1e-12;
   const Eigen::Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
   const Eigen::Vector3d first = b - a, second = c - a, across = ray.direction.cross(second), from = ray.start - a;

@@ -9,8 +9,8 @@
 
 namespace tetskin {
 
-/// std::max, to the bit, also of what is not finite; for loops in which either number may be the larger one. V8 makes a
-/// jump of a scalar choice in WebAssembly, which processors mispredict, and one instruction of this.
+/// std::max, to the bit, including values that are not finite; for loops in which either number may be the larger one.
+/// V8 compiles a scalar choice in WebAssembly to a jump, which processors mispredict, but this to one instruction.
 template <class S>
 S larger(S a, S b) {
   return std::max(a, b);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Small vectors and matrices of double, computed at once. Eigen's expressions make a type of each formula, which takes
-// a compiler seconds in the sources that have many of them; these have one type per size. Results have the bits of
-// Eigen's matrices of fixed size, as sums are in the same order: of the sums of both halves.
+// Small vectors and matrices of double, evaluated at once. Eigen's expressions create a type per formula, which takes a
+// compiler seconds in sources with many formulas; these have one type per size. Results have the bits of Eigen's
+// fixed-size matrices, because sums have the same order: the sum of both halves' sums.
 #pragma once
 
 #include <cassert>
@@ -14,7 +14,7 @@
 
 namespace tetskin {
 
-/// The sum of value(k) for N numbers k from `first` on, as that of the sums of both halves.
+/// The sum of value(k) for N numbers k from `first` on, as the sum of both halves' sums.
 template <int N, class Value>
 double halvedSum(const Value& value, int first = 0) {
   if constexpr (N == 1) {
@@ -24,7 +24,7 @@ double halvedSum(const Value& value, int first = 0) {
   }
 }
 
-/// Rows x Columns numbers; a vector has one column. Zero unless given.
+/// Rows x Columns numbers; a vector has one column. Zero by default.
 template <int Rows, int Columns = 1>
 struct SmallMatrix {
   static constexpr int kSize = Rows * Columns;
@@ -134,7 +134,7 @@ inline Small3 cross(const Small3& a, const Small3& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 
-/// The matrix of the cross product with a vector from the left.
+/// The matrix of the cross product with `a` on the left.
 inline Small3x3 smallCrossMatrix(const Small3& a) {
   return {{0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0}};
 }
@@ -157,8 +157,8 @@ void forConstants(const Visit& visit) {
   }
 }
 
-/// x with A x = b, by factors L U with the largest pivot in each step. If A is singular, x is not finite. Bits are
-/// those of Eigen's PartialPivLU of this size.
+/// Solves A x = b by LU decomposition with partial pivoting. If A is singular, x is not finite. Bits are those of
+/// Eigen's PartialPivLU of this size.
 template <int Size>
 SmallMatrix<Size> solved(SmallMatrix<Size, Size> a, SmallMatrix<Size> b) {
   for (int k = 0; k < Size; ++k) {
@@ -192,7 +192,7 @@ class SmallLdlt {
     for (int k = 0; k < Size; ++k) eliminate(k);
   }
 
-  /// Where a diagonal is 0, so is the solution.
+  /// Where a diagonal entry is 0, the solution is 0, too.
   SmallMatrix<Size> solve(SmallMatrix<Size> right) const {
     for (int k = 0; k < Size; ++k) std::swap(right[k], right[swapped_[k]]);
     forConstants<Size>([&](auto k) { right[k] -= halvedSum<k>([&](int j) { return factors_(k, j) * right[j]; }); });
@@ -209,7 +209,7 @@ class SmallLdlt {
   }
 
  private:
-  /// The least number that is not denormal, as in Eigen 3.4.
+  /// The smallest normal number, as in Eigen 3.4.
   static constexpr double kSmallest = std::numeric_limits<double>::min();
 
   void exchange(int k, int with) {
@@ -229,7 +229,7 @@ class SmallLdlt {
     for (int i = k; i < Size && k > 0; ++i) {
       double sum = factors_(i, 0) * (factors_(0, 0) * factors_(k, 0));
       for (int j = 1; j < k; ++j) sum += factors_(i, j) * (factors_(j, j) * factors_(k, j));
-      // The row of the pivot is read for each of those below it.
+      // The rows below still need the pivot's old value.
       if (i == k) {
         pivot_ = sum;
       } else {
@@ -242,7 +242,7 @@ class SmallLdlt {
   }
 
   SmallMatrix<Size, Size> factors_;  ///< D on the diagonal, L below it
-  int swapped_[Size] = {};           ///< with which row each was exchanged
+  int swapped_[Size] = {};           ///< the row with which each was exchanged
   double pivot_ = 0.0;
 };
 

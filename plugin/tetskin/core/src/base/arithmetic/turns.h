@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Functions whose last bits each C library rounds in its own way, here by arithmetic and square roots alone: steps
-// have the same bits everywhere. Errors are a few last digits of double.
+// Functions whose last bits differ between C libraries, here computed with arithmetic and square roots only: steps have
+// the same bits everywhere. Errors are a few last digits of double.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct SineAndCosine {
 /// x  radians, below 1e6 in magnitude: the error grows with it
 inline SineAndCosine sineAndCosine(double x) {
   assert(std::abs(x) < 1e6);
-  // A quarter of a turn in two parts; whole multiples of the first are exact.
+  // A quarter turn in two parts; whole multiples of the first are exact.
   constexpr double kQuarter = 1.57079632673412561417, kQuarterRest = 6.07710050650619224932e-11;
   const double quarters = std::floor(x / kQuarter + 0.5);
   const double r = (x - quarters * kQuarter) - quarters * kQuarterRest, rr = r * r;
@@ -39,11 +39,11 @@ inline SineAndCosine sineAndCosine(double x) {
   }
 }
 
-/// Radians, from -pi/2 to pi/2; near the ends of that, its error is some ten last digits.
-/// sine  of -1 to 1
+/// Radians, from -pi/2 to pi/2; near both ends, its error is some ten last digits.
+/// sine  from -1 to 1
 inline double arcSine(double sine) {
   assert(std::abs(sine) <= 1.0);
-  // Of an eighth of the angle, which is at most 0.2: sin(a / 2) = sin(a) / sqrt(2 (1 + cos(a))).
+  // The sine of an eighth of the angle, which is at most 0.2: sin(a / 2) = sin(a) / sqrt(2 (1 + cos(a))).
   double part = sine;
   for (int k = 0; k < 3; ++k) part /= std::sqrt(2.0 * (1.0 + std::sqrt(std::max(0.0, 1.0 - part * part))));
   const double square = part * part;

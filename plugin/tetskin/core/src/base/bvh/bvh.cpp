@@ -10,7 +10,7 @@
 namespace tetskin {
 namespace {
 
-/// The items as the splits see them: small, because they are moved often.
+/// The items during the splits: small, because they are moved often.
 template <class Scalar>
 struct PointItem {
   using Box = BvhBox<Scalar>;
@@ -63,7 +63,7 @@ class Builder {
     return axis;
   }
 
-  /// Sorts the items of a leaf, whose order after `nth_element` depends on the standard library.
+  /// Sorts the items of a leaf: their order after `nth_element` depends on the standard library.
   void sortLeaf(int first, int last, int axis) {
     if (axis >= 0) std::sort(at(first), at(last), Before{axis});
   }
@@ -105,7 +105,7 @@ Bvh::Bvh(const Centroids<Scalar>& centroids, const std::vector<int>& items, int 
     assert(number >= 0 && static_cast<std::size_t>(number) < centroids.size());
     const auto& centroid = centroids[static_cast<std::size_t>(number)];
     points.push_back({centroid, number});
-    // It cannot be sorted; any position is valid.
+    // NaN cannot be sorted; any position is valid.
     if (!centroid.allFinite()) points.back().centroid.setZero();
   }
   Builder<Item>(std::move(points), leafSize, nodes_, items_);

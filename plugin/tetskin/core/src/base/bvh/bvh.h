@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A bounding-volume hierarchy: a balanced binary tree of items that have a centroid. This is the tree alone; boxes, and
-// whatever else its nodes carry, are arrays beside it, so that several bodies may share one and each fit it to itself.
+// A bounding-volume hierarchy: a balanced binary tree of items that have a centroid. This is only the tree; boxes and
+// other data of its nodes are separate arrays, so that several bodies can share one tree and each fit it to itself.
 //
 // Visitors are called with the index of an item in `items`; owners may keep their data in this order.
 #pragma once
@@ -25,7 +25,7 @@ class TETSKIN_CORE_API Bvh {
   using Centroids = std::vector<Eigen::Matrix<Scalar, 3, 1>>;
 
   struct Node {
-    int first = 0, last = 0;  ///< its items, from index `first` of `items` up to, and without, index `last`
+    int first = 0, last = 0;  ///< its items: indices of `items` in [first, last)
     int right = 0;            ///< second child, 0 in a leaf; the first child is the next node
     bool isLeaf() const { return right == 0; }
   };
@@ -34,7 +34,7 @@ class TETSKIN_CORE_API Bvh {
   /// Halves the items at the median along the longest side of their centroids' box. Of two at the same coordinate, the
   /// lower number comes first, and the items of leaves are sorted: the tree is the same with every standard library.
   /// centroids  by item; those that are not finite count as 0
-  /// leafSize   items that are not halved any more, at least 1
+  /// leafSize   groups of up to this many items are not halved, at least 1
   /// Cost       O(n log n)
   template <class Scalar>
   Bvh(const Centroids<Scalar>& centroids, int leafSize);
@@ -61,23 +61,23 @@ class TETSKIN_CORE_API Bvh {
   template <class Value, class FromItems, class FromChildren>
   void fill(std::vector<Value>& values, FromItems&& fromItems, FromChildren&& fromChildren) const;
 
-  /// Computes the nodes' boxes from those of the items, `boxOf(index)`. Cost as for `fill`
+  /// Computes the nodes' boxes from the items' boxes, `boxOf(index)`. Cost as for `fill`
   template <class Box, class BoxOf>
   void fit(std::vector<Box>& boxes, BoxOf&& boxOf) const;
 
-  /// Calls visit(index, squared) for the items whose leaf's box is nearer to a point than the root of `squared`, the
-  /// nearer leaf first. `visit` lowers `squared` to what it has found. Cost about O(log n)
+  /// Calls visit(index, squared) for the items in leaves whose box is nearer to a point than the root of `squared`,
+  /// nearer leaves first. `visit` lowers `squared` to what it has found. Cost about O(log n)
   template <class Box, class Visit>
   void visitNear(const std::vector<Box>& boxes, const Eigen::Vector3d& point, double squared, Visit&& visit) const;
 
-  /// Calls visit(index, end) for the items whose leaf's box `start + t * direction` meets for a t between 0 and `end`,
-  /// the nearer leaf first. `visit` may lower `end`. Cost about O(log n) and what is visited
+  /// Calls visit(index, end) for the items in leaves whose box the ray `start + t * direction` meets at some t between
+  /// 0 and `end`, nearer leaves first. `visit` may lower `end`. Cost about O(log n) and what is visited
   template <class Box, class Visit>
   void visitAlong(const std::vector<Box>& boxes, const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
                   double end, Visit&& visit) const;
 
  private:
-  /// Most nodes that wait to be visited: one per level, and trees are balanced.
+  /// Most nodes waiting to be visited: one per level, and trees are balanced.
   static constexpr int kMaxWaiting = 64;
   struct PendingNode {
     int node;
@@ -116,7 +116,7 @@ void Bvh::fit(std::vector<Box>& boxes, BoxOf&& boxOf) const {
   fill(boxes, aroundItems, aroundBoth);
 }
 
-/// distance  of a node: if it is not within `bound`, the node is skipped
+/// distance  of a node; if not within `bound`, the node is skipped
 template <class Distance, class Within, class Visit>
 void Bvh::visitNearestFirst(const Distance& distance, double& bound, Within within, Visit& visit) const {
   if (empty()) return;
@@ -156,15 +156,15 @@ void Bvh::visitAlong(const std::vector<Box>& boxes, const Eigen::Vector3d& start
   visitNearestFirst(distance, end, std::less_equal<>(), visit);
 }
 
-/// Calls visit(leafA, leafB) for those pairs of leaves of two trees for which meet(nodeA, nodeB), with numbers of
-/// nodes, is true, and for all nodes that contain them.
+/// Calls visit(leafA, leafB) for those pairs of leaves of two trees for which meet(nodeA, nodeB), called with numbers
+/// of nodes, is true, as it must be for all their ancestors, too.
 template <class Meet, class Visit>
 void visitPairs(const Bvh& a, const Bvh& b, const Meet& meet, Visit&& visit, int nodeA = 0, int nodeB = 0) {
   if (a.empty() || b.empty() || !meet(nodeA, nodeB)) return;
   const Bvh::Node& first = a.nodes()[static_cast<std::size_t>(nodeA)];
   const Bvh::Node& second = b.nodes()[static_cast<std::size_t>(nodeB)];
   if (first.isLeaf() && second.isLeaf()) return visit(first, second);
-  // The one with more items is split.
+  // Splits the one with more items.
   if (second.isLeaf() || (!first.isLeaf() && first.last - first.first > second.last - second.first)) {
     visitPairs(a, b, meet, visit, nodeA + 1, nodeB);
     visitPairs(a, b, meet, visit, first.right, nodeB);

@@ -25,7 +25,7 @@ struct BvhBox {
   void extend(const Scalar* point) { extend(point, point); }
   void extend(const BvhBox& b) { extend(b.low, b.high); }
 
-  /// Without branches: most pairs are disjoint, and along no particular axis.
+  /// Without branches, because most pairs are disjoint, along no particular axis.
   bool collides(const BvhBox& b) const {
     return (low[0] <= b.high[0]) & (low[1] <= b.high[1]) & (low[2] <= b.high[2]) & (b.low[0] <= high[0]) &
            (b.low[1] <= high[1]) & (b.low[2] <= high[2]);
@@ -63,17 +63,17 @@ struct BvhBox {
   }
 
   /// Where a ray enters the box, in units of its direction; infinite if it does not before `end`.
-  /// inverse  of the direction's coordinates, infinite where these are 0
+  /// inverse  of the direction's coordinates, infinite for 0
   double entry(const double* start, const double* inverse, double end) const {
     double in = 0.0, out = end;
     for (int k = 0; k < 3; ++k) {
       const double a = (static_cast<double>(low[k]) - start[k]) * inverse[k];
       const double b = (static_cast<double>(high[k]) - start[k]) * inverse[k];
-      // With this order of arguments, a ray within a face's plane, for which these are NaN, is inside.
+      // With this order of arguments, a ray within a face's plane, which gives NaN here, counts as inside.
       in = std::max(in, std::min(a, b));
       out = std::min(out, std::max(a, b));
     }
-    // A ray that rounding would let pass between two boxes meets both.
+    // A ray that rounding would let pass between two boxes enters both.
     constexpr double kRounding = 1.0 + 1e-14;
     return in <= out * kRounding ? in : std::numeric_limits<double>::infinity();
   }

@@ -27,7 +27,7 @@ struct EmbeddingData {
   std::size_t insideCount = 0;  ///< vertices inside: their slots come first
   std::size_t insideRunCount = 0;
   /// The runs of the tets with vertices inside, ascending by tet; then the runs of the tets with vertices outside,
-  /// ascending by tet; and one more that ends the list.
+  /// ascending by tet; and a sentinel.
   std::vector<Run> runs;
   /// vertexCount + kPadding, by slot: weights of nodes 0, 1, 2 of the slot's tet
   std::array<std::vector<float>, 3> weights;
@@ -46,7 +46,7 @@ struct Access<Embedding> {
   static Embedding create(std::shared_ptr<const EmbeddingData> data) { return Embedding(std::move(data)); }
 };
 
-/// What an embedding holds, valid as long as one of its copies.
+/// The data of an embedding, valid as long as one of its copies.
 inline const EmbeddingData& dataOf(const Embedding& embedding) {
   return Access<Embedding>::data(embedding);
 }
@@ -55,7 +55,7 @@ inline const EmbeddingData& dataOf(const Embedding& embedding) {
 struct EmbeddingFit {
   double largestWeight = 1.0;      ///< largest absolute weight
   double worstBarycentric = -1.0;  ///< dimensionless
-  double restErrorSquared = 0.0;   ///< rest space; infinite where weights overflow a float
+  double restErrorSquared = 0.0;   ///< rest space; infinite if weights overflow a float
 };
 
 /// Sorts vertices by tet and computes their weights.
@@ -66,7 +66,7 @@ struct EmbeddingFit {
 Embedding embeddingFromTets(const TetMesh& cage, PointReader vertices, const std::vector<std::int32_t>& tetOf,
                             EmbeddingFit* fit = nullptr);
 
-/// The report of a mesh that was rejected before anything else was computed.
+/// The report of a mesh that was rejected before anything was computed.
 inline EmbedReport notEmbedded(const TriangleMesh& mesh) {
   EmbedReport report;
   report.vertexCount = report.unbound = mesh.vertexCount();

@@ -5,7 +5,7 @@
 // kernels' headers include is compiled for processors that not everyone has.
 #pragma once
 
-/// Declares the same names for all instruction sets.
+/// Declares the same names in the namespaces of all instruction sets.
 #define TETSKIN_FOR_EACH_INSTRUCTION_SET(...) \
   namespace plain {                           \
   __VA_ARGS__                                 \
@@ -33,7 +33,7 @@
 #else
 #define TETSKIN_RETURN_OF_BASELINE(name)
 #endif
-/// Returns what has this name in the namespace of `instructionSet()`.
+/// Returns `name` from the namespace of `instructionSet()`.
 #define TETSKIN_RETURN_IN_USE(name) \
   TETSKIN_RETURN_OF_X86(name)       \
   TETSKIN_RETURN_OF_BASELINE(name)  \

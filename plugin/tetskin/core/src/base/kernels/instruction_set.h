@@ -8,11 +8,11 @@
 
 namespace tetskin {
 
-/// The kernels of skinning exist once for each of these; the widest that the processor has is used, without being asked
-/// for. Results differ by rounding only, and which tet carries a vertex does not depend on it.
+/// The skinning kernels exist once for each of these; the widest that the processor has is chosen automatically.
+/// Results differ by rounding only, and the tet that carries a vertex never depends on it.
 enum class InstructionSet {
-  Plain,     ///< C++ and nothing else, one vertex at a time: for compilers without vector types
-  Baseline,  ///< what every processor of the platform has (SSE2 on x86-64), through the compiler's vector types
+  Plain,     ///< standard C++, one vertex at a time: for compilers without vector types
+  Baseline,  ///< the platform's baseline (SSE2 on x86-64), through the compiler's vector types
   Avx2,      ///< with fused multiply-adds
   Avx512,    ///< F, DQ, BW and VL
 };
@@ -24,8 +24,7 @@ std::vector<InstructionSet> availableInstructionSets();
 
 TETSKIN_CORE_API InstructionSet instructionSet();
 
-/// For tests and measurements: everything uses this one from now on. It must be available. Not to be called during an
-/// update.
+/// For tests and measurements: everything uses this one from now on. It must be available. Not during an update.
 void setInstructionSet(InstructionSet set);
 
 }  // namespace tetskin

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to the kernels: several numbers side by side. Included once for each instruction set, in a namespace of its
-// own (TETSKIN_KERNELS), and without help from Eigen or the standard library: see skinning_kernels.h. Nothing guards it
-// against a second inclusion, as a unit may need it in several namespaces; one header of each (points.h, wide.h,
-// four.h) includes it for all others.
+// Internal to the kernels: several numbers side by side. Included once per instruction set, each time in its own
+// namespace (TETSKIN_KERNELS), without Eigen or the standard library: see skinning_kernels.h. It has no include guard,
+// because a unit may need it in several namespaces; one header per namespace (points.h, wide.h, four.h) includes it for
+// all others.
 //
-// With GCC and Clang the compiler's vector types do the work, on every processor. Without them, or with
+// With GCC and Clang it uses the compiler's vector types, on every processor. Without them, or with
 // TETSKIN_PLAIN_LANES, the same code is plain C++: lanes are one wide, and only points are four numbers.
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -22,7 +22,7 @@
 
 #if defined(TETSKIN_GNU) && !defined(TETSKIN_PLAIN_LANES)
 #define TETSKIN_VECTOR_TYPES 1
-// Vectors wider than a register are only passed between functions that are compiled alike.
+// Vectors wider than a register are only passed between functions compiled with the same flags.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
@@ -39,7 +39,7 @@ struct LanesOf<S, 1> {
   using Type = S;
 };
 #ifndef TETSKIN_VECTOR_TYPES
-/// A padded point where the compiler has no vector types; without loops, whose counters keep it in memory.
+/// A padded point for compilers without vector types. No loops: their counters would keep it in memory.
 template <class S>
 struct LanesOf<S, 4> {
   struct Type {
@@ -71,11 +71,11 @@ struct LanesOf<S, 4> {
   };
 };
 #endif
-/// W numbers. Arithmetic is lane by lane; a single number beside one stands for W equal ones.
+/// W numbers. Arithmetic is lane by lane; a scalar operand applies to every lane.
 template <class S, int W>
 using Lanes = typename LanesOf<S, W>::Type;
 
-/// W floats from memory at any address.
+/// Loads W floats from any address.
 template <int W>
 Lanes<float, W> load(const float* from) {
   Lanes<float, W> v;
@@ -92,7 +92,7 @@ Lanes<S, W> laneNumbers() {
   return v;
 }
 
-/// The smaller, or the larger, of two numbers, lane by lane; b where a is NaN.
+/// The smaller, or the larger, of two numbers, lane by lane; b if a is NaN.
 template <class V>
 V smaller(const V& a, const V& b) {
   return a < b ? a : b;
@@ -102,7 +102,7 @@ V larger(const V& a, const V& b) {
   return a > b ? a : b;
 }
 
-/// One bit per lane: set if it is below 0.
+/// One bit per lane: set if the lane is negative.
 template <int W>
 unsigned negativeLanes(const Lanes<float, W>& v) {
   if constexpr (W == 1) {
@@ -122,7 +122,7 @@ unsigned negativeLanes(const Lanes<float, W>& v) {
 }
 
 #ifdef TETSKIN_VECTOR_TYPES
-/// Numbers of another type.
+/// Converts each lane to another type.
 template <class To, class From>
 TETSKIN_INLINE To converted(const From& v) {
   return __builtin_convertvector(v, To);

@@ -6,8 +6,8 @@
 
 namespace tetskin {
 
-/// Adds to the sums of each triangle's corners its area vector: twice its area times its normal.
-/// sumOf  of a vertex: the Vector3d& to which it is added
+/// Adds each triangle's area vector (twice its area times its normal) to the sums of its corners.
+/// sumOf  of a vertex: the Vector3d& to add to
 template <class SumOf>
 void sumAreaVectors(const TriangleMesh& mesh, std::size_t firstTriangle, SumOf&& sumOf) {
   for (std::size_t t = firstTriangle; t < mesh.triangleCount(); ++t) {

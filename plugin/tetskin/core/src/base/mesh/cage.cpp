@@ -16,10 +16,10 @@
 namespace tetskin {
 namespace {
 
-/// Most tets that a search leaves by their faces without coming any nearer to the point before it stops.
+/// A search stops after this many tets whose faces have led it no nearer to the point.
 constexpr std::size_t kMaxFruitless = 400;
-/// Barycentric distance up to which a tet contains a point: a point on a face is in both tets, or, because of rounding,
-/// in none.
+/// Barycentric distance up to which a tet contains a point: a point on a face is in both tets or, because of rounding,
+/// in neither.
 constexpr double kHolds = 1e-12;
 
 Status wrongCount(const char* name, std::size_t count, std::size_t wanted, const char* label) {
@@ -138,8 +138,8 @@ struct CageLocator::Impl {
     double barycentric = std::numeric_limits<double>::infinity();
     bool holds() const { return barycentric <= kHolds; }
   };
-  /// A tet on the path to a point; the queue is sorted so that the nearest one is first, and of two at the same
-  /// distance, the one with the lower number: the heaps of standard libraries differ.
+  /// A tet on the path to a point. The queue is sorted so that the nearest one comes first and, of two at the same
+  /// distance, the lower number, because the heaps of standard libraries differ.
   struct Reached {
     double distance;
     int tet;
@@ -154,9 +154,8 @@ struct CageLocator::Impl {
     for (std::uint32_t k = beyond.starts[face]; k < beyond.starts[face + 4]; ++k) f(static_cast<int>(beyond.values[k]));
   }
 
-  /// Searches from the tets of these vertices through faces, the nearest tets first. It compares distances, not
-  /// barycentric distances: those are large in small tets, wherever they are, so that they would not decrease steadily
-  /// along the path.
+  /// Searches from the tets of these vertices through faces, nearest tets first. It compares distances, not barycentric
+  /// distances: those are large in small tets anywhere, so they would not decrease steadily along the path.
   Found search(const Eigen::Vector3d& point, const std::array<int, 3>& nearVertices) const {
     Found best;
     std::unordered_set<int> seen;

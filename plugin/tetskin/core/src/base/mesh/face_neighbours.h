@@ -13,8 +13,8 @@
 
 namespace tetskin {
 
-/// By face of a tet, 4 t + the corner opposite to it: the other tets with its three nodes, ascending; more than one
-/// where duplicates of a tet meet. Cost O(T log T).
+/// By face of a tet, 4 t + the opposite corner: the other tets with its three nodes, ascending; more than one where
+/// duplicates of a tet meet. Cost O(T log T).
 inline Lists<> faceNeighbours(const TetMesh& mesh) {
   assert(mesh.tetCount() < 0xFFFFFFFFu / 4);
   struct Face {

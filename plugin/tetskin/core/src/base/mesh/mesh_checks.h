@@ -10,11 +10,11 @@
 
 namespace tetskin {
 
-/// The part of `checkTetMesh` that `validate` needs: everything but duplicate tets and unreferenced nodes. Cost O(N +
-/// T) for N nodes, allocates nothing.
+/// The part of `checkTetMesh` that `validate` needs: all but duplicate tets and unreferenced nodes. Cost O(N + T) for N
+/// nodes, allocates nothing.
 TETSKIN_CORE_API TetMeshReport inspectForUse(const TetMesh& mesh);
 
-/// `validate` by a report of either check.
+/// `validate`, based on the report of either check.
 TETSKIN_CORE_API Status validate(const TetMesh& mesh, const TetMeshReport& report);
 
 /// Ok if a tet mesh may have these numbers of nodes and tets. Error: TooLarge
@@ -23,7 +23,7 @@ TETSKIN_CORE_API Status checkTetCounts(std::size_t nodes, std::size_t tets);
 /// Ok if a triangle mesh may have these numbers of vertices and triangles. Error: TooLarge
 TETSKIN_CORE_API Status checkTriangleCounts(std::size_t vertices, std::size_t triangles);
 
-/// `validate` of what a cage knows beside its tet mesh.
+/// Validates a cage's data beside its tet mesh.
 TETSKIN_CORE_API Status validateAttributes(const Cage& cage);
 
 }  // namespace tetskin

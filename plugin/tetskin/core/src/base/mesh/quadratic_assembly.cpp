@@ -10,16 +10,16 @@
 namespace tetskin {
 namespace {
 
-/// How far the volumes of the eight may be from an eighth of the tet, as a share of it: moved midpoints change those of
-/// thin tets the most.
+/// How far the volumes of the eight may be from an eighth of the tet's, as a share of it: moved midpoints affect thin
+/// tets the most.
 constexpr double kVolumeTolerance = 1e-2;
 
-/// A corner, and the only one of the eight tets that has it.
+/// A corner, and the only one of the eight tets that contains it.
 struct Corner {
   int node, tet;
 };
 
-/// The four nodes that only one of the eight tets has: the others are midpoints, which several share.
+/// The four nodes that only one of the eight tets has; all others are midpoints, which several share.
 std::optional<std::array<Corner, 4>> cornersIn(const TetMesh& mesh, const std::array<int, kSubTets>& tets) {
   std::array<Corner, 4 * kSubTets> uses{};
   std::size_t next = 0;
@@ -56,8 +56,8 @@ unsigned midpointsOf(const Tet& tet, const QuadraticTet& whole) {
   return bits;
 }
 
-/// True if the four tets that have no corner are those around one diagonal of the octahedron between the midpoints:
-/// different tets, which have the same two opposite midpoints in common.
+/// True if the four tets without a corner are those around one diagonal of the octahedron between the midpoints:
+/// different tets, which share the same two opposite midpoints.
 bool areAroundADiagonal(const TetMesh& mesh, const QuadraticTet& whole, const std::array<Corner, 4>& corners) {
   unsigned common = ~0u;
   std::array<unsigned, 4> inner{};

@@ -19,7 +19,7 @@ Status invalid(const std::string& message) {
   return {StatusCode::InvalidOption, message};
 }
 
-/// first  the first of the tets, if there are some
+/// first  the first of the tets, if there are any
 Status notEight(std::size_t number, std::size_t count, int first) {
   const std::string found =
       "the cage's quadraticTet is " + std::to_string(number) + " for " + std::to_string(count) + " tets";
@@ -29,7 +29,7 @@ Status notEight(std::size_t number, std::size_t count, int first) {
                  "uniformly refined tet, with nodes at the middles of its edges");
 }
 
-/// Volume fractions of the eight tets of each: the means of those after a further refinement, where they are known.
+/// Volume fractions of the eight tets of each: the means of those after a further refinement, if these are known.
 void refineFill(const Cage& linear, Cage& refined) {
   if (linear.volumeFraction.empty()) return;
   constexpr std::size_t kPieces = kFineTets / kSubTets;
@@ -48,8 +48,8 @@ void refineFill(const Cage& linear, Cage& refined) {
   }
 }
 
-/// Distributes masses by what fills the tets, so that their sum stays the same; an empty tet has a share that holds its
-/// nodes.
+/// Distributes masses by the tets' filled volumes, so that their sum stays the same; an empty tet gets a share that
+/// holds its nodes.
 void refineMasses(const Cage& linear, Cage& refined) {
   if (linear.masses.empty()) return;
   refined.masses.assign(refined.mesh.nodeCount(), 0.0);
@@ -108,10 +108,10 @@ Result<Cage> refineQuadratic(const Cage& linear) {
   if (Status status = validateAttributes(linear); !status.ok()) return status;
   if (linear.hasDuplicates()) {
     return invalid(
-        "a cage with duplicate elements has no quadratic one: create it with CageOptions::duplicateElements false");
+        "a cage with duplicate elements cannot become quadratic: create it with CageOptions::duplicateElements false");
   }
   if (report.zeroVolume.count + report.repeatedNode.count > 0) {
-    return Status{StatusCode::Degenerate, "a flat tet has no quadratic one; remove flat tets"};
+    return Status{StatusCode::Degenerate, "a flat tet cannot become quadratic; remove flat tets"};
   }
   if (Status status = checkTetCounts(mesh.nodeCount(), kSubTets * mesh.tetCount()); !status.ok()) return status;
   Cage cage(refineUniformly(positive).mesh);

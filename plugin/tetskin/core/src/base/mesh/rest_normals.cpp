@@ -18,7 +18,7 @@ constexpr float kUnitTolerance = 0.1f;
 bool normalise(Eigen::Vector3d& sum) {
   double squared = sum.squaredNorm();
   if (!(squared > std::numeric_limits<double>::min() && std::isfinite(squared))) {
-    // Sums of tiny or huge triangles are scaled first, unless they are 0 or not finite.
+    // Sums over tiny or huge triangles are scaled first, unless they are 0 or not finite.
     const double size = sum.cwiseAbs().maxCoeff();
     if (!(size > 0.0 && std::isfinite(size))) return false;
     sum /= size;

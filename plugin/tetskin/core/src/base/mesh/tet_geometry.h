@@ -47,7 +47,6 @@ inline double tetSize(const TetCorners& p) {
   return std::sqrt(squared);
 }
 
-/// Sum of the lengths of the six edges.
 inline double edgeSum(const TetCorners& p) {
   double sum = 0.0;
   for (int a = 0; a < 3; ++a) {
@@ -78,8 +77,8 @@ struct BarycentricMap {
     rows[2] = a.cross(b) * inverse;
   }
 
-  /// Weights of the four nodes at (x, y, z). The order of the operations is written out, so that every caller decides
-  /// on the same bits, whether its compiler vectorises the call or not.
+  /// Weights of the four nodes at (x, y, z). The order of operations is written out, so that every caller decides on
+  /// the same bits, whether or not its compiler vectorises the call.
   void weightsAt(double x, double y, double z, double& b0, double& b1, double& b2, double& b3) const {
     const double rx = x - origin.x(), ry = y - origin.y(), rz = z - origin.z();
     b0 = (rows[0].x() * rx + rows[0].y() * ry) + rows[0].z() * rz;
@@ -108,13 +107,14 @@ inline double barycentricDistance(const Eigen::Vector4d& weights) {
   return -weights.minCoeff();
 }
 
-/// How far weights extrapolate: the largest of their absolute values. Negative ones amplify a node's motion as much.
+/// How far weights extrapolate: the largest of their absolute values. Negative ones amplify a node's motion just as
+/// much.
 inline double largestWeight(const Eigen::Vector4d& weights) {
   return weights.cwiseAbs().maxCoeff();
 }
 
-/// Closest point of the tet to v: v itself inside. `weights` are v's barycentric weights in it: only faces that v lies
-/// beyond can hold the closest point.
+/// Closest point of the tet to v; v itself if inside. `weights` are v's barycentric weights in the tet: only faces that
+/// v lies beyond can contain the closest point.
 inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorners& p,
                                          const Eigen::Vector4d& weights) {
   Eigen::Vector3d closest = v;
@@ -132,7 +132,7 @@ inline Eigen::Vector3d closestPointInTet(const Eigen::Vector3d& v, const TetCorn
     take(closestPointOnTriangle(v, p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]).point);
   }
   if (inside || squared < std::numeric_limits<double>::infinity()) return closest;
-  // Seen from 1e20 sizes away, rounding may eliminate every point of a face; a corner is as near.
+  // From 1e20 sizes away, rounding may eliminate every point of a face; a corner is as near.
   for (const Eigen::Vector3d& corner : p) take(corner);
   return closest;
 }
@@ -142,8 +142,8 @@ inline double distanceToTet(const Eigen::Vector3d& v, const TetCorners& p, const
   return (v - closestPointInTet(v, p, weights)).norm();
 }
 
-/// Mean length of the edges of the tets that are not flat; an edge that several tets share counts once for each. It is
-/// the unit for how far from its nearest tet a vertex may be moved. There must be such a tet. Cost O(T).
+/// Mean length of the edges of the tets that are not flat, of which there must be one; an edge that several tets share
+/// counts once for each. The unit for how far from its nearest tet a vertex may be moved. Cost O(T).
 inline double meanEdge(const TetMesh& mesh) {
   double sum = 0.0;
   std::size_t count = 0;

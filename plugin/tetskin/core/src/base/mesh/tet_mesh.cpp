@@ -188,7 +188,7 @@ std::vector<std::array<int, 2>> uniqueEdges(const TetMesh& mesh) {
 }
 
 std::vector<std::array<int, 3>> boundaryFaces(const TetMesh& mesh) {
-  // By their corners, seen from outside counter-clockwise.
+  // By their corners, counter-clockwise from outside.
   constexpr int kFaces[4][3] = {{1, 0, 2}, {3, 0, 1}, {3, 1, 2}, {2, 0, 3}};
   std::vector<std::array<int, 3>> faces;
   faces.reserve(4 * mesh.tetCount());

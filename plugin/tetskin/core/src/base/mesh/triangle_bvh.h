@@ -21,16 +21,17 @@ struct NearestPoint {
 /// Computes distances of points from triangles at rest.
 class TETSKIN_CORE_API TriangleBvh {
  public:
-  /// mesh  indices in range, coordinates finite. May go away afterwards. Cost O(n log n) for n triangles
+  /// mesh  indices in range, coordinates finite. Not kept. Cost O(n log n) for n triangles
   explicit TriangleBvh(const TriangleMesh& mesh);
-  /// Uses only some of the triangles.
+  /// Only for some of the triangles.
   TriangleBvh(const TriangleMesh& mesh, const std::vector<int>& triangles);
 
-  /// The nearest point. Of several triangles at the same distance, it returns one, always the same.
-  /// squaredBound  only points nearer than this are searched for: the smaller it is, the faster
+  /// The nearest point. If several triangles are at the same distance, the choice is always the same one.
+  /// squaredBound  only nearer points are searched for: the smaller, the faster
   NearestPoint nearest(const Eigen::Vector3d& p, double squaredBound = std::numeric_limits<double>::infinity()) const;
-  /// The nearest point, with a guess; of several triangles at the same distance, the result may depend on the guess.
-  /// guess  the result, if any, for a point nearby: the nearer that is, the faster
+  /// The nearest point, with a guess; if several triangles are at the same distance, the choice may depend on the
+  /// guess.
+  /// guess  the result, if any, for a point nearby: the nearer, the faster
   NearestPoint nearest(const Eigen::Vector3d& p, const NearestPoint& guess) const;
 
  private:

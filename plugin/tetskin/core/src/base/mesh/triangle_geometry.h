@@ -24,12 +24,12 @@ inline TriangleCorners cornersOf(const TriangleMesh& mesh, const std::array<int,
   return {corner(0), corner(1), corner(2)};
 }
 
-/// Squared sine of an angle of a triangle below which only its sides are left, because of rounding.
+/// Squared sine of a triangle's angle below which rounding leaves only its sides.
 constexpr double kThinTriangle = 1e-14;
 
 struct ClosestPoint {
   Eigen::Vector3d point;
-  Eigen::Vector3d weights;  ///< of the corners: none below 0, their sum 1 but for rounding
+  Eigen::Vector3d weights;  ///< of the corners: none below 0, sum 1 within rounding
 };
 
 /// The closest point of the side from one corner to another.
@@ -43,7 +43,7 @@ inline ClosestPoint closestPointOnSide(const Eigen::Vector3d& p, const TriangleC
   return closest;
 }
 
-/// The closest point of the three sides: used for a triangle without area.
+/// The closest point of the three sides: for a triangle without area.
 inline ClosestPoint closestPointOnSides(const Eigen::Vector3d& p, const TriangleCorners& t) {
   ClosestPoint best = closestPointOnSide(p, t, 0, 1);
   for (int a = 1; a < 3; ++a) {
@@ -53,7 +53,7 @@ inline ClosestPoint closestPointOnSides(const Eigen::Vector3d& p, const Triangle
   return best;
 }
 
-/// The point of a triangle, which may have no area, that is closest to p.
+/// The point of a triangle, possibly without area, that is closest to p.
 inline ClosestPoint closestPointOnTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                            const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;

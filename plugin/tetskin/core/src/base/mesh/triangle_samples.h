@@ -12,7 +12,7 @@
 
 namespace tetskin {
 
-/// Into how many equal divisions each edge is cut so that none is longer than `spacing`; an integer.
+/// The number of equal parts into which each edge is cut so that none is longer than `spacing`; an integer.
 inline double edgeDivisions(const TriangleMesh& mesh, const std::array<int, 3>& triangle, double spacing) {
   assert(spacing > 0.0);
   const TriangleCorners t = cornersOf(mesh, triangle);

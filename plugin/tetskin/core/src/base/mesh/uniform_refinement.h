@@ -21,8 +21,8 @@ struct Refinement {
   std::vector<std::array<int, 2>> edges;
 };
 
-/// Halves every edge. A tet becomes one at each corner and four around the shortest diagonal of the octahedron between
-/// them, which keeps repeated refinements of a tet from getting thinner. Orientations are kept. Cost O(T log T).
+/// Halves every edge. A tet becomes one tet at each corner, and four around the shortest diagonal of the octahedron
+/// between them, so that repeated refinement does not make tets thinner. Orientations are kept. Cost O(T log T).
 ///
 /// This work is based on:
 ///   Jürgen Bey, "Tetrahedral Grid Refinement", Computing 55, 1995
@@ -30,21 +30,20 @@ struct Refinement {
 /// coarse  indices in range
 TETSKIN_CORE_API Refinement refineUniformly(const TetMesh& coarse);
 
-/// The three diagonals of the octahedron between the midpoints of a tet's edges, each as two edges by their ends; and
-/// the ring of four midpoints around it, each a step along an edge of the octahedron from the one before.
+/// The three diagonals of the octahedron between the midpoints of a tet's edges: each as two edges, given by their
+/// ends, and the ring of four midpoints around it, in which neighbours share an edge of the octahedron.
 struct OctahedronDiagonal {
   int ends[2][2];
   int ring[4][2];
 };
-/// Of the octahedron that is left in the middle: by the edges at whose midpoints it ends, with the four edges around
-/// it.
+/// The diagonals of the octahedron in the middle: the edges at whose midpoints each ends, and the four edges around it.
 inline constexpr OctahedronDiagonal kOctahedronDiagonals[3] = {
     {{{0, 1}, {2, 3}}, {{0, 2}, {1, 2}, {1, 3}, {0, 3}}},
     {{{0, 2}, {1, 3}}, {{0, 3}, {2, 3}, {1, 2}, {0, 1}}},
     {{{0, 3}, {1, 2}}, {{0, 1}, {1, 3}, {2, 3}, {0, 2}}},
 };
 
-/// The eight tets of one whose edges have these midpoints: by what stands for its corners and for the midpoints.
+/// The eight tets of a tet whose edges have these midpoints, in terms of what stands for its corners and midpoints.
 /// length  squared, between two midpoints
 template <class Node, class Length>
 std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
@@ -66,7 +65,7 @@ std::array<std::array<Node, 4>, 8> eightTets(const std::array<Node, 4>& tet,
 
 /// The eight small tets of a single tet, in the same order.
 /// midpoints  nodes at the middles of the edges 01, 02, 03, 12, 13, 23
-/// nodes      positions, by which the shortest diagonal is chosen
+/// nodes      positions, which determine the shortest diagonal
 inline std::array<Tet, 8> refinedTet(const Tet& corners, const std::array<int, 6>& midpoints,
                                      const std::vector<Eigen::Vector3d>& nodes) {
   std::array<std::array<int, 4>, 4> midpoint{};
@@ -76,7 +75,8 @@ inline std::array<Tet, 8> refinedTet(const Tet& corners, const std::array<int, 6
   }
   return eightTets(corners, midpoint, [&](int a, int b) { return (nodes[a] - nodes[b]).squaredNorm(); });
 }
-/// Overload for a tet without a mesh. Not compiled into the library, as Eigen has another namespace in some of them.
+/// Overload for a tet without a mesh. Not compiled into the library, because Eigen has another namespace in some
+/// libraries.
 inline std::array<TetCorners, 8> refinedTet(const TetCorners& p) {
   std::array<std::array<Eigen::Vector3d, 4>, 4> midpoint;
   for (int a = 0; a < 4; ++a) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Vertices of parts that a modeller has cut off often stay in the file. They are drawn nowhere: neither a size nor a
-// contact may be taken from them.
+// Vertices of parts that a modeller has cut off often stay in the file. They are not drawn, so no size and no contact
+// may depend on them.
 #pragma once
 
 #include <tetskin/core/mesh.h>
@@ -11,7 +11,7 @@
 
 namespace tetskin {
 
-/// By vertex: whether a triangle uses it. Without triangles, a mesh is a cloud of points that all count.
+/// By vertex: whether a triangle uses it. A mesh without triangles is a point cloud, in which all count.
 inline std::vector<char> usedVertices(const TriangleMesh& mesh) {
   std::vector<char> used(mesh.vertexCount(), mesh.triangles.empty() ? 1 : 0);
   for (const std::array<int, 3>& t : mesh.triangles) {

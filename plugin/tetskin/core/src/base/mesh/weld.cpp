@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A hash table of all points would miss the cache at every look-up once there are millions. So points are first dealt
-// into buckets by their hash, a sequential pass; the table of one bucket then stays in the cache. Hashes are kept, so
-// that a point is compared, which reads it from anywhere, only with one of the same hash.
+// With millions of points, a single hash table would miss the cache at every look-up. So points are first distributed
+// into buckets by their hash, in a sequential pass; the table of one bucket then stays in the cache. Hashes are kept,
+// so that a point, whose read may go anywhere in memory, is only compared with one of the same hash.
 #include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/base/mesh/weld.h>
@@ -15,8 +15,9 @@
 namespace tetskin {
 namespace {
 
-/// Most points per bucket, on average: its keys and its table fill about half of a small second-level cache. Smaller
-/// buckets would be more than a processor writes to at once without missing its address cache.
+/// Most points per bucket, on average: its keys and its table fill about half of a small second-level cache. With
+/// smaller buckets, there would be more of them than a processor can write to at once without missing its address
+/// cache.
 constexpr std::size_t kBucketSize = 8192;
 
 struct Key {
@@ -30,14 +31,14 @@ std::uint32_t hashOf(const Eigen::Vector3d& p) {
   return hash.mixed();
 }
 
-/// How far to shift a hash to the right for its bucket.
+/// The right shift that turns a hash into its bucket.
 int bucketShift(std::size_t count) {
   int shift = 31;
   while (shift > 0 && (count >> (32 - shift)) > kBucketSize) --shift;
   return shift;
 }
 
-/// The points' keys, bucket by bucket, and in each in the points' order.
+/// The points' keys, bucket by bucket, in each in the points' order.
 Lists<Key> dealtKeys(const std::vector<std::uint32_t>& hashes) {
   const int shift = bucketShift(hashes.size());
   return packLists<Key>(std::size_t{1} << (32 - shift), [&](auto&& add) {
@@ -45,11 +46,11 @@ Lists<Key> dealtKeys(const std::vector<std::uint32_t>& hashes) {
   });
 }
 
-/// Names the first point at the position of every other among the keys of one bucket. `table` is scratch memory.
+/// For each key of one bucket, finds the first point at its position. `table` is scratch memory.
 void weldBucket(PointReader points, const Key* keys, std::uint32_t count, std::vector<std::uint32_t>& table,
                 std::vector<std::uint32_t>& first) {
   assert(first.size() == points.size());
-  // A place of the table that holds no vertex.
+  // A free place of the table.
   constexpr std::uint32_t kFree = 0xFFFFFFFFu;
   std::size_t size = 16;
   while (size < 2 * std::size_t{count}) size *= 2;  // at most half full: probes stay short
@@ -73,12 +74,12 @@ void weldBucket(PointReader points, const Key* keys, std::uint32_t count, std::v
 
 std::vector<std::uint32_t> weldCoincident(PointReader points) {
   assert(points.size() < 0xFFFFFFFFu);
-  std::vector<std::uint32_t> first(points.size());  // holds hashes until their points are dealt
+  std::vector<std::uint32_t> first(points.size());  // holds hashes until their points are distributed
   for (std::size_t i = 0; i < points.size(); ++i) first[i] = hashOf(points[i]);
   std::vector<std::uint32_t> table;
   const Lists<Key> buckets = dealtKeys(first);
-  // Now every point is its own first. Only the few exceptions are written, at random positions, as points of a bucket
-  // are far apart.
+  // Now every point is its own first. Only the few exceptions are written, at random positions, because the points of a
+  // bucket are far apart.
   std::iota(first.begin(), first.end(), std::uint32_t{0});
   for (std::size_t b = 0; b + 1 < buckets.starts.size(); ++b) {
     const std::uint32_t begin = buckets.starts[b], end = buckets.starts[b + 1];

@@ -11,7 +11,7 @@
 
 namespace tetskin {
 
-/// Winding number from which on a point is inside, of either sign if surfaces may be inside out.
+/// Winding number above which a point is inside; of either sign if surfaces may be inverted.
 constexpr double kInside = 0.5;
 
 /// Generalised winding number of triangles: 1 inside a closed surface, 0 outside, and in between,
@@ -20,9 +20,9 @@ class TETSKIN_CORE_API WindingTree {
  public:
   using Triangles = std::vector<std::array<int, 3>>;
 
-  /// Uses the first `count` triangles; all must have an area. They may be destroyed afterwards. Cost O(n log n)
+  /// Uses the first `count` triangles; all must have area. They may be destroyed afterwards. Cost O(n log n)
   WindingTree(const std::vector<Eigen::Vector3d>& points, const Triangles& triangles, std::size_t count);
-  /// Uses those triangles of a mesh that have an area.
+  /// Uses those triangles of a mesh that have area.
   explicit WindingTree(const TriangleMesh& mesh);
 
   /// Cost about O(log n). 0 if there are no triangles.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: what a snapshot is written to and read from. One function per struct, `visitState`, serves
-// both directions, so that they cannot differ.
+// Between the libraries: the stream to and from a snapshot. One function per struct, `visitState`, serves both
+// directions, so that they cannot differ.
 #pragma once
 
 #include <cassert>
@@ -14,10 +14,10 @@
 
 namespace tetskin {
 
-/// Counts, writes, or reads bytes. Numbers are written one by one, never structs, whose padding is not set; in the
-/// machine's own byte order, which the snapshot's header states.
+/// Counts, writes, or reads bytes. It writes numbers one by one, never structs, whose padding is not initialised; in
+/// the machine's own byte order, which the snapshot's header states.
 ///
-/// Reading never leaves the bytes: what is missing reads as 0, and `failed` is true from then on.
+/// Reading never goes beyond the bytes: what is missing reads as 0, and `failed` is true from then on.
 class StateStream {
  public:
   enum class Way { Count, Save, Restore };
@@ -29,16 +29,16 @@ class StateStream {
   /// Reads.
   StateStream(const unsigned char* from, std::size_t size) : way_(Way::Restore), from_(from), size_(size) {}
 
-  /// False: values are to be replaced by what is read. True: nothing may be changed.
+  /// restoring: values must be replaced by what is read. saving: nothing may be changed.
   bool saving() const { return way_ != Way::Restore; }
   bool restoring() const { return way_ == Way::Restore; }
   /// Bytes so far.
   std::size_t count() const { return at_; }
   bool failed() const { return failed_; }
-  /// Call it when what was read cannot be.
+  /// Call it if a value that was read is impossible.
   void fail() { failed_ = true; }
 
-  /// The one place at which bytes pass.
+  /// All bytes pass through here.
   void bytes(void* data, std::size_t count) {
     const std::size_t end = at_ + count;
     if (way_ == Way::Count) {
@@ -46,7 +46,7 @@ class StateStream {
       return;
     }
     if (failed_ || count > size_ - at_) {
-      if (way_ == Way::Save) {  // from here on, it counts
+      if (way_ == Way::Save) {  // once full, only counts
         way_ = Way::Count;
         at_ = end;
       } else {
@@ -65,7 +65,7 @@ class StateStream {
     at_ = end;
   }
 
-  /// A number. A bool is read as true or false whatever the byte is.
+  /// A number. Any byte is read as a valid bool.
   template <class T, std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>, int> = 0>
   void operator()(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
@@ -76,15 +76,15 @@ class StateStream {
       bytes(&value, sizeof value);
     }
   }
-  /// Several, one after another.
+  /// Several values, one after another.
   template <class First, class Second, class... More>
   void operator()(First& first, Second& second, More&... more) {
     (*this)(first);
     (*this)(second);
     ((*this)(more), ...);
   }
-  /// The length of a list whose elements take at least `leastBytes` each: one that the remaining bytes cannot hold is
-  /// refused.
+  /// The length of a list whose elements take at least `leastBytes` each: refused if the remaining bytes cannot hold
+  /// it.
   std::size_t length(std::size_t now, std::size_t leastBytes = 1) {
     assert(now <= 0xFFFFFFFFu);
     auto n = static_cast<std::uint32_t>(now);
@@ -104,14 +104,14 @@ class StateStream {
     if (restoring()) values.resize(n);
     if (n > 0) bytes(values.data(), n * sizeof(T));
   }
-  /// Numbers whose count both sides know.
+  /// Numbers whose count is known on both sides.
   template <class T>
   void plain(T* values, std::size_t count) {
     static_assert(std::is_arithmetic_v<T>);
     bytes(values, count * sizeof(T));
   }
-  /// A vector of anything, with its length: visit(element) for each. It grows as elements are read: those that are not
-  /// there take no memory.
+  /// A vector of anything, with its length: visit(element) for each. It grows as elements are read: missing ones take
+  /// no memory.
   template <class Vector, class Visit>
   void each(Vector& values, Visit&& visit) {
     const std::size_t n = length(values.size());
