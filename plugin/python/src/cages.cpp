@@ -176,9 +176,8 @@ void bindCages(nb::module_& module) {
       "stiff. Takes about two seconds for 3,000 tets; the GIL is released.\n\n"
       "poisson_ratio: 0 to below 0.5, of the material that will be simulated. mode_count: number of vibrations to "
       "compare. progress: as in create_cage.");
-  module.def(
-      "refine_quadratic", quadratic, "cage"_a,
-      "A cage of quadratic tets: each tet of the cage becomes one, stored as eight. For meshes that fill their "
+  module.def("refine_quadratic", quadratic, "cage"_a,
+             "A cage of quadratic tets: each tet of the cage becomes one, stored as eight. For meshes that fill their "
              "body.");
   module.def(
       "load_cage",
