@@ -5,7 +5,7 @@
 namespace tetskin::js {
 namespace {
 
-/// As JavaScript gives them; what is not given is no number.
+/// The options from JavaScript; those not given are NaN.
 struct SoftOptions {
   Vec3 position{};
   Quaternion rotation{0, 0, 0, 1};
@@ -54,7 +54,7 @@ void remove(BodyHandle& body) {
   body.world->remove(*body.state);
 }
 
-/// Bullet keeps a node's numbers far apart.
+/// In Bullet, the numbers of different nodes are not contiguous.
 template <class Of>
 View gather(const btSoftBody& soft, std::vector<float>& numbers, Of&& vectorAt) {
   numbers.resize(3 * static_cast<std::size_t>(soft.m_nodes.size()));
