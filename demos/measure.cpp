@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes in which something is measured, beside what is promised of it: contact and joints compared with analytic
-// results, gaps between surfaces and obstacles, stiff and extreme cases.
+// Scenes with measurements and the promises about them: contact and joints compared with analytic results, gaps between
+// surfaces and obstacles, stiff and extreme cases.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -47,7 +47,7 @@ MeasuredScenes scenesOf(const std::string& group) {
 
 struct Results {
   SceneResults scenes;
-  std::size_t broken = 0;  ///< what is outside its promised limits, or not as expected
+  std::size_t broken = 0;  ///< figures outside their promised limits, or not as expected
 };
 
 /// Runs each scene once: by the first of the kinds asked for that it has. Limits are promised of contact at the surface
