@@ -24,9 +24,9 @@ struct XpbdBody {
   std::vector<double> inverseMasses;   ///< per node; 0: pinned
   std::vector<Edge> edges;
   std::vector<Volume> volumes;  ///< positive tets
-  double damping = 0.0;   ///< seconds, of constraints that are not rigid: damping force over rate of elastic force
-  double gravity = 9.81;  ///< downwards
-  bool floor = false;     ///< at y = 0
+  double damping = 0.0;         ///< seconds, for compliant constraints: damping force over rate of elastic force
+  double gravity = 9.81;        ///< downwards
+  bool floor = false;           ///< at y = 0
 };
 
 /// The solver that the tutorials write by hand, for comparison with Bullet's worlds: constraints on edge lengths and
