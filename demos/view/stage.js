@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is on the canvas: bodies, things that move, obstacles, lights, and the camera.
+// The contents of the canvas: bodies, moving objects, obstacles, lights, and the camera.
 
 const BACKGROUND = 0xf4f2ee;
 /** For materials that the demos do not know, in turn. */

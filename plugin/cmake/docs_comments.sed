@@ -1,4 +1,4 @@
-# From the headers' comments, as they are meant to be read there, to Doxygen's commands. Every line stays a line, so that
+# Turns the headers' comments, which are written for readers, into Doxygen's commands. Every line stays a line, so that
 # warnings name the right one.
 
 # The head of a file is about the file.

@@ -14,7 +14,7 @@ function anchor(heading) {
   return heading
 }
 
-# What a link leads to in the documentation; nothing if it is not part of it.
+# A link's target in the documentation; empty if it is not part of it.
 function place(target, parts) {
   if (target ~ /:/) return target
   split(target, parts, "#")

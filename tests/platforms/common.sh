@@ -1,4 +1,4 @@
-# What the scripts of this folder begin with. Sourced, not run.
+# The beginning of this folder's scripts. Sourced, not run.
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 name=$(basename "$0")
@@ -11,7 +11,7 @@ not_run() {
   exit 77
 }
 
-# needs COMMAND [PACKAGE]: ends the script unless the command exists; the package is the one of Debian that has it.
+# needs COMMAND [PACKAGE]: ends the script unless the command exists; PACKAGE is the Debian package that contains it.
 needs() {
   command -v "$1" >/dev/null || not_run "no $1${2:+ (apt-get install $2)}"
 }
@@ -22,7 +22,7 @@ fail() {
   exit 1
 }
 
-# same_hello COMMAND...: runs what was built from demos/hello.cpp. Its heights must be those in hello.txt, on every
+# same_hello COMMAND...: runs the program built from demos/hello.cpp. Its heights must be those in hello.txt, on every
 # platform: they are printed with three decimals, of which rounding may change the last by one.
 same_hello() {
   "$@" >"$folder/hello_output.txt" || fail "$* ended with status $?"

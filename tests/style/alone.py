@@ -32,7 +32,7 @@ def options_of(entry, compiler):
 
 
 def kind_of(options):
-    """Of the options, those that a precompiled header has to have been made with: without the macros of single parts."""
+    """The options with which a precompiled header must have been made: without the macros of single parts."""
     return tuple(option for option in options if option.startswith(("-m", "-f")) or
                  (option.startswith("-D") and not option.startswith("-DTETSKIN")))
 

@@ -1,6 +1,6 @@
 cmake_policy(SET CMP0057 NEW)
-# What only some compilers and systems have is in the files named here; objects of the application are not asked for
-# their types; and the top level has what it is meant to have.
+# Code for particular compilers and systems is only in the files named here; objects of the application are not asked
+# for their types; and the top level contains only the intended files.
 set(extensions plugin/tetskin/export.h plugin/tetskin/core/src/base/compiler.h
   plugin/tetskin/core/src/base/kernels/lanes.h)
 set(faults)

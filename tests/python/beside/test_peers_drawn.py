@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/peers, where matplotlib is there: what it draws and tells of a table."""
+"""demos/peers with matplotlib: its drawings and remarks on a table."""
 import csv
 import subprocess
 import sys

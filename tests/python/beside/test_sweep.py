@@ -46,7 +46,7 @@ def options(*arguments):
 
 
 def result_of(table):
-    """What does not depend on who has made a run, and when."""
+    """The data that does not depend on which worker has made a run, and when."""
     return table.drop(columns=["worker", "ms_per_frame", "actions"], errors="ignore")
 
 
@@ -79,7 +79,7 @@ def test_other_bits_are_found():
 
 
 class KillsItsWorker:
-    """A run of the sweep, in the middle of which its worker is killed, as by the system where memory is short."""
+    """A run of the sweep whose worker is killed in the middle, as by the system when memory is short."""
 
     def __init__(self, marker, substeps):
         self.marker, self.substeps, self.run = marker, substeps, sweep.bend_and_compare
@@ -180,7 +180,7 @@ def test_arguments_that_mean_nothing_are_refused(arguments, capsys):
 
 
 def test_the_program_of_the_page_runs_as_written_and_prints_what_it_shows(tmp_path):
-    """As a file of its own, which its workers import, with the torus of the other pages."""
+    """As a separate file, which its workers import, with the torus of the other pages."""
     page = (Path(__file__).parents[3] / "plugin/docs/many_runs.md").read_text()
     (code,), (shown,) = (re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL) for language in ("python", "text"))
     (tmp_path / "program.py").write_text(code)
