@@ -58,6 +58,12 @@ def main():
             assert not is_taken(compiler, "-O1", "-fPIC"), "taken with another option"
             assert not is_taken(compiler, "-O2", "-fPIC", "-g"), "taken with places of another folder"
             assert not is_taken(compiler, "-O2", "-fPIC", text="int one() { return 3; }\n"), "taken for another text"
+        subprocess.run(["cmake", "-S", folder, "-B", other, "-DUNUSED=1"], check=True, capture_output=True)
+        assert is_taken("c++", "-O2", "-fPIC"), "not taken from a build that was configured again alike"
+        rules = (other / "build.ninja").read_text()
+        (other / "build.ninja").write_text(rules.replace("-O2", "-O2 -fno-plt"))
+        assert not is_taken("c++", "-O2", "-fPIC"), "taken although it was made by another command"
+        (other / "build.ninja").write_text(rules)
         os.utime(folder / "one.h", (2 ** 31 - 1, 2 ** 31 - 1))
         assert not is_taken("c++", "-O2", "-fPIC"), "taken although a header is newer"
 
