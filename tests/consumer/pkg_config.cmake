@@ -1,4 +1,4 @@
-# cmake -DSOURCE= -DPREFIX= -DFOLDER= -DCOMPILER= -DPKG_CONFIG= -P: demos/hello.cpp, and the umbrella header,
+# cmake -DSOURCE= -DPREFIX= -DFOLDER= -DCOMPILER= -DPKG_CONFIG= -P: demos/examples/hello.cpp, and the umbrella header,
 # built with what tetskin.pc says, without CMake.
 file(GLOB_RECURSE pc ${PREFIX}/tetskin.pc)
 cmake_path(GET pc PARENT_PATH pc_folder)
@@ -20,7 +20,7 @@ file(WRITE ${FOLDER}/umbrella.cpp "#include <tetskin/tetskin.h>\n#include <cstdi
   "  const bool bound = skin.update() != tetskin::StatusCode::Unbound;\n"
   "  std::puts(TETSKIN_VERSION);\n"
   "  return cage.ok() || calibrated.ok() || loaded.ok() || bound;\n}\n")
-foreach(source ${SOURCE}/demos/hello.cpp ${FOLDER}/umbrella.cpp)
+foreach(source ${SOURCE}/demos/examples/hello.cpp ${FOLDER}/umbrella.cpp)
   execute_process(COMMAND ${COMPILER} -std=c++17 -O1 ${source} -o ${FOLDER}/program ${flags}
     COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${FOLDER}/program COMMAND_ERROR_IS_FATAL ANY)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The page's scenes, as live_native plays them. As a program: writes demos/live/native_hashes.json, the hashes that the
+"""The page's scenes, as live_native plays them. As a program: writes demos/examples/live/native_hashes.json, the hashes that the
 page shows beside its own. After the solver has changed, build the page and live_native (TETSKIN_LIVE_NATIVE is its
 path), run this, and build the page again."""
 import json
@@ -16,7 +16,7 @@ import chromium
 from live import NATIVE, REPOSITORY, Live
 
 DESCRIBE = (Path(__file__).parent / "describe.js").read_text(encoding="utf-8")
-HASHES = REPOSITORY / "demos/live/native_hashes.json"
+HASHES = REPOSITORY / "demos/examples/live/native_hashes.json"
 # Scenes without rigid bodies that turn, and without a script: Bullet turns by the C library's sines, scripts by the
 # browser's. Ten seconds of them, every half second.
 COMPARED, FRAMES, EVERY = ("serpent", "heap", "stack"), 600, 30

@@ -22,7 +22,7 @@ fail() {
   exit 1
 }
 
-# same_hello COMMAND...: runs the program built from demos/hello.cpp. Its heights must be those in hello.txt, on every
+# same_hello COMMAND...: runs the program built from demos/examples/hello.cpp. Its heights must be those in hello.txt, on every
 # platform: they are printed with three decimals, of which rounding may change the last by one.
 same_hello() {
   "$@" >"$folder/hello_output.txt" || fail "$* ended with status $?"
@@ -48,7 +48,7 @@ debian_bullet() {
   done
 }
 
-# form OPTIONS...: configures the application in tests/platforms/form: demos/hello.cpp and the sources of this
+# form OPTIONS...: configures the application in tests/platforms/form: demos/examples/hello.cpp and the sources of this
 # repository.
 form() {
   rm -rf "$folder/form"

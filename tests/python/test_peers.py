@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/peers, which compares tetskin with others: it still runs, with tetskin alone, and a failure becomes a cell."""
+"""demos/lab/peers, which compares tetskin with others: it still runs, with tetskin alone, and a failure becomes a cell."""
 import csv
 import re
 import subprocess
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-PEERS = Path(__file__).parents[2] / "demos/peers"
+PEERS = Path(__file__).parents[2] / "demos/lab/peers"
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Checks that the tables in demos/figures are well formed and linked from demos/README.md, and that tests which they
+"""Checks that the tables in demos/lab/figures are well formed and linked from demos/README.md, and that tests which they
 name exist; that their plots exist, are shown on that page, and were drawn from the current tables. Draws them once:
 needs matplotlib."""
 import csv
@@ -14,12 +14,12 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests/pages"))
-sys.path.insert(0, str(REPOSITORY / "demos/plots"))
+sys.path.insert(0, str(REPOSITORY / "demos/lab/plots"))
 import page  # noqa: E402
 from check_names import all_tests  # noqa: E402
 from figures import hash_of  # noqa: E402
 
-FOLDER = REPOSITORY / "demos/figures"
+FOLDER = REPOSITORY / "demos/lab/figures"
 LARGEST = 80000  # bytes of a picture
 TEST = re.compile(r"(?<![\w.])([A-Z][A-Za-z]*)\.([A-Z][A-Za-z0-9]+)\b(?!\.)")
 
@@ -59,19 +59,19 @@ def picture_faults(picture):
     if not table.exists():
         yield f"is of no table: there is no {table.name}"
     elif source_in(picture) != f"{table.name} sha256 {hash_of(table)}":
-        yield f"is not of {table.name} as it is now: run demos/plots/figures.py"
+        yield f"is not of {table.name} as it is now: run demos/lab/plots/figures.py"
 
 
 def drawn():
     """The names of the plots that the program draws."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-B", REPOSITORY / "demos/plots/figures.py", folder], check=True)
+        subprocess.run([sys.executable, "-B", REPOSITORY / "demos/lab/plots/figures.py", folder], check=True)
         return {picture.name for picture in Path(folder).iterdir()}
 
 
 def main():
     text = (REPOSITORY / "demos/README.md").read_text()
-    shown = {Path(target).name for _, target in page.links(text) if re.match(r"figures/", target)}
+    shown = {Path(target).name for _, target in page.links(text) if re.match(r"lab/figures/", target)}
     pictures = sorted(FOLDER.glob("*.png"))
     tables = sorted(FOLDER.glob("*.csv"))
     tests = all_tests()
@@ -79,7 +79,7 @@ def main():
     faults += [f"{picture.name}: {fault}" for picture in pictures for fault in picture_faults(picture)]
     faults += [f"{file.name}: demos/README.md has no link to it"
                for file in tables + pictures if file.name not in shown]
-    faults += [f"{name}: is not what demos/plots/figures.py draws, or is missing"
+    faults += [f"{name}: is not what demos/lab/plots/figures.py draws, or is missing"
                for name in drawn() ^ {picture.name for picture in pictures}]
     if not tables:
         faults.append("no tables found: look for them elsewhere")

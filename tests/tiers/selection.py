@@ -34,7 +34,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 LAST = "tests/last_full_run"
 # Files that are not compiled, and that --change tests in full, as it does pages, style and plots.
 READ = re.compile(r"[.](md|csv|png|svg|jpg|html|js|css)$|^(LICENSE|[.]gitignore|[.]editorconfig|tests/pages/.*[.]txt)$|"
-                  r"^demos/plots/.*[.]py$")
+                  r"^demos/lab/plots/.*[.]py$")
 # What makes the tests with sanitizers and clang-tidy: if it has changed, all libraries count as changed. Of tests/, all but
 # sources and the lists of those; and but what makes other tests only, which are run in full, or which tests/run --all
 # alone runs.
@@ -46,12 +46,12 @@ MACHINERY = re.compile(r"^([.]ci|tests/tiers)/|^demos/(setup[.]sh|run)$|[.]cmake
 PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own; with what it shares
 # with the module for JavaScript.
-PYTHON = re.compile(r"^((plugin|demos|tests)/python|demos/peers|plugin/facade)/|^tests/platforms/common[.]sh$")
+PYTHON = re.compile(r"^((plugin|demos/examples|tests)/python|demos/lab/peers|plugin/facade)/|^tests/platforms/common[.]sh$")
 # What else is in the package, its build or its tests: the library, what draws its pages, the programs of pages.
 IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/.*[.]md|(plugin/)?CMakeLists[.]txt|"
                        r"plugin/cmake/.*|demos/setup[.]sh|tests/(configurations[.]cmake|run))$")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
-WEB = re.compile(r"^(plugin/js|plugin/facade|demos/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")
+WEB = re.compile(r"^(plugin/js|plugin/facade|demos/examples/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 

@@ -35,8 +35,8 @@ FILES = {
     "tests/support/support.cpp": "", "tests/support/more.h": "", "tests/io/shared.h": "",
     "tests/contact/other.h": '#include "io/shared.h"\n', "tests/style/layers.cmake": "",
     "tests/pages/commands.txt": "",
-    "demos/CMakeLists.txt": "add_executable(demo_drop drop.cpp)\ntarget_link_libraries(demo_drop tetskin_core)\n",
-    "demos/drop.cpp": "int main() {}\n",
+    "demos/CMakeLists.txt": "add_executable(demo_drop examples/drop.cpp)\ntarget_link_libraries(demo_drop tetskin_core)\n",
+    "demos/examples/drop.cpp": "int main() {}\n",
     "README.md": "",
 }
 FILES["plugin/tetskin/io/io.cpp"] = "int io();\n"
@@ -150,7 +150,7 @@ class Selection(InASmallProject):
         self.assertEqual(self.result(), ("contact;io;threads", [], ""))
 
     def test_demos_have_no_tests_with_sanitizers(self):
-        self.write("demos/drop.cpp", "int main() { return 0; }\n")
+        self.write("demos/examples/drop.cpp", "int main() { return 0; }\n")
         self.assertEqual(self.result(), ("", [], ""))
         self.assertIn("demo_drop", self.select().stdout)
 
@@ -195,7 +195,7 @@ class Selection(InASmallProject):
     def test_the_python_package_selects_nothing_that_is_compiled(self):
         python = self.root / "build/changes/python"
         for name in ("plugin/python/src/skins.cpp", "plugin/facade/shapes.cpp", "plugin/python/cmake/bullet.cmake", "plugin/python/CMakeLists.txt",
-                     "plugin/facade/shapes.cpp", "demos/python/drop.py", "demos/python/drop.ipynb", "tests/python/run",
+                     "plugin/facade/shapes.cpp", "demos/examples/python/drop.py", "demos/examples/python/drop.ipynb", "tests/python/run",
                      "tests/python/test_drop.py"):
             with self.subTest(name):
                 self.setUp()
@@ -218,7 +218,7 @@ class Selection(InASmallProject):
     def test_the_page_selects_its_own_tests_and_nothing_that_is_compiled(self):
         web = self.root / "build/changes/web"
         for name in ("plugin/js/src/bodies.cpp", "plugin/facade/shapes.cpp", "plugin/js/CMakeLists.txt",
-                     "demos/live/page.js", "demos/live/serpent.cpp", "tests/js/run", "tests/js/test.mjs", "tests/live/run",
+                     "demos/examples/live/page.js", "demos/examples/live/serpent.cpp", "tests/js/run", "tests/js/test.mjs", "tests/live/run",
                      "tests/live/test_page.py"):
             with self.subTest(name):
                 self.setUp()
@@ -233,7 +233,7 @@ class Selection(InASmallProject):
         self.result()
         self.assertEqual(web.read_text(encoding="utf-8"), "library\n")
         self.setUp()
-        self.write("demos/drop.cpp", "int main() { return 0; }\n")
+        self.write("demos/examples/drop.cpp", "int main() { return 0; }\n")
         self.result()
         self.assertFalse(web.exists())
 
@@ -409,7 +409,7 @@ class Script(InASmallProject):
         self.assertNotIn("live[.]one_scene", self.ctest_call(calls))
         self.assertNotIn("js[.]module", self.ctest_call(calls))
         self.assertIn("live.page: of the page, only the library below it has changed", done.stdout)
-        self.write("demos/live/page.js")
+        self.write("demos/examples/live/page.js")
         done, calls = self.run_script("--change")
         self.assertIn("|live[.]one_scene)$", self.ctest_call(calls))
         for name in ("live[.]page", "live[.]driver", "js[.]module"):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""How demos/python/sweep.py scales with workers, for plugin/docs/many_runs.md; by hand, on a machine at rest.
+"""How demos/examples/python/sweep.py scales with workers, for plugin/docs/many_runs.md; by hand, on a machine at rest.
 
     scaling.py [ROUNDS]     medians of as many rounds, 5, in which 1 and 2 workers take turns
 """
@@ -15,7 +15,7 @@ from pathlib import Path
 import cloudpickle
 from distributed import Client, LocalCluster
 
-sys.path.insert(0, str(Path(__file__).parents[3] / "demos/python"))
+sys.path.insert(0, str(Path(__file__).parents[3] / "demos/examples/python"))
 import sweep
 
 RUNS, SUBSTEPS, EMPTY = 48, 8, 200

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The demos of demos/python do what they say, and write the files that they name."""
+"""The demos of demos/examples/python do what they say, and write the files that they name."""
 
 import os
 import re
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 image = pytest.importorskip("matplotlib.image")
-FOLDER = Path(__file__).parents[3] / "demos" / "python"
+FOLDER = Path(__file__).parents[3] / "demos/examples/python"
 DEMOS = {
     "drop": ["drop.html", "height.png"],
     "gripper": ["gripper.html", "forces.png"],
@@ -69,7 +69,7 @@ def test_a_demo_that_cannot_write_fails_and_says_where(demo, tmp_path):
 def test_each_demo_is_told_of():
     page = (FOLDER / "README.md").read_text()
     scripts = {file.stem for file in FOLDER.glob("*.py")} - {"notebooks"}
-    assert scripts == set(re.findall(r"demos/python/(\w+)\.py", page)) - {"notebooks"}
+    assert scripts == set(re.findall(r"demos/examples/python/(\w+)\.py", page)) - {"notebooks"}
     assert set(DEMOS) <= scripts
 
 

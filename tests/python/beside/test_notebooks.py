@@ -11,7 +11,7 @@ import pytest
 nbformat = pytest.importorskip("nbformat")
 pytest.importorskip("nbclient")
 pytest.importorskip("ipykernel")
-FOLDER = Path(__file__).parents[3] / "demos" / "python"
+FOLDER = Path(__file__).parents[3] / "demos/examples/python"
 sys.path.insert(0, str(FOLDER))
 import notebooks  # noqa: E402
 
@@ -24,7 +24,7 @@ def sources(notebook):
 def test_a_kept_notebook_is_that_of_its_script_and_small(name):
     path = FOLDER / f"{name}.ipynb"
     kept = nbformat.read(path, as_version=4)
-    assert sources(kept) == sources(notebooks.notebook_of(name)), "run demos/python/notebooks.py"
+    assert sources(kept) == sources(notebooks.notebook_of(name)), "run demos/examples/python/notebooks.py"
     assert path.stat().st_size <= notebooks.LARGEST
     outputs = [output for cell in kept.cells for output in cell.get("outputs", [])]
     assert any("image/png" in output.get("data", {}) for output in outputs)

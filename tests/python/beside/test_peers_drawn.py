@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/peers with matplotlib: its drawings and remarks on a table."""
+"""demos/lab/peers with matplotlib: its drawings and remarks on a table."""
 import csv
 import subprocess
 import sys
 from pathlib import Path
 
-PEERS = Path(__file__).parents[3] / "demos/peers"
+PEERS = Path(__file__).parents[3] / "demos/lab/peers"
 
 
 def test_a_run_ends_with_plots_and_tables(tmp_path):

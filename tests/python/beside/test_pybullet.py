@@ -490,7 +490,7 @@ def test_the_programs_of_the_page_run_as_written(tmp_path, monkeypatch):
 def run_demo(name, folder, *arguments):
     pytest.importorskip("trimesh")
     pytest.importorskip("matplotlib")
-    command = [sys.executable, "-B", str(REPOSITORY / "demos/python" / name), "--quick", "--output", "out", *arguments]
+    command = [sys.executable, "-B", str(REPOSITORY / "demos/examples/python" / name), "--quick", "--output", "out", *arguments]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=500)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/python/sweep.py: runs on several workers, whatever becomes of these, end as those in one process."""
+"""demos/examples/python/sweep.py: runs on several workers, whatever becomes of these, end as those in one process."""
 
 import contextlib
 import csv
@@ -22,7 +22,7 @@ from distributed import Client, LocalCluster
 
 from conftest import torus
 
-SCRIPT = Path(__file__).parents[3] / "demos/python/sweep.py"
+SCRIPT = Path(__file__).parents[3] / "demos/examples/python/sweep.py"
 HANG = 300  # seconds after which a program is taken to hang, on any machine
 
 sys.path.insert(0, str(SCRIPT.parent))  # also that of processes that are spawned, which find both modules by it

@@ -152,7 +152,7 @@ def test_programs_of_pages_are_right(mypy, tmp_path, page):
 
 
 def test_demos_are_right(mypy):
-    demos = sorted((REPOSITORY / "demos" / "python").glob("*.py"))
+    demos = sorted((REPOSITORY / "demos/examples/python").glob("*.py"))
     if not demos:
         pytest.skip("there are no demos")
     said, content = mypy(*demos)

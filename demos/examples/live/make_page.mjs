@@ -10,7 +10,7 @@ import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {gzipSync} from 'node:zlib';
 
-const HERE = dirname(fileURLToPath(import.meta.url)), VIEW = join(HERE, '../view'), RECIPES = join(HERE, '../recipes');
+const HERE = dirname(fileURLToPath(import.meta.url)), VIEW = join(HERE, '../../view'), RECIPES = join(HERE, '../recipes');
 const text = (folder, name) => readFileSync(join(folder, name), 'utf8');
 
 /** What the worker has beside the module, and what the page has, in their order. */

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """The comparison of solvers: its table and its plot, from the rows of tetskin_error_vs_time --solvers, or from the table
-that is kept of them in demos/figures."""
+that is kept of them in demos/lab/figures."""
 import csv
 import io
 

@@ -6,8 +6,8 @@
 
 namespace tetskin::report {
 
-/// Runs the plot program (demos/plots/error_vs_time.py), which makes tables and plots from the files that were written.
-/// Prints one line where there is no Python with matplotlib; if the program fails, prints a warning to standard error.
+/// Runs the plot program (lab/plots/error_vs_time.py), which makes tables and plots from the files written. Prints
+/// one line where there is no Python with matplotlib; if the program fails, prints a warning to standard error.
 void makeTablesAndPlots(const ReportOptions& options);
 
 }  // namespace tetskin::report

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Draws the figures of demos/README.md: demos/figures/NAME.csv becomes NAME.png beside it, or in the folder given.
+"""Draws the figures of demos/README.md: demos/lab/figures/NAME.csv becomes NAME.png beside it, or in the folder given.
 
 figures.py [FOLDER]
 

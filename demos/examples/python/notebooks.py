@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Makes the notebooks of the demos from their scripts, runs them, and keeps their texts and small pictures.
 
-    python demos/python/notebooks.py [NAME ...]
+    python demos/examples/python/notebooks.py [NAME ...]
 
 In a script, `# %%` begins a cell of code, and `# %% [markdown]` one of text, in comments. A line after `#: ` is code of
 the notebook alone, which has no command line: its options are the defaults. The pages that a notebook draws when it is

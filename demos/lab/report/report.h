@@ -17,7 +17,7 @@
 // scene_runner       all cages of a scene
 //   advice             Pareto front, the reference's own errors
 //   report_files       results for programs
-// plot_program       runs demos/plots, which makes tables and plots of them
+// plot_program       runs demos/lab/plots, which makes tables and plots of them
 #pragma once
 
 #include <vector>
