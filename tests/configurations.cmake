@@ -54,7 +54,7 @@ endif()
 # replay.heap and others are long runs: replay.drop is restored in a new process, too.
 function(tetskin_test_sanitized name label folders_from)
   tetskin_test_configuration(${name} FOLDER sanitized_in_double LABELS ${label} TARGET unit_tests
-    TESTS "^(core|threads|cage|elastic|io|bullet|solver|contact|touch|reduced|replay)[.]"
+    TESTS "^(core|threads|cage|elastic|io|bullet|solver|contact|touch|reduced|replay|world)[.]"
     LEAVE_OUT "^(replay[.](heap|drag|twist|pit|Deterministic|RecordedCallsFromAllBeginnings)|solver[.]EveryNumberInAllCells)"
     OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -g1"
     -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF
@@ -299,6 +299,7 @@ if(PYTHON_OF_SYSTEM)
   tetskin_test_style(comments ${PYTHON_OF_SYSTEM} -B tests/style/comments.py)
   tetskin_test_style(tiers ${PYTHON_OF_SYSTEM} -B tests/tiers/test_tiers.py)
   tetskin_test_style(drawing ${PYTHON_OF_SYSTEM} -B tests/style/drawing.py)
+  tetskin_test_style(options ${PYTHON_OF_SYSTEM} -B tests/style/options.py)
   tetskin_test_style(pages ${PYTHON_OF_SYSTEM} -B tests/style/pages.py)
   tetskin_test_style(lines ${PYTHON_OF_SYSTEM} -B tests/style/lines.py)
   set_tests_properties(style.lines PROPERTIES SKIP_RETURN_CODE 77)  # without git

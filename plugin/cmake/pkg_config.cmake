@@ -13,7 +13,7 @@ set(pc_libraries)
 set(pc_definitions -DEIGEN_MPL2_ONLY)
 set(pc_requires "eigen3 >= 3.4")
 set(pc_system_libraries)
-foreach(part reduced touch contact replay solver bullet io elastic cage threads core)  # dependent libraries before their dependencies
+foreach(part world reduced touch contact replay solver bullet io elastic cage threads core)  # dependent libraries before their dependencies
   if(NOT TARGET tetskin_${part})
     continue()
   endif()

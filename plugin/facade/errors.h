@@ -13,9 +13,6 @@
 
 namespace tetskin::facade {
 
-/// The name of a code, as C++ has it.
-const char* nameOf(StatusCode code);
-
 /// What programs in another language see as the error of this library.
 struct Failure : std::runtime_error {
   explicit Failure(const Status& status) : std::runtime_error(status.message), code(status.code) {}

@@ -5,45 +5,6 @@
 #include <cmath>
 
 namespace tetskin::facade {
-namespace {
-
-/// By their codes; a test compares them with those of tetskin/core/types.h.
-constexpr const char* kCodes[] = {"Ok",
-                                  "FileNotFound",
-                                  "FileNotWritable",
-                                  "UnsupportedFormat",
-                                  "Malformed",
-                                  "Empty",
-                                  "IndexOutOfRange",
-                                  "NonFinite",
-                                  "Degenerate",
-                                  "SizeMismatch",
-                                  "InvalidOption",
-                                  "OutsideCage",
-                                  "CageMismatch",
-                                  "TooLarge",
-                                  "Asleep",
-                                  "Hidden",
-                                  "Unbound",
-                                  "TopologyChanged",
-                                  "NoHit",
-                                  "BodyDeleted",
-                                  "Released",
-                                  "OtherBody",
-                                  "NotInWorld",
-                                  "NotAdded",
-                                  "Enclosed",
-                                  "NotSaved",
-                                  "SnapshotMismatch",
-                                  "Cancelled"};
-static_assert(sizeof(kCodes) / sizeof(kCodes[0]) == static_cast<std::size_t>(StatusCode::Cancelled) + 1);
-
-}  // namespace
-
-const char* nameOf(StatusCode code) {
-  return kCodes[static_cast<std::size_t>(code)];
-}
-
 const Vec3& finite(const Vec3& vector, const char* name) {
   for (const double number : vector) {
     if (!(std::abs(number) <= Limits::kMaxCoordinate)) {
@@ -59,22 +20,22 @@ Interpolation interpolationOf(const std::string& name) {
   throw std::invalid_argument("interpolation: 'linear' or 'quadratic'");
 }
 
-BindingOptions bindingOptions(const std::string& interpolation, const std::string& normals, const std::string& outside,
-                              std::optional<double> maxDistance) {
+BindingOptions bindingOptions(const Choice<Interpolation>& interpolation, const Choice<Normals>& normals,
+                              const Choice<OutsideRule>& outside, std::optional<double> maxDistance) {
   BindingOptions options;
-  options.interpolation = interpolationOf(interpolation);
-  if (normals == "none") {
+  options.interpolation = interpolationOf(interpolation.name);
+  if (normals.name == "none") {
     options.normals = Normals::None;
-  } else if (normals == "transformed") {
+  } else if (normals.name == "transformed") {
     options.normals = Normals::Transformed;
-  } else if (normals == "recomputed") {
+  } else if (normals.name == "recomputed") {
     options.normals = Normals::Recomputed;
   } else {
     throw std::invalid_argument("normals: 'none', 'transformed' or 'recomputed'");
   }
-  if (outside != "nearest" && outside != "barycentric")
+  if (outside.name != "nearest" && outside.name != "barycentric")
     throw std::invalid_argument("outside: 'nearest' or 'barycentric'");
-  options.outside = outside == "nearest" ? OutsideRule::Nearest : OutsideRule::Barycentric;
+  options.outside = outside.name == "nearest" ? OutsideRule::Nearest : OutsideRule::Barycentric;
   if (maxDistance) options.maxDistance = *maxDistance;
   return options;
 }

@@ -23,17 +23,29 @@ using Quaternion = std::array<double, 4>;  ///< x, y, z, w
 struct MeshModel {
   std::shared_ptr<const TriangleMesh> mesh;
 };
-struct CageModel {
-  std::shared_ptr<const Cage> cage;
+struct ReportedCage : Cage {
+  ReportedCage(Cage&& cage, std::string&& words) : Cage(std::move(cage)), report(std::move(words)) {}
   std::string report;  ///< of what made it, in words; may be empty
+};
+struct CageModel {
+  std::shared_ptr<const ReportedCage> cage;
+};
+inline CageModel cageModel(Cage&& cage, std::string report = {}) {
+  return {std::make_shared<const ReportedCage>(std::move(cage), std::move(report))};
+}
+
+/// One of several words, for a value of this type.
+template <class Of>
+struct Choice {
+  std::string name;
 };
 
 /// Throws unless all numbers are finite, and no larger than what the library supports.
 const Vec3& finite(const Vec3& vector, const char* name);
 
 /// Options by their words.
-BindingOptions bindingOptions(const std::string& interpolation, const std::string& normals, const std::string& outside,
-                              std::optional<double> maxDistance);
+BindingOptions bindingOptions(const Choice<Interpolation>& interpolation, const Choice<Normals>& normals,
+                              const Choice<OutsideRule>& outside, std::optional<double> maxDistance);
 Interpolation interpolationOf(const std::string& name);
 
 /// A rest space's place in the world.

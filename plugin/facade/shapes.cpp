@@ -31,7 +31,7 @@ ShapeModel plane(const Vec3& normal, double offset) {
   const btVector3 n = toBullet(normal, "normal");
   if (!(n.length2() > 0)) throw std::invalid_argument("normal: must not be 0");
   finite({offset, 0, 0}, "offset");
-  return {std::make_shared<btStaticPlaneShape>(n.normalized(), static_cast<btScalar>(offset)), true};
+  return {std::make_shared<btStaticPlaneShape>(n.normalized(), static_cast<btScalar>(offset))};
 }
 ShapeModel box(const Vec3& halfExtents) {
   for (const double half : halfExtents) positive(half, "half_extents");
@@ -79,7 +79,7 @@ ShapeModel meshShape(const TriangleMesh& mesh) {
   arrays->interface = std::make_unique<btTriangleIndexVertexArray>();
   arrays->interface->addIndexedMesh(part, PHY_INTEGER);
   arrays->shape = std::make_unique<btBvhTriangleMeshShape>(arrays->interface.get(), true);
-  return {std::shared_ptr<btCollisionShape>(arrays, arrays->shape.get()), true};
+  return {std::shared_ptr<btCollisionShape>(arrays, arrays->shape.get())};
 }
 
 }  // namespace tetskin::facade

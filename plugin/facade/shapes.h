@@ -4,7 +4,7 @@
 // Collision shapes for rigid bodies. Lengths are world lengths. All throw for numbers out of range.
 #pragma once
 
-#include "world_model.h"
+#include "worlds.h"
 
 #include <vector>
 

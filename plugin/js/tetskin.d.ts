@@ -283,10 +283,14 @@ export interface BodyOptions {
   density?: number;
   /** Total mass, in place of the density */
   mass?: number;
+  /** Of each node, in place of mass and density */
+  nodeMasses?: Numbers;
   /** Pressure units; without it, relativeStiffness tells */
   youngsModulus?: number;
   /** Young's modulus over density x gravity x size: from 30 (wobbles, sags) to 300 (firm); 50 */
   relativeStiffness?: number;
+  /** Factors of the stiffness, one for each tet; without it, those of the cage */
+  stiffnessScale?: Numbers;
   /** 0 to below 0.5; 0.3 */
   poissonRatio?: number;
   /** Seconds: Rayleigh damping; 0.02 */
@@ -297,6 +301,10 @@ export interface BodyOptions {
   interpolation?: "linear" | "quadratic";
   /** "none" */
   normals?: "none" | "transformed" | "recomputed";
+  /** How vertices outside the tets are bound; "nearest" */
+  outside?: "nearest" | "barycentric";
+  /** How far outside a vertex may be, rest length; without it, any distance */
+  maxDistance?: number;
   /** Whether steps compute the surface, on the CPU; true. With a Palette, false saves their time. */
   visible?: boolean;
   /** Contact with rigid bodies at the visible surface, otherwise at nodes; true */

@@ -2,7 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Includes the headers of all tetskin libraries that you link, and defines the version. Each library's target, and
-// tetskin.pc, define TETSKIN_HAS_<LIBRARY>.
+// tetskin.pc, define TETSKIN_HAS_<LIBRARY>. Where to begin:
+//
+//   a mesh on the btSoftBody that you have    bullet/soft_body_skin.h: SoftBodySkin
+//   a mesh, and no body                       cage/create_cage.h: createCage; world/world.h: World, which owns them all
+//   a body in a world of yours                solver/deformable_body.h: DeformableBody, with a DeformableSolver
+//   go back in time, record, play             replay/snapshot.h, replay/recorder.h
+//   no Bullet                                 core/mesh_skin.h: MeshSkin; elastic/elastic_body.h: ElasticBody
 #pragma once
 
 #define TETSKIN_VERSION_MAJOR 0           ///< rises with incompatible changes
@@ -58,4 +64,7 @@
 #ifdef TETSKIN_HAS_TOUCH
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
+#endif
+#ifdef TETSKIN_HAS_WORLD
+#include <tetskin/world/world.h>
 #endif

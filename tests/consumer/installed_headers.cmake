@@ -30,7 +30,7 @@ foreach(folder ${PREFIX}/include ${STAGED})
   execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I${folder} -isystem ${EIGEN} ${file}
     COMMAND_ERROR_IS_FATAL ANY)
   foreach(header ${public})
-    if(header MATCHES "/(bullet|solver|replay|contact|touch|reduced)/")
+    if(header MATCHES "/(bullet|solver|replay|contact|touch|reduced|world)/")
       continue()
     endif()
     file(WRITE ${file} "#include <${header}>\n")

@@ -21,7 +21,7 @@ if(PKG_CONFIG)
 endif()
 
 string(REGEX MATCH "^[0-9]+[.][0-9]+" abi ${VERSION})  # while the major version is 0
-foreach(library core bullet cage contact elastic io reduced replay solver threads touch)
+foreach(library core bullet cage contact elastic io reduced replay solver threads touch world)
   file(GLOB_RECURSE so ${prefix}/libtetskin_${library}.so.${abi})
   if(NOT so)
     message(FATAL_ERROR "No library tetskin_${library} with the ABI ${abi} in its name")
@@ -45,7 +45,7 @@ foreach(library core bullet cage contact elastic io reduced replay solver thread
   if(names MATCHES "${shown}(findTets|skinPoints|(io|cage_detail|elastic_detail|kernels)::|bullet_detail::(BodyContacts|ContactRows|SchurComplement))[^\n]*")
     message(FATAL_ERROR "${so} shows ${CMAKE_MATCH_0}")
   endif()
-  if(NOT names MATCHES "${shown}(embed|createSoftBody|createCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree|DeformableWorld|saveSnapshot)")
+  if(NOT names MATCHES "${shown}(embed|createSoftBody|createCage|calibrate|loadMesh|ThreadPool|SurfaceContact|ReducedBody|SurfaceTree|World|DeformableWorld|saveSnapshot)")
     message(FATAL_ERROR "${so} does not show what is public")
   endif()
 endforeach()

@@ -9,14 +9,10 @@
 //   --any   with those that this processor has
 //   --fast  without `deterministic`
 #include <btBulletDynamicsCommon.h>
-#include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/create_cage.h>
-#include <tetskin/contact/soft_contacts.h>
-#include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/replay/src/exported/state_hash.h>
-#include <tetskin/solver/deformable_body.h>
-#include <tetskin/solver/deformable_world.h>
+#include <tetskin/world/world.h>
 
 #include <algorithm>
 #include <chrono>
@@ -86,54 +82,21 @@ TriangleMesh readMesh(const std::string& path) {
   return mesh;
 }
 
-struct Rigid {
-  std::unique_ptr<btCollisionShape> shape;
-  std::unique_ptr<btDefaultMotionState> motion;  // as in the module: it turns zeros of the basis positive
-  std::unique_ptr<btRigidBody> body;
-};
-
-struct Soft {
-  Cage cage;
-  TriangleMesh mesh;
-  std::unique_ptr<DeformableBody> body;
-  std::shared_ptr<const SoftBodyBinding> binding;
-  SoftBodySkin skin;
-  std::unique_ptr<SurfaceContact> contact;
-};
-
 class Scene {
  public:
-  Scene(const std::string& path, bool deterministic) {
-    DeformableWorldOptions options;
-    options.deterministic = deterministic;
-    world_ = std::make_unique<DeformableWorld>(options);
+  Scene(const std::string& path, const WorldOptions& options) : world_(options) {
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) add(Words(line));
-    if (softs_.empty()) throw std::runtime_error(path + ": no scene");
-  }
-  ~Scene() {
-    for (const auto& soft : softs_) {
-      if (contacts_) contacts_->remove(soft->body->body());
-    }
-    softs_.clear();
-    contacts_.reset();
-    for (const Rigid& rigid : rigids_) world_->removeRigidBody(rigid.body.get());
-  }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
-
-  void step() {
-    world_->stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 60 / 4);
-    std::vector<SoftBodySkin*> skins;
-    for (const auto& soft : softs_) skins.push_back(&soft->skin);
-    SoftBodySkin::updateAll(skins.data(), skins.size());
+    if (world_.bodies().empty()) throw std::runtime_error(path + ": no scene");
   }
 
-  std::uint64_t hash() const { return bullet_detail::stateHash(*world_); }
+  void step() { (void)world_.step(1.0 / 60).value(); }
+
+  std::uint64_t hash() const { return bullet_detail::stateHash(world_.bullet()); }
 
   std::size_t tets() const {
     std::size_t sum = 0;
-    for (const auto& soft : softs_) sum += soft->cage.mesh.tets.size();
+    for (const auto& body : world_.bodies()) sum += body->cage->mesh.tets.size();
     return sum;
   }
 
@@ -142,13 +105,11 @@ class Scene {
     const std::string kind = words.word();
     if (kind == "mesh") {
       const std::string name = words.word();
-      meshes_[name] = readMesh(words.word());
+      meshes_[name] = std::make_shared<const TriangleMesh>(readMesh(words.word()));
     } else if (kind == "box") {
-      const btVector3 half = words.vector();
-      addRigid(std::make_unique<btBoxShape>(half), words);
+      addRigid(std::make_shared<btBoxShape>(words.vector()), words);
     } else if (kind == "sphere") {
-      const auto radius = btScalar(words.number());
-      addRigid(std::make_unique<btSphereShape>(radius), words);
+      addRigid(std::make_shared<btSphereShape>(btScalar(words.number())), words);
     } else if (kind == "body") {
       addBody(words);
     } else {
@@ -157,53 +118,33 @@ class Scene {
   }
 
   /// Mass, position, rotation, friction.
-  void addRigid(std::unique_ptr<btCollisionShape> shape, Words& words) {
-    const auto mass = btScalar(words.number());
+  void addRigid(std::shared_ptr<btCollisionShape> shape, Words& words) {
+    const double mass = words.number();
     const btTransform pose = words.pose();
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape->calculateLocalInertia(mass, inertia);
-    auto motion = std::make_unique<btDefaultMotionState>(pose);
-    btRigidBody::btRigidBodyConstructionInfo info(mass, motion.get(), shape.get(), inertia);
-    info.m_friction = btScalar(words.number());
-    auto body = std::make_unique<btRigidBody>(info);
-    world_->addRigidBody(body.get());
-    rigids_.push_back({std::move(shape), std::move(motion), std::move(body)});
+    (void)world_.addRigidBody(std::move(shape), mass, pose, words.number()).value();
   }
 
   /// Mesh, tets, position, rotation, mass, relative stiffness, damping, friction, kind of contact among soft bodies.
   void addBody(Words& words) {
-    auto soft = std::make_unique<Soft>();
-    soft->mesh = meshes_.at(words.word());
+    const auto mesh = meshes_.at(words.word());
     CageOptions cageOptions;
     cageOptions.targetTets = static_cast<std::size_t>(words.number());
-    soft->cage = createCage(soft->mesh, cageOptions).value();
-    Cage placed = soft->cage;
     const Eigen::Affine3d placement = words.placement();
-    for (Eigen::Vector3d& node : placed.mesh.nodes) node = placement * node;
-    SoftBodyOptions material;
-    material.faceTree = false;
-    material.mass = words.number();
-    material.relativeStiffness = words.number();
-    material.stiffnessDamping = words.number();
-    material.friction = words.number();
-    soft->body = DeformableBody::add(*world_, placed, material).value();
-    soft->binding = SoftBodyBinding::create(soft->cage, soft->mesh).value();
-    if (!soft->skin.bind(soft->body->body(), soft->binding).ok()) throw std::runtime_error("not bound");
-    soft->contact = SurfaceContact::add(*world_, soft->body->body(), *soft->binding, soft->mesh).value();
+    WorldBodyOptions options;
+    options.material.faceTree = false;
+    options.material.mass = words.number();
+    options.material.relativeStiffness = words.number();
+    options.material.stiffnessDamping = words.number();
+    options.material.friction = words.number();
     const std::string contact = words.word();
-    if (contact != "none") {
-      if (!contacts_) contacts_ = SoftContacts::add(*world_).value();
-      const auto shape = ContactShape::create(soft->cage, soft->mesh).value();
-      if (!contacts_->add(soft->body->body(), shape, contact == "self").ok()) throw std::runtime_error("no contact");
-    }
-    softs_.push_back(std::move(soft));
+    options.softContact = contact != "none";
+    options.selfContact = contact == "self";
+    const auto cage = std::make_shared<const Cage>(createCage(*mesh, cageOptions).value());
+    (void)world_.addBody(cage, mesh, options, placement).value();
   }
 
-  std::unique_ptr<DeformableWorld> world_;
-  std::map<std::string, TriangleMesh> meshes_;
-  std::vector<Rigid> rigids_;
-  std::unique_ptr<SoftContacts> contacts_;
-  std::vector<std::unique_ptr<Soft>> softs_;
+  World world_;
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
 }  // namespace
@@ -217,7 +158,9 @@ int main(int argc, char** argv) try {
   }
   if (frames < 1) return std::puts("usage: live_native SCENE FRAMES [--any] [--fast]"), 2;
   if (!any) setInstructionSet(InstructionSet::Baseline);
-  Scene scene(argv[1], !fast);
+  WorldOptions options;
+  options.deterministic = !fast;
+  Scene scene(argv[1], options);
   std::vector<double> times;
   for (int frame = 0; frame < frames; ++frame) {
     const auto start = std::chrono::steady_clock::now();

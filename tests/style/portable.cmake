@@ -20,7 +20,7 @@ foreach(file ${files})
   foreach(line ${lines})
     list(APPEND faults "${name}: only POSIX has this: ${line}")
   endforeach()
-  if(name MATCHES "/(bullet|solver|replay|contact|touch|reduced)/" AND NOT name MATCHES "own_objects[.]h$")
+  if(name MATCHES "/(bullet|solver|replay|contact|touch|reduced|world)/" AND NOT name MATCHES "own_objects[.]h$")
     file(STRINGS ${file} lines REGEX "dynamic_cast<|typeid")
     list(FILTER lines EXCLUDE REGEX "inactiveForce[(]")  # one of the library's own
     foreach(line ${lines})

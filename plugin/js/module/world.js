@@ -3,10 +3,8 @@
 
 const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
   angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
-const kBodyOptions = {position: [0, 0, 0], rotation: [0, 0, 0, 1], density: 100, mass: NaN, youngsModulus: NaN,
-  relativeStiffness: 50, poissonRatio: 0.3, stiffnessDamping: 0.02, friction: 0.5, margin: NaN, solverTolerance: 5e-3,
-  maxIterations: 100, contactMargin: NaN, sampleSpacing: NaN, interpolation: "linear", normals: "none", visible: true,
-  surfaceContact: true, softContact: false, selfContact: false, pinned: []};
+/** A body's options that are arrays; the module itself has the others. */
+const kBodyArrays = {pinned: [], nodeMasses: [], stiffnessScale: []};
 /** Errors after which the step has been made. */
 const kAfterStep = ["NonFinite", "TopologyChanged"];
 const kCauses = ["contact", "friction", "joints", "total"];
@@ -69,12 +67,13 @@ class World extends Thing {
     return this.keepRigid(this.core[add](own(this), ...shape, rigid));
   }
   addBody(cage, mesh, options) {
-    const {pinned, ...soft} = optionsOf(options, kBodyOptions);
+    const known = {...this.core.bodyOptions(), ...kBodyArrays};
+    const {pinned, nodeMasses, stiffnessScale, ...soft} = optionsOf(options, known);
     wholeNumberOf(soft.maxIterations, "maxIterations");
     const cageHandle = handleIn(this.hidden.instance, cage, Cage, "cage");
     const meshHandle = mesh === null ? null : handleIn(this.hidden.instance, mesh, Mesh, "mesh");
-    return this.withMemory([indices(pinned)], at => {
-      const handle = this.core.addBody(own(this), cageHandle, meshHandle, soft, at);
+    return this.withMemory([indices(pinned), doubles(nodeMasses), doubles(stiffnessScale)], (...at) => {
+      const handle = this.core.addBody(own(this), cageHandle, meshHandle, soft, ...at);
       return this.keep("bodies", new Body(this.hidden.instance, handle, this, {cage, mesh}));
     });
   }

@@ -5,49 +5,58 @@
 namespace tetskin::js {
 namespace {
 
-/// The options from JavaScript; those not given are NaN.
-struct SoftOptions {
-  Vec3 position{};
-  Quaternion rotation{0, 0, 0, 1};
-  double density = 0, mass = 0, youngsModulus = 0, relativeStiffness = 0, poissonRatio = 0, stiffnessDamping = 0,
-         friction = 0, margin = 0, solverTolerance = 0, contactMargin = 0, sampleSpacing = 0;
-  int maxIterations = 0;
-  std::string interpolation, normals;
-  bool visible = true, surfaceContact = true, softContact = false, selfContact = false;
-};
+/// An option's value for JavaScript, and back.
+template <class T>
+const T& shown(const T& option) {
+  return option;
+}
+double shown(const std::optional<double>& option) {
+  return option.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+template <class Of>
+const std::string& shown(const Choice<Of>& option) {
+  return option.name;
+}
+template <class T>
+void read(const T& value, T& option) {
+  option = value;
+}
+void read(double value, std::optional<double>& option) {
+  option = given(value);
+}
+template <class Of>
+void read(const std::string& value, Choice<Of>& option) {
+  option.name = value;
+}
+template <auto Member>
+using Shown = std::decay_t<decltype(shown(BodyWords().*Member))>;
+template <auto Member>
+Shown<Member> getOption(const BodyWords& words) {
+  return shown(words.*Member);
+}
+template <auto Member>
+void setOption(BodyWords& words, Shown<Member> value) {
+  read(value, words.*Member);
+}
+/// Arrays are passed separately, as addresses.
+template <auto Member, class Fields>
+void addField(Fields& fields, const char* name) {
+  if constexpr (!std::is_same_v<Shown<Member>, std::vector<int>> && !std::is_same_v<Shown<Member>, std::vector<double>>)
+    fields.field(name, &getOption<Member>, &setOption<Member>);
+}
 
-BodyOptions optionsOf(const SoftOptions& soft) {
-  BodyOptions options;
-  SoftBodyOptions& material = options.material;
-  material.density = soft.density;
-  material.mass = given(soft.mass);
-  material.youngsModulus = given(soft.youngsModulus);
-  material.relativeStiffness = soft.relativeStiffness;
-  material.poissonRatio = soft.poissonRatio;
-  material.stiffnessDamping = soft.stiffnessDamping;
-  material.friction = soft.friction;
-  material.margin = given(soft.margin);
-  material.solverTolerance = soft.solverTolerance;
-  material.maxIterations = soft.maxIterations;
-  material.faceTree = false;
-  options.binding = bindingOptions(soft.interpolation, soft.normals, "nearest", {});
-  options.visible = soft.visible;
-  options.surfaceContact = soft.surfaceContact;
-  options.softContact = soft.softContact;
-  options.selfContact = soft.selfContact;
-  options.contactMargin = given(soft.contactMargin);
-  options.sampleSpacing = given(soft.sampleSpacing);
-  return options;
+BodyWords bodyOptions() {
+  return {};
 }
 
 /// mesh  null: none
-BodyHandle* addBody(WorldHandle& handle, const CageModel& cage, const MeshModel* mesh, SoftOptions soft,
-                    Indices pinned) {
-  BodyOptions options = optionsOf(soft);
-  options.pinned.assign(pinned.begin(), pinned.end());
+BodyHandle* addBody(WorldHandle& handle, const CageModel& cage, const MeshModel* mesh, BodyWords words, Indices pinned,
+                    Doubles nodeMasses, Doubles stiffnessScale) {
+  words.pinned.assign(pinned.begin(), pinned.end());
+  words.nodeMasses.assign(nodeMasses.begin(), nodeMasses.end());
+  words.stiffnessScale.assign(stiffnessScale.begin(), stiffnessScale.end());
   auto body = std::make_unique<BodyHandle>(BodyHandle{handle.world, {}, {}, {}});
-  body->state =
-      handle.world->addBody(cage, mesh ? *mesh : MeshModel(), placementOf(soft.position, soft.rotation), options);
+  body->state = facade::addBody(*handle.world, cage, mesh ? *mesh : MeshModel(), words);
   return body.release();
 }
 void remove(BodyHandle& body) {
@@ -77,28 +86,28 @@ View velocities(BodyHandle& body) {
 }
 
 void setVelocities(BodyHandle& body, Doubles numbers) {
-  setVelocities(*body.state, numbers.begin(), numbers.count);
+  facade::setVelocities(*body.state, numbers.begin(), numbers.count);
 }
 void setPinned(BodyHandle& body, Indices nodes, bool pinned) {
-  setPinned(*body.state, {nodes.begin(), nodes.end()}, pinned);
+  facade::setPinned(*body.state, {nodes.begin(), nodes.end()}, pinned);
 }
 void setPinnedPositions(BodyHandle& body, Indices nodes, Doubles positions) {
-  setPinnedPositions(*body.state, {nodes.begin(), nodes.end()}, positions.begin(), positions.count);
+  facade::setPinnedPositions(*body.state, {nodes.begin(), nodes.end()}, positions.begin(), positions.count);
 }
 View pinned(BodyHandle& body) {
-  return lent(pinnedOf(*body.state));
+  return lent(facade::pinnedOf(*body.state));
 }
 
 View positions(BodyHandle& body) {
-  (void)surfaceOf(*body.state);
+  (void)facade::surfaceOf(*body.state);
   return viewNumbers(body.state->positions.data(), body.state->positions.size());
 }
 View normals(BodyHandle& body) {
-  (void)surfaceOf(*body.state);
+  (void)facade::surfaceOf(*body.state);
   return viewNumbers(body.state->normals.data(), body.state->normals.size());
 }
 View bounds(BodyHandle& body) {
-  const Box3& box = surfaceOf(*body.state).bounds();
+  const Box3& box = facade::surfaceOf(*body.state).bounds();
   return lent(
       std::vector<double>{box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()});
 }
@@ -106,7 +115,7 @@ bool visible(BodyHandle& body) {
   return body.state->skin.visible();
 }
 void setVisible(BodyHandle& body, bool visible) {
-  surfaceOf(*body.state).setVisible(visible);
+  facade::surfaceOf(*body.state).setVisible(visible);
 }
 
 bool asleep(BodyHandle& body) {
@@ -127,7 +136,7 @@ double friction(BodyHandle& body) {
   return static_cast<double>(alive(*body.state).body().m_cfg.kDF);
 }
 void setFriction(BodyHandle& body, double friction) {
-  setFriction(*body.state, friction);
+  facade::setFriction(*body.state, friction);
 }
 void setGravity(BodyHandle& body, Vec3 gravity) {
   check(alive(*body.state).setGravity(toBullet(gravity, "gravity")));
@@ -136,43 +145,28 @@ void followWorldGravity(BodyHandle& body) {
   alive(*body.state).followWorldGravity();
 }
 void transform(BodyHandle& body, Vec3 position, Quaternion rotation) {
-  body.world->teleport(*body.state, toBullet(position, rotation));
+  check(body.world->teleport(*body.state, toBullet(position, rotation)));
 }
 void reset(BodyHandle& body) {
-  body.world->reset(*body.state);
+  check(body.world->reset(*body.state));
 }
 double applyRadialImpulse(BodyHandle& body, Vec3 centre, double radius, double strength) {
   finite({radius, strength, 0}, "radius, strength");
-  const ImpulseResult result = body.world->radialImpulse(
-      *body.state, {toBullet(centre, "centre"), static_cast<btScalar>(radius), static_cast<btScalar>(strength)});
+  const ImpulseResult result =
+      radialImpulse(*body.world, *body.state,
+                    {toBullet(centre, "centre"), static_cast<btScalar>(radius), static_cast<btScalar>(strength)});
   return static_cast<double>(result.vertices);
 }
 
 }  // namespace
 
 EMSCRIPTEN_BINDINGS(bodies) {
-  emscripten::value_object<SoftOptions>("BodyOptions")
-      .field("position", &SoftOptions::position)
-      .field("rotation", &SoftOptions::rotation)
-      .field("density", &SoftOptions::density)
-      .field("mass", &SoftOptions::mass)
-      .field("youngsModulus", &SoftOptions::youngsModulus)
-      .field("relativeStiffness", &SoftOptions::relativeStiffness)
-      .field("poissonRatio", &SoftOptions::poissonRatio)
-      .field("stiffnessDamping", &SoftOptions::stiffnessDamping)
-      .field("friction", &SoftOptions::friction)
-      .field("margin", &SoftOptions::margin)
-      .field("solverTolerance", &SoftOptions::solverTolerance)
-      .field("maxIterations", &SoftOptions::maxIterations)
-      .field("contactMargin", &SoftOptions::contactMargin)
-      .field("sampleSpacing", &SoftOptions::sampleSpacing)
-      .field("interpolation", &SoftOptions::interpolation)
-      .field("normals", &SoftOptions::normals)
-      .field("visible", &SoftOptions::visible)
-      .field("surfaceContact", &SoftOptions::surfaceContact)
-      .field("softContact", &SoftOptions::softContact)
-      .field("selfContact", &SoftOptions::selfContact);
+  emscripten::value_object<BodyWords> options("BodyOptions");
+#define TETSKIN_FIELD(type, name, python, ...) addField<&BodyWords::name>(options, #name);
+  TETSKIN_BODY_OPTIONS(TETSKIN_FIELD)
+#undef TETSKIN_FIELD
   emscripten::class_<BodyHandle>("Body");
+  expose<&bodyOptions>("bodyOptions");
   expose<&addBody>("addBody");
   expose<&remove>("removeBody");
   expose<&nodes>("bodyNodes");

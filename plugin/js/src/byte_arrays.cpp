@@ -129,7 +129,7 @@ std::vector<unsigned char> bytesOf(const CageModel& model) {
   std::vector<std::uint64_t> hash;
   if (cage.meshHash) hash.push_back(*cage.meshHash);
   writer.array(hash);
-  writer.append(model.report.data(), model.report.size());
+  writer.append(model.cage->report.data(), model.cage->report.size());
   return writer.take();
 }
 
@@ -142,7 +142,7 @@ CageModel cageOfBytes(const unsigned char* bytes, std::size_t count) {
   if (!hash.empty()) cage.meshHash = hash.front();
   std::string report = reader.text();
   check(validate(cage));
-  return {std::make_shared<const Cage>(std::move(cage)), std::move(report)};
+  return cageModel(std::move(cage), std::move(report));
 }
 
 }  // namespace tetskin::js

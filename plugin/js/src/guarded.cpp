@@ -21,7 +21,7 @@ Fault wordedFault() {
   try {
     throw;
   } catch (const Failure& failure) {
-    return {facade::nameOf(failure.code), failure.what()};
+    return {nameOf(failure.code), failure.what()};
   } catch (const std::bad_alloc&) {
     return {"OutOfMemory", {}};
   } catch (const std::length_error&) {

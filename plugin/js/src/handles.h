@@ -6,7 +6,7 @@
 
 #include "guarded.h"
 
-#include <facade/world_model.h>
+#include <facade/worlds.h>
 
 namespace tetskin::js {
 
@@ -18,16 +18,16 @@ struct WorldHandle {
 };
 struct BodyHandle {
   std::shared_ptr<World> world;
-  std::shared_ptr<BodyState> state;
+  std::shared_ptr<World::Body> state;
   std::vector<float> nodes, velocities;  ///< of the last call that asked for them, contiguous
 };
 struct RigidHandle {
   std::shared_ptr<World> world;
-  std::shared_ptr<RigidState> state;
+  std::shared_ptr<World::RigidBody> state;
 };
 struct SpringHandle {
   std::shared_ptr<World> world;
-  std::shared_ptr<TouchState> state;
+  std::shared_ptr<World::Touch> state;
   SurfacePoint point;
 };
 

@@ -109,10 +109,6 @@ View meshBounds(const MeshModel& model) {
       std::vector<double>{box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()});
 }
 
-CageModel modelOf(Cage&& cage, std::string report = {}) {
-  return {std::make_shared<const Cage>(std::move(cage)), std::move(report)};
-}
-
 /// By value, like calibrateCage: the progress function may delete the mesh that is being used.
 CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, bool tells) {
   if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
@@ -124,7 +120,7 @@ CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements
   options.progress = progressIf(tells);
   CageReport report;
   Cage cage = take(createCage(*mesh.mesh, options, &report));
-  return modelOf(std::move(cage), report.describe());
+  return cageModel(std::move(cage), report.describe());
 }
 
 CageModel calibrateCage(CageModel model, double poissonRatio, int modeCount, bool tells) {
@@ -134,11 +130,11 @@ CageModel calibrateCage(CageModel model, double poissonRatio, int modeCount, boo
   options.progress = progressIf(tells);
   Cage cage = *model.cage;
   const CalibrationReport report = take(calibrate(cage, options));
-  return modelOf(std::move(cage), model.report + report.describe());
+  return cageModel(std::move(cage), model.cage->report + report.describe());
 }
 
 CageModel quadraticCage(const CageModel& model) {
-  return modelOf(take(refineQuadratic(*model.cage)));
+  return cageModel(take(refineQuadratic(*model.cage)));
 }
 CageModel scaledCage(const CageModel& model, double scale) {
   if (!(scale > 0.0 && scale < Limits::kMaxCoordinate))
@@ -146,7 +142,7 @@ CageModel scaledCage(const CageModel& model, double scale) {
   Cage cage = *model.cage;
   cage.scaleBy(scale);
   check(validate(cage));
-  return modelOf(std::move(cage), model.report);
+  return cageModel(std::move(cage), model.cage->report);
 }
 CageModel cageOfTets(Doubles nodes, Indices tets) {
   TetMesh mesh;
@@ -154,7 +150,7 @@ CageModel cageOfTets(Doubles nodes, Indices tets) {
   mesh.tets = indexRows<4>(tets);
   check(validate(mesh));
   (void)repairTetMesh(mesh);
-  return modelOf(Cage(std::move(mesh)));
+  return cageModel(Cage(std::move(mesh)));
 }
 
 CageModel cageFromBytes(std::uintptr_t bytes, std::size_t count) {
@@ -188,7 +184,7 @@ View cageBoundaryFaces(const CageModel& model) {
   return lentRows(boundaryFaces(model.cage->mesh));
 }
 std::string cageReport(const CageModel& model) {
-  return model.report;
+  return model.cage->report;
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ RigidHandle* add(WorldHandle& handle, const ShapeModel& shape, const RigidOption
   const btVector3 velocity = toBullet(options.velocity, "velocity");
   const btVector3 angularVelocity = toBullet(options.angularVelocity, "angularVelocity");
   auto rigid = std::make_unique<RigidHandle>(RigidHandle{handle.world, {}});
-  rigid->state = handle.world->addRigid(shape, options.mass, toBullet(options.position, options.rotation),
-                                        options.friction, options.kinematic);
+  rigid->state = addRigid(*handle.world, shape, options.mass, toBullet(options.position, options.rotation),
+                          options.friction, options.kinematic);
   if (options.mass > 0) {
     rigid->state->body->setLinearVelocity(velocity);
     rigid->state->body->setAngularVelocity(angularVelocity);
@@ -64,10 +64,10 @@ Quaternion rotation(RigidHandle& rigid) {
   return {q.x(), q.y(), q.z(), q.w()};
 }
 void setPosition(RigidHandle& rigid, Vec3 at) {
-  rigid.world->setPosition(*rigid.state, at);
+  facade::setPosition(*rigid.world, *rigid.state, at);
 }
 void setRotation(RigidHandle& rigid, Quaternion q) {
-  rigid.world->setRotation(*rigid.state, q);
+  facade::setRotation(*rigid.world, *rigid.state, q);
 }
 Vec3 velocity(RigidHandle& rigid) {
   return vectorOf(alive(*rigid.state).getLinearVelocity());
@@ -89,7 +89,7 @@ double friction(RigidHandle& rigid) {
   return static_cast<double>(alive(*rigid.state).getFriction());
 }
 void setFriction(RigidHandle& rigid, double friction) {
-  setFriction(*rigid.state, friction);
+  facade::setFriction(*rigid.state, friction);
 }
 double mass(RigidHandle& rigid) {
   return static_cast<double>(alive(*rigid.state).getMass());

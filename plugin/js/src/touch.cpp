@@ -14,7 +14,7 @@ struct HitNumbers {
 };
 
 HitNumbers raycast(WorldHandle& handle, Vec3 start, Vec3 end) {
-  const RayHit found = handle.world->raycast(toBullet(start, "start"), toBullet(end, "end"));
+  const World::RayHit found = take(handle.world->raycast(toBullet(start, "start"), toBullet(end, "end")));
   HitNumbers numbers;
   if (!found.body) return numbers;
   const auto& bodies = handle.world->bodies();
@@ -28,16 +28,16 @@ HitNumbers raycast(WorldHandle& handle, Vec3 start, Vec3 end) {
 }
 
 SurfacePoint pointAt(BodyHandle& body, int triangle, const Vec3& weights) {
-  btSoftBody& soft = alive(*body.state).body();
-  checkSurface(*body.state);
-  if (triangle < 0 || static_cast<std::size_t>(triangle) >= body.state->mesh.mesh->triangleCount())
+  const SurfaceTree& tree = treeOf(*body.world, *body.state);
+  btSoftBody& soft = body.state->body->body();
+  if (triangle < 0 || static_cast<std::size_t>(triangle) >= body.state->mesh->triangleCount())
     fail(StatusCode::IndexOutOfRange, "hit: there is no triangle " + std::to_string(triangle));
   SurfaceHit hit;
   hit.status = StatusCode::Ok;
   hit.body = &soft;
   hit.triangle = triangle;
   for (std::size_t k = 0; k < 3; ++k) hit.weights[k] = static_cast<btScalar>(weights[k]);
-  return take(body.world->treeOf(*body.state).pointAt(soft, hit));
+  return take(tree.pointAt(soft, hit));
 }
 
 SpringHandle* addSpring(BodyHandle& body, int triangle, Vec3 weights, double stiffness, double dampingRatio,
@@ -47,11 +47,11 @@ SpringHandle* addSpring(BodyHandle& body, int triangle, Vec3 weights, double sti
   options.dampingRatio = dampingRatio;
   options.maxForce = given(maxForce);
   const SurfacePoint point = pointAt(body, triangle, weights);
-  TouchState touch;
+  World::Touch touch;
   touch.body = body.state;
   auto spring = std::make_unique<SpringHandle>(SpringHandle{body.world, {}, point});
   touch.spring = take(SurfaceSpring::add(body.world->bullet(), point, options));
-  spring->state = body.world->addTouch(std::move(touch));
+  spring->state = body.world->add(std::move(touch));
   return spring.release();
 }
 void applyImpulse(BodyHandle& body, int triangle, Vec3 weights, Vec3 impulse) {

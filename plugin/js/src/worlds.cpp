@@ -21,7 +21,11 @@ void* allocated(std::size_t bytes) {
 }
 
 WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces) {
-  return new WorldHandle{std::make_shared<World>(gravity, nullptr, deterministic, recordForces), {}, {}};
+  WorldOptions options;
+  options.gravity = toBullet(gravity, "gravity");
+  options.deterministic = deterministic;
+  options.recordForces = recordForces;
+  return new WorldHandle{std::make_shared<World>(options), {}, {}};
 }
 
 /// The object of a soft or a rigid body, the other being null; null if both are.
@@ -34,7 +38,7 @@ View forcesOn(WorldHandle& handle, const BodyHandle* soft, const RigidHandle* ri
               const RigidHandle* otherRigid) {
   const btCollisionObject& object = *objectOf(soft, rigid);
   const btCollisionObject* other = objectOf(otherSoft, otherRigid);
-  const ForceRecord& record = handle.world->forces();
+  const ForceRecord& record = forcesOf(*handle.world);
   const AppliedForces forces = other ? record.forcesBetween(object, *other) : record.forcesOn(object);
   std::vector<double> numbers;
   for (const Wrench& wrench : {forces.contact, forces.friction, forces.joints, forces.total()})
@@ -47,7 +51,7 @@ int step(WorldHandle& handle, double dt, int substeps) {
   const StepTimes before = bullet.deformableSolver().stepTimes();
   const double start = emscripten_get_now();
   double stepped = start;
-  const int made = handle.world->step(dt, substeps, [&](btScalar whole, int count, btScalar substep) {
+  const int made = facade::step(*handle.world, dt, substeps, [&](btScalar whole, int count, btScalar substep) {
     const int steps = bullet.stepSimulation(whole, count, substep);
     stepped = emscripten_get_now();
     return steps;
@@ -76,7 +80,7 @@ void setGravity(WorldHandle& handle, Vec3 gravity) {
 
 View poses(WorldHandle& handle) {
   handle.poses.clear();
-  for (const auto& rigid : handle.world->rigids()) {
+  for (const auto& rigid : handle.world->rigidBodies()) {
     const btTransform& pose = rigid->body->getWorldTransform();
     const btVector3& at = pose.getOrigin();
     const btQuaternion q = pose.getRotation();
@@ -89,13 +93,13 @@ std::size_t snapshotSize(WorldHandle& handle) {
   return take(saveSnapshot(handle.world->bullet(), nullptr, 0));
 }
 View save(WorldHandle& handle) {
-  return lent(handle.world->save());
+  return lent(take(handle.world->save()));
 }
 void restore(WorldHandle& handle, std::uintptr_t bytes, std::size_t count) {
-  handle.world->restore(reinterpret_cast<const void*>(bytes), count);
+  check(handle.world->restore(reinterpret_cast<const void*>(bytes), count));
 }
 void shiftOrigin(WorldHandle& handle, Vec3 origin) {
-  handle.world->shiftOrigin(toBullet(origin, "origin"));
+  check(handle.world->shiftOrigin(toBullet(origin, "origin")));
 }
 std::string hashOfState(WorldHandle& handle) {
   char text[20];

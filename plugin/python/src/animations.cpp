@@ -18,9 +18,9 @@ class GlbAnimation {
     (void)alive(body);
     checkSurface(body);
     checkOpen();
-    const BodyState& state = *body.state;
-    const std::size_t model = take(writer_.addModel(
-        name, *state.cage.cage, *state.mesh.mesh, state.binding->embedding(), state.binding->options().interpolation));
+    const World::Body& state = *body.state;
+    const std::size_t model = take(writer_.addModel(name, *state.cage, *state.mesh, state.binding->embedding(),
+                                                    state.binding->options().interpolation));
     writer_.addBody(model, name);
     bodies_.push_back(body);
   }

@@ -34,23 +34,18 @@ struct ArrayLike {
   nb::object object;
 };
 
-/// One of several words, which type checkers and editors know: `Names::kNames`.
-template <class Names>
-struct Choice {
-  std::string name;
-};
-struct Interpolations {
-  static constexpr auto kNames = nb::detail::const_name("typing.Literal['linear', 'quadratic']");
-};
-struct NormalsOf {
-  static constexpr auto kNames = nb::detail::const_name("typing.Literal['none', 'transformed', 'recomputed']");
-};
-struct OutsideRules {
-  static constexpr auto kNames = nb::detail::const_name("typing.Literal['nearest', 'barycentric']");
-};
-struct Layouts {
-  static constexpr auto kNames = nb::detail::const_name("typing.Literal['rows', 'columns']");
-};
+/// The words of a Choice, which type checkers and editors know.
+template <class Of>
+constexpr auto kWords = nullptr;
+template <>
+constexpr auto kWords<Interpolation> = nb::detail::const_name("typing.Literal['linear', 'quadratic']");
+template <>
+constexpr auto kWords<Normals> = nb::detail::const_name("typing.Literal['none', 'transformed', 'recomputed']");
+template <>
+constexpr auto kWords<OutsideRule> = nb::detail::const_name("typing.Literal['nearest', 'barycentric']");
+struct Layouts {};
+template <>
+constexpr auto kWords<Layouts> = nb::detail::const_name("typing.Literal['rows', 'columns']");
 /// A file's name: text, bytes, or an object with __fspath__.
 struct PathLike {
   nb::object object;
@@ -341,9 +336,9 @@ struct type_caster<tetskin::python::Made<Of>> {
     return made.array.inc_ref();
   }
 };
-template <class Names>
-struct type_caster<tetskin::python::Choice<Names>> {
-  NB_TYPE_CASTER(tetskin::python::Choice<Names>, Names::kNames)
+template <class Of>
+struct type_caster<tetskin::facade::Choice<Of>> {
+  NB_TYPE_CASTER(tetskin::facade::Choice<Of>, tetskin::python::kWords<Of>)
   bool from_python(handle source, std::uint8_t flags, cleanup_list* cleanup) noexcept {
     make_caster<std::string> text;
     if (!text.from_python(source, flags, cleanup)) return false;

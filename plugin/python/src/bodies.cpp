@@ -20,49 +20,50 @@ View velocitiesOf(const BodyHandle& body) {
   });
 }
 View surfaceOf(const BodyHandle& body, const std::vector<float>& numbers, const Kept<Row3<float>>& array) {
-  (void)surfaceOf(*body.state);
+  (void)facade::surfaceOf(*body.state);
   return array.view([&] { return view3<float>(numbers.data(), numbers.size() / 3, body.state); });
 }
 
 void setVelocities(BodyHandle& body, const ArrayLike& array) {
   const Numbers<double> numbers(array, "velocities", 3);
   const Locked lock(*body.world);
-  setVelocities(*body.state, numbers.data(), 3 * numbers.rows());
+  facade::setVelocities(*body.state, numbers.data(), 3 * numbers.rows());
 }
 
 std::size_t nodeCount(const BodyHandle& body) {
-  return body.state->cage.cage->mesh.nodeCount();
+  return body.state->cage->mesh.nodeCount();
 }
 
 void setPinned(BodyHandle& body, const ArrayLike& nodes, bool pinned) {
   const std::vector<int> indices = indicesOf(nodes, "nodes", nodeCount(body));
   const Locked lock(*body.world);
-  setPinned(*body.state, indices, pinned);
+  facade::setPinned(*body.state, indices, pinned);
 }
 
 void setPinnedPositions(BodyHandle& body, const ArrayLike& nodes, const ArrayLike& positions) {
   const std::vector<int> indices = indicesOf(nodes, "nodes", nodeCount(body));
   const Numbers<double> numbers(positions, "positions", 3);
   const Locked lock(*body.world);
-  setPinnedPositions(*body.state, indices, numbers.data(), 3 * numbers.rows());
+  facade::setPinnedPositions(*body.state, indices, numbers.data(), 3 * numbers.rows());
 }
 
 Column<bool> pinnedOf(const BodyHandle& body) {
   const Locked lock(*body.world);
-  return newMask(pinnedOf(*body.state));
+  return newMask(facade::pinnedOf(*body.state));
 }
 
 void transform(BodyHandle& body, const Vec3& position, const Quaternion& rotation) {
   const btTransform motion = toBullet(position, rotation);
   const Locked lock(*body.world);
-  body.world->teleport(*body.state, motion);
+  check(body.world->teleport(*body.state, motion));
 }
 
 ImpulseResult radialImpulse(BodyHandle& body, const Vec3& centre, double radius, double strength) {
   const Locked lock(*body.world);
   finite({radius, strength, 0}, "radius, strength");
-  return body.world->radialImpulse(
-      *body.state, {toBullet(centre, "centre"), static_cast<btScalar>(radius), static_cast<btScalar>(strength)});
+  return facade::radialImpulse(
+      *body.world, *body.state,
+      {toBullet(centre, "centre"), static_cast<btScalar>(radius), static_cast<btScalar>(strength)});
 }
 
 /// A property of the body that is a number, with the world's lock.
@@ -81,48 +82,59 @@ auto setter(Set set) {
   };
 }
 
-std::vector<double> numbersOf(const std::optional<ArrayLike>& array, const char* name) {
-  if (!array) return {};
-  const Numbers<double> numbers(*array, name, 0);
-  return {numbers.data(), numbers.data() + numbers.rows()};
-}
+/// How Python gives an option of BodyWords: most as it is.
+template <class T>
+struct Given {
+  using Type = T;
+  static T read(const T& given, const char*, std::size_t) { return given; }
+  static T shown(const T& fallback) { return fallback; }
+};
+template <>
+struct Given<std::optional<double>> : Given<double> {
+  using Type = std::optional<double>;
+  static Type read(const Type& given, const char*, std::size_t) { return given; }
+  static nb::object shown(const Type&) { return nb::none(); }
+};
+template <class Of>
+struct Given<Choice<Of>> {
+  using Type = Choice<Of>;
+  static Type read(const Type& given, const char*, std::size_t) { return given; }
+  static std::string shown(const Type& fallback) { return fallback.name; }
+};
+struct GivenArray {
+  using Type = std::optional<ArrayLike>;
+  template <class Of>
+  static nb::object shown(const Of&) {
+    return nb::none();
+  }
+};
+template <>
+struct Given<std::vector<double>> : GivenArray {
+  static std::vector<double> read(const Type& array, const char* name, std::size_t) {
+    if (!array) return {};
+    const Numbers<double> numbers(*array, name, 0);
+    return {numbers.data(), numbers.data() + numbers.rows()};
+  }
+};
+template <>
+struct Given<std::vector<int>> : GivenArray {
+  static std::vector<int> read(const Type& array, const char* name, std::size_t nodes) {
+    return array ? indicesOf(*array, name, nodes) : std::vector<int>();
+  }
+};
 
-BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage, const std::optional<MeshLike>& mesh,
-                   const Vec3& position, const Quaternion& rotation, const std::optional<ArrayLike>& pinned,
-                   std::optional<double> mass, double density, const std::optional<ArrayLike>& nodeMasses,
-                   std::optional<double> youngsModulus, double relativeStiffness,
-                   const std::optional<ArrayLike>& stiffnessScale, double poissonRatio, double stiffnessDamping,
-                   double friction, std::optional<double> margin, double solverTolerance, int maxIterations,
-                   const Choice<Interpolations>& interpolation, const Choice<NormalsOf>& normals,
-                   const Choice<OutsideRules>& outside, std::optional<double> maxDistance, bool surfaceContact,
-                   bool softContact, bool selfContact, std::optional<double> contactMargin,
-                   std::optional<double> sampleSpacing) {
-  BodyOptions options;
-  SoftBodyOptions& material = options.material;
-  material.mass = mass;
-  material.density = density;
-  material.nodeMasses = numbersOf(nodeMasses, "node_masses");
-  material.youngsModulus = youngsModulus;
-  material.relativeStiffness = relativeStiffness;
-  material.stiffnessScale = numbersOf(stiffnessScale, "stiffness_scale");
-  material.poissonRatio = poissonRatio;
-  material.stiffnessDamping = stiffnessDamping;
-  material.friction = friction;
-  material.margin = margin;
-  material.solverTolerance = solverTolerance;
-  material.maxIterations = maxIterations;
-  material.faceTree = false;
-  options.binding = bindingOptions(interpolation.name, normals.name, outside.name, maxDistance);
-  options.surfaceContact = surfaceContact;
-  options.softContact = softContact;
-  options.selfContact = selfContact;
-  options.contactMargin = contactMargin;
-  options.sampleSpacing = sampleSpacing;
-  const Eigen::Affine3d placement = placementOf(position, rotation);
-  if (pinned) options.pinned = indicesOf(*pinned, "pinned", cage.cage->mesh.nodeCount());
+#define TETSKIN_PARAMETER(type, name, python, ...) , const Given<type>::Type& name
+#define TETSKIN_READ(type, name, python, ...) words.name = Given<type>::read(name, #python, nodes);
+#define TETSKIN_ARGUMENT(type, name, python, ...) , nb::arg(#python) = Given<type>::shown(BodyWords().name)
+
+BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage,
+                   const std::optional<MeshLike>& mesh TETSKIN_BODY_OPTIONS(TETSKIN_PARAMETER)) {
+  const std::size_t nodes = cage.cage->mesh.nodeCount();
+  BodyWords words;
+  TETSKIN_BODY_OPTIONS(TETSKIN_READ)
   const bool bare = !mesh || mesh->object.is_none();
   const MeshModel model = bare ? MeshModel() : meshOf(*mesh);
-  return unlocked(*world, [&] { return BodyHandle{world, world->addBody(cage, model, placement, options)}; });
+  return unlocked(*world, [&] { return BodyHandle{world, facade::addBody(*world, cage, model, words)}; });
 }
 
 }  // namespace
@@ -144,8 +156,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
   bindIdentity(body);
   body.words([](const BodyHandle& b) {
         if (b.state->removed) return std::string("removed");
-        return counted(b.state->cage.cage->mesh.tetCount(), "tet", "tets") + ", " +
-               (b.state->mesh.mesh ? counted(b.state->mesh.mesh->vertexCount(), "vertex", "vertices") : "no surface");
+        return counted(b.state->cage->mesh.tetCount(), "tet", "tets") + ", " +
+               (b.state->mesh ? counted(b.state->mesh->vertexCount(), "vertex", "vertices") : "no surface");
       })
       .def_prop_ro(
           "positions", [](const BodyHandle& b) { return surfaceOf(b, b.state->positions, b.arrays.positions); },
@@ -160,18 +172,21 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("velocities", velocitiesOf, setVelocities,
                    "(nodes, 3) float32, world length per second: at the middle of the last substep. A read-only view, "
                    "which each step overwrites; assign an array. Those of pinned nodes stay.")
-      .def_prop_ro("cage", [](const BodyHandle& b) { return b.state->cage; })
-      .def_prop_ro("mesh",
-                   [](const BodyHandle& b) { return b.state->mesh.mesh ? std::optional(b.state->mesh) : std::nullopt; })
+      .def_prop_ro(
+          "cage",
+          [](const BodyHandle& b) { return CageModel{std::static_pointer_cast<const ReportedCage>(b.state->cage)}; })
+      .def_prop_ro(
+          "mesh",
+          [](const BodyHandle& b) { return b.state->mesh ? std::optional(MeshModel{b.state->mesh}) : std::nullopt; })
       .def_prop_ro("node_count", nodeCount, "Number of nodes.")
       .def_prop_ro("bounds", locked([](const BodyHandle& b) {
-                     const Box3& box = surfaceOf(*b.state).bounds();
+                     const Box3& box = facade::surfaceOf(*b.state).bounds();
                      return nb::make_tuple(vectorOf(box.min()), vectorOf(box.max()));
                    }),
                    kBoundsType, "The box of the surface: two corners, world space.")
       .def_prop_rw(
           "visible", [](const BodyHandle& b) { return b.state->skin.visible(); },
-          locked([](BodyHandle& b, bool visible) { surfaceOf(*b.state).setVisible(visible); }),
+          locked([](BodyHandle& b, bool visible) { facade::surfaceOf(*b.state).setVisible(visible); }),
           "Whether steps update the surface. When shown again, it is updated at once.")
       .def_prop_ro("asleep", number([](DeformableBody& b) { return !b.body().isActive(); }),
                    "Whether it sleeps, and costs next to nothing.")
@@ -189,7 +204,7 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
                    setter([](DeformableBody& b, double v) { return b.setStiffnessDamping(v); }),
                    "Seconds: Rayleigh damping, 0 or more.")
       .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
-                   locked([](BodyHandle& b, double friction) { setFriction(*b.state, friction); }),
+                   locked([](BodyHandle& b, double friction) { facade::setFriction(*b.state, friction); }),
                    "0 to 1; multiplied by that of rigid bodies.")
       .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
                    "Total, without pinned nodes.")
@@ -210,7 +225,7 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def("transform", transform, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
            "Moves the whole body at once, without stopping its motion: rotates it about the world's origin (x, y, z, "
            "w), then translates it by position. Velocities and pinned nodes move along; its contacts are forgotten.")
-      .def("reset", locked([](BodyHandle& b) { b.world->reset(*b.state); }),
+      .def("reset", locked([](BodyHandle& b) { check(b.world->reset(*b.state)); }),
            "Puts it back into the state in which it was added: at its place, at rest, without history, so that its "
            "steps are those of a new body. Settings stay: pinned nodes, material, gravity, springs.")
       .def("apply_radial_impulse", radialImpulse, "centre"_a, "radius"_a, "strength"_a,
@@ -221,14 +236,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "changes nothing.");
 
   world
-      .def("add_body", addBody, "cage"_a, "mesh"_a.none() = nb::none(), nb::kw_only(), "position"_a = Vec3{},
-           "rotation"_a = Quaternion{0, 0, 0, 1}, "pinned"_a = nb::none(), "mass"_a = nb::none(), "density"_a = 100.0,
-           "node_masses"_a = nb::none(), "youngs_modulus"_a = nb::none(), "relative_stiffness"_a = 50.0,
-           "stiffness_scale"_a = nb::none(), "poisson_ratio"_a = 0.3, "stiffness_damping"_a = 0.02, "friction"_a = 0.5,
-           "margin"_a = nb::none(), "solver_tolerance"_a = 5e-3, "max_iterations"_a = 100, "interpolation"_a = "linear",
-           "normals"_a = "none", "outside"_a = "nearest", "max_distance"_a = nb::none(), "surface_contact"_a = true,
-           "soft_contact"_a = false, "self_contact"_a = false, "contact_margin"_a = nb::none(),
-           "sample_spacing"_a = nb::none(),
+      .def("add_body", addBody, "cage"_a, "mesh"_a.none() = nb::none(),
+           nb::kw_only() TETSKIN_BODY_OPTIONS(TETSKIN_ARGUMENT),
            "Adds a soft body, which collides with rigid bodies at its visible surface. Without a mesh it has no "
            "surface, and collides at its nodes.\n\n"
            "position, rotation (x, y, z, w): of the rest space in the world. pinned: nodes, a mask of booleans or "
@@ -237,7 +246,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "size, from 30 (wobbles, sags) to "
            "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
            "the body's size.\n\n"
-           "interpolation, normals, outside, max_distance: as in Skin. surface_contact: with rigid bodies; "
+           "interpolation, normals, outside, max_distance: as in Skin. visible: whether steps update the surface. "
+           "surface_contact: with rigid bodies; "
            "contact_margin: the distance kept, None: 0.2 % "
            "of the body's size; sample_spacing: rest units, of points on large triangles. soft_contact: with other "
            "bodies that have it; self_contact: with "

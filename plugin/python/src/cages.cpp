@@ -9,18 +9,13 @@
 namespace tetskin::python {
 namespace {
 
-template <class T>
-std::shared_ptr<const T> sharedOf(T&& value) {
-  return std::make_shared<const T>(std::move(value));
-}
-
 CageModel made(const ArrayLike& nodes, const ArrayLike& tets) {
   TetMesh mesh;
   mesh.nodes = pointsOf(nodes, "nodes");
   mesh.tets = indexRowsOf<4>(tets, "tets");
   check(validate(mesh));
   (void)repairTetMesh(mesh);
-  return {sharedOf(Cage(std::move(mesh))), {}};
+  return cageModel(Cage(std::move(mesh)));
 }
 
 CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateElements, bool fit,
@@ -35,7 +30,7 @@ CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateEl
   CageReport report;
   Result<Cage> cage = released([&] { return createCage(*model.mesh, options, &report); });
   call.rethrow();
-  return {sharedOf(take(std::move(cage))), report.describe()};
+  return cageModel(take(std::move(cage)), report.describe());
 }
 
 CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount, const Progress& progress) {
@@ -48,11 +43,11 @@ CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount,
   const Result<CalibrationReport> report = released([&] { return calibrate(cage, options); });
   call.rethrow();
   check(report.status());
-  return {sharedOf(std::move(cage)), model.report + report.value().describe()};
+  return cageModel(std::move(cage), model.cage->report + report.value().describe());
 }
 
 CageModel quadratic(const CageModel& model) {
-  return {sharedOf(take(refineQuadratic(*model.cage))), {}};
+  return cageModel(take(refineQuadratic(*model.cage)));
 }
 
 nb::tuple stateOfCage(const CageModel& model) {
@@ -61,7 +56,7 @@ nb::tuple stateOfCage(const CageModel& model) {
   return nb::make_tuple(bytesOf(cage.mesh.nodes), bytesOf(cage.mesh.tets), bytesOf(cage.vertexTets),
                         bytesOf(cage.volumeFraction), bytesOf(cage.stiffnessFactor), bytesOf(cage.masses),
                         bytesOf(cage.component), bytesOf(cage.sourceTet), bytesOf(cage.quadraticTet),
-                        bytesOf(cage.fineVolumeFraction), hash, model.report);
+                        bytesOf(cage.fineVolumeFraction), hash, model.cage->report);
 }
 
 CageModel cageOfState(const nb::tuple& state) {
@@ -79,7 +74,7 @@ CageModel cageOfState(const nb::tuple& state) {
   readBytes(state[9], cage.fineVolumeFraction);
   if (!nb::object(state[10]).is_none()) cage.meshHash = nb::cast<std::uint64_t>(state[10]);
   check(validate(cage));
-  return {sharedOf(std::move(cage)), nb::cast<std::string>(state[11])};
+  return cageModel(std::move(cage), nb::cast<std::string>(state[11]));
 }
 
 /// A property that views one of a cage's arrays.
@@ -140,7 +135,7 @@ void bindCages(nb::module_& module) {
       .def_prop_ro(
           "tet_count", [](const CageModel& m) { return m.cage->mesh.tetCount(); }, "Number of tets.")
       .def_prop_ro(
-          "report", [](const CageModel& m) { return m.report; },
+          "report", [](const CageModel& m) { return m.cage->report; },
           "A text on how it was made, and how well it fits. Empty for a cage from a file or arrays.")
       .def(
           "save",
@@ -156,7 +151,7 @@ void bindCages(nb::module_& module) {
             Cage cage = *m.cage;
             cage.scaleBy(scale);
             check(validate(cage));
-            return CageModel{sharedOf(std::move(cage)), m.report};
+            return cageModel(std::move(cage), m.cage->report);
           },
           "scale"_a, "A copy of another size, with masses to match.");
 
@@ -181,9 +176,7 @@ void bindCages(nb::module_& module) {
              "body.");
   module.def(
       "load_cage",
-      [](const PathLike& path) {
-        return CageModel{sharedOf(released([name = path.text()] { return take(loadCage(name)); })), {}};
-      },
+      [](const PathLike& path) { return cageModel(released([name = path.text()] { return take(loadCage(name)); })); },
       "path"_a, "Reads files of Cage.save, and tets from .vtk, .node and .ele files.");
 }
 

@@ -19,7 +19,7 @@ void append(std::vector<float>& rows, const btVector3& v) {
 }
 
 nb::object rigidAt(const std::shared_ptr<World>& world, const btCollisionObject* object) {
-  for (const auto& state : world->rigids()) {
+  for (const auto& state : world->rigidBodies()) {
     if (state->body.get() == object) return nb::cast(RigidHandle{world, state});
   }
   return nb::none();
@@ -120,8 +120,8 @@ void bindContacts(nb::module_& module, Class<World>& world) {
       .def("forces_on",
            locked([](const std::shared_ptr<World>& w, const Either& body, const std::optional<Either>& other) {
              const btCollisionObject& object = objectOf(body);
-             if (!other) return w->forces().forcesOn(object);
-             return w->forces().forcesBetween(object, objectOf(*other));
+             if (!other) return forcesOf(*w).forcesOn(object);
+             return forcesOf(*w).forcesBetween(object, objectOf(*other));
            }),
            "body"_a, "other"_a = nb::none(),
            "Forces on a soft body from all objects that it touches or is attached to, or on a rigid body from all soft "

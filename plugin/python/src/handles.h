@@ -60,7 +60,7 @@ auto locked(Call call) {
 template <class State>
 struct Arrays {};
 template <>
-struct Arrays<BodyState> {
+struct Arrays<World::Body> {
   Kept<Row3<float>> positions, normals, nodes, velocities;
 };
 
@@ -71,13 +71,15 @@ struct Handle {
   std::shared_ptr<State> state;
   Arrays<State> arrays{};
 };
-using RigidHandle = Handle<RigidState>;
-using JointHandle = Handle<JointState>;
-using BodyHandle = Handle<BodyState>;
-struct SpringHandle : Handle<TouchState> {};
-struct WeldHandle : Handle<TouchState> {};
+using RigidHandle = Handle<World::RigidBody>;
+using JointHandle = Handle<World::Joint>;
+using BodyHandle = Handle<World::Body>;
+struct SpringHandle : Handle<World::Touch> {};
+struct WeldHandle : Handle<World::Touch> {};
 
 /// Throw if the object has been removed from its world.
+using facade::alive;
+using facade::checkSurface;
 inline btRigidBody& alive(const RigidHandle& rigid) {
   return alive(*rigid.state);
 }
@@ -89,7 +91,7 @@ inline void checkSurface(const BodyHandle& body) {
 }
 
 /// A rigid body of the same world, or null for None.
-std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid);
+std::shared_ptr<World::RigidBody> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid);
 
 /// The equality and hash of handles.
 template <class Of>

@@ -102,7 +102,7 @@ struct Ends {
     return second ? bodyB().getCenterOfMassTransform().inverse() * frame : frame;
   }
 
-  std::shared_ptr<RigidState> first, second;
+  std::shared_ptr<World::RigidBody> first, second;
 };
 
 JointHandle added(const std::shared_ptr<World>& world, const Ends& ends, std::unique_ptr<btTypedConstraint> joint,

@@ -6,9 +6,30 @@
 
 #include "arrays.h"
 
-#include <facade/world_model.h>
+#include <facade/worlds.h>
+#include <atomic>
+#include <mutex>
 
 namespace tetskin::python {
+
+/// What of a world has to be there before it, and as long.
+struct WorldLock {
+  std::unique_ptr<ParallelFor> threads;
+  std::recursive_mutex mutex;
+  std::atomic<unsigned> lockedIn{0};  ///< the process: see Locked
+};
+/// A world, with a lock for calls of several threads, and the threads that work on its steps.
+class World : public WorldLock, public tetskin::World {
+ public:
+  World(std::unique_ptr<ParallelFor> pool, WorldOptions options)
+      : WorldLock{std::move(pool), {}, {}}, tetskin::World(with(threads.get(), options)) {}
+
+ private:
+  static WorldOptions with(ParallelFor* pool, WorldOptions& options) {
+    options.threads = pool;
+    return options;
+  }
+};
 
 /// A TriangleMesh, or a mesh of another package: see Mesh in tetskin/typing.py.
 struct MeshLike {

@@ -153,10 +153,10 @@ class PageWriter {
     }
     for (const BodyHandle& body : bodies_) (void)nodesOf(body);
     std::vector<TriangleMesh> props;
-    for (const auto& state : world_->rigids()) {
+    for (const auto& state : world_->rigidBodies()) {
       const RigidHandle rigid{world_, state};
       const Eigen::Affine3d place = placeOf(rigid);
-      const btCollisionShape& shape = *state->shape.shape;
+      const btCollisionShape& shape = *state->shape;
       const bool fixed = state->body->isStaticObject() && !state->body->isKinematicObject();
       if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
         const auto& plane = static_cast<const btStaticPlaneShape&>(shape);
@@ -185,12 +185,12 @@ class PageWriter {
     page_->setRate(rate_);
     std::map<const void*, std::size_t> models;  // bodies of one binding share everything drawn except the colour
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const BodyState& state = *bodies_[i].state;
+      const World::Body& state = *bodies_[i].state;
       const auto [model, isNew] = models.try_emplace(state.binding ? static_cast<const void*>(state.binding.get())
-                                                                   : static_cast<const void*>(state.cage.cage.get()));
+                                                                   : static_cast<const void*>(state.cage.get()));
       if (isNew) model->second = addModel(state);
       const bool linear = interpolationOf(bodies_[i]) == Interpolation::Linear;
-      const bool coloured = state.binding && state.mesh.mesh->groups.size() > 1;
+      const bool coloured = state.binding && state.mesh->groups.size() > 1;
       page_->addBody({model->second, "",
                       !mixed   ? ""
                       : linear ? "linear"
@@ -203,8 +203,8 @@ class PageWriter {
     return body.state->binding ? body.state->binding->options().interpolation : Interpolation::Linear;
   }
   /// Shows a body without a surface by its cage's boundary.
-  std::size_t addModel(const BodyState& state) {
-    const Cage& cage = *state.cage.cage;
+  std::size_t addModel(const World::Body& state) {
+    const Cage& cage = *state.cage;
     if (!state.binding) {
       TriangleMesh boundary;
       boundary.positions = cage.mesh.nodes;
@@ -212,7 +212,7 @@ class PageWriter {
       return page_->addSurface(boundary);
     }
     try {
-      return page_->addModel(cage, *state.mesh.mesh, state.binding->embedding());
+      return page_->addModel(cage, *state.mesh, state.binding->embedding());
     } catch (const view::ViewError& error) {
       fail(StatusCode::CageMismatch, error.what());
     }
@@ -220,8 +220,8 @@ class PageWriter {
   std::vector<std::string> facts() const {
     std::size_t vertices = 0, tets = 0;
     for (const BodyHandle& body : bodies_) {
-      if (body.state->mesh.mesh) vertices += body.state->mesh.mesh->vertexCount();
-      tets += body.state->cage.cage->mesh.tetCount();
+      if (body.state->mesh) vertices += body.state->mesh->vertexCount();
+      tets += body.state->cage->mesh.tetCount();
     }
     std::vector<std::string> facts;
     if (bodies_.size() > 1) facts.push_back(fact(bodies_.size(), "soft body", "soft bodies"));

@@ -26,7 +26,8 @@ ShapeModel compound(const std::vector<std::tuple<ShapeModel, Vec3, Quaternion>>&
   if (children.empty()) fail(StatusCode::Empty, "children: a compound needs one or more");
   auto parts = std::make_shared<CompoundParts>();
   for (const auto& [child, position, rotation] : children) {
-    if (child.concave) fail(StatusCode::InvalidOption, "children: planes and meshes cannot be parts of a compound");
+    if (child.shape->isConcave())
+      fail(StatusCode::InvalidOption, "children: planes and meshes cannot be parts of a compound");
     parts->children.push_back(child);
     parts->shape.addChildShape(toBullet(position, rotation), child.shape.get());
   }
@@ -44,7 +45,7 @@ void setMass(RigidHandle& rigid, double mass) {
   if (body.isStaticOrKinematicObject())
     fail(StatusCode::InvalidOption, "a static or kinematic body has no mass; add it with one");
   btVector3 inertia;
-  rigid.state->shape.shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+  rigid.state->shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
   body.setMassProps(static_cast<btScalar>(mass), inertia);
   body.updateInertiaTensor();
   body.setGravity(rigid.world->bullet().getGravity());
@@ -56,13 +57,14 @@ template <class Of, class Make>
 auto adding(Make make) {
   return locked([make](const std::shared_ptr<World>& world, const Of& of, double mass, const Vec3& position,
                        const Quaternion& rotation, double friction, bool kinematic) {
-    return RigidHandle{world, world->addRigid(make(of), mass, toBullet(position, rotation), friction, kinematic)};
+    return RigidHandle{world, addRigid(*world, make(of), mass, toBullet(position, rotation), friction, kinematic)};
   });
 }
 
 }  // namespace
 
-std::shared_ptr<RigidState> rigidOf(const std::shared_ptr<World>& world, const std::optional<RigidHandle>& rigid) {
+std::shared_ptr<World::RigidBody> rigidOf(const std::shared_ptr<World>& world,
+                                          const std::optional<RigidHandle>& rigid) {
   if (!rigid) return nullptr;
   (void)alive(*rigid);
   if (rigid->world != world) fail(StatusCode::NotInWorld, "the rigid body is in another world");
@@ -100,13 +102,13 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
       .words([](const RigidHandle& r) {
         if (r.state->removed) return std::string("removed");
         const Locked lock(*r.world);
-        return r.state->shape.shape->getName() + (" at " + wordsOf(r.state->body->getWorldTransform().getOrigin()));
+        return r.state->shape->getName() + (" at " + wordsOf(r.state->body->getWorldTransform().getOrigin()));
       })
       .def_prop_rw("position", read([](btRigidBody& b) { return vectorOf(b.getWorldTransform().getOrigin()); }),
-                   locked([](RigidHandle& r, const Vec3& at) { r.world->setPosition(*r.state, at); }),
+                   locked([](RigidHandle& r, const Vec3& at) { setPosition(*r.world, *r.state, at); }),
                    "(3,) float64, world space. A kinematic body moves to an assigned position in the next step.")
       .def_prop_rw("rotation", read([](btRigidBody& b) { return newQuaternion(rotationOf(b.getWorldTransform())); }),
-                   locked([](RigidHandle& r, const Quaternion& q) { r.world->setRotation(*r.state, q); }),
+                   locked([](RigidHandle& r, const Quaternion& q) { setRotation(*r.world, *r.state, q); }),
                    "(4,) float64: a quaternion x, y, z, w.")
       .def_prop_rw("velocity", read([](btRigidBody& b) { return vectorOf(b.getLinearVelocity()); }),
                    locked([](RigidHandle& r, const Vec3& v) {
@@ -151,15 +153,15 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
   add("add_box", adding<Vec3>(box), "half_extents", "Like add_rigid_body with Shape.box.");
   add("add_sphere", adding<double>(sphere), "radius", "Like add_rigid_body with Shape.sphere.");
   world
-      .def(
-          "add_plane", locked([](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
-            return RigidHandle{w, w->addRigid(plane(normal, offset), 0.0, btTransform::getIdentity(), friction, false)};
-          }),
-          nb::kw_only(), "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0, "friction"_a = 0.5,
-          "Adds a ground: y = 0 by default.")
+      .def("add_plane", locked([](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
+             return RigidHandle{w,
+                                addRigid(*w, plane(normal, offset), 0.0, btTransform::getIdentity(), friction, false)};
+           }),
+           nb::kw_only(), "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0, "friction"_a = 0.5,
+           "Adds a ground: y = 0 by default.")
       .def_prop_ro("rigid_bodies", locked([](const std::shared_ptr<World>& w) {
                      std::vector<RigidHandle> all;
-                     for (const auto& state : w->rigids()) all.push_back({w, state});
+                     for (const auto& state : w->rigidBodies()) all.push_back({w, state});
                      return all;
                    }));
 }

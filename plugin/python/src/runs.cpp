@@ -74,7 +74,7 @@ PyType_Slot replaySlots[] = {
 int recordedStep(RecorderHandle& r, double dt, int substeps) {
   (void)r.open();
   const int made = unlocked(*r.world, [&] {
-    return r.world->step(dt, substeps, [&](btScalar whole, int count, btScalar substep) {
+    return facade::step(*r.world, dt, substeps, [&](btScalar whole, int count, btScalar substep) {
       return r.recorder->step(whole, count, substep);
     });
   });
@@ -83,7 +83,7 @@ int recordedStep(RecorderHandle& r, double dt, int substeps) {
 }
 
 bool replayedStep(ReplayHandle& r) {
-  const bool made = unlocked(*r.world, [&] { return r.world->step(*r.replay); });
+  const bool made = unlocked(*r.world, [&] { return take(r.world->step(*r.replay)); });
   if (r.raised) std::rethrow_exception(std::exchange(r.raised, nullptr));
   check(r.replay->status());
   return made;
@@ -131,7 +131,7 @@ void bindRuns(nb::module_& module, Class<World>&) {
           "__init__",
           [](ReplayHandle* self, const std::shared_ptr<World>& world, const PathLike& path) {
             const Locked lock(*world);
-            new (self) ReplayHandle(world, world->replay(path.text()));
+            new (self) ReplayHandle(world, take(world->replay(path.text())));
           },
           "world"_a, "path"_a, "Puts the world into the state at the start of the recording.")
       .def("step", replayedStep,

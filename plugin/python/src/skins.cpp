@@ -116,10 +116,9 @@ void bindSkins(nb::module_& module) {
       .words([](const Skin& s) { return counted(s.positions->size() / 3, "vertex", "vertices"); })
       .def(
           "__init__",
-          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
-             const Choice<NormalsOf>& normals, const Choice<OutsideRules>& outside, std::optional<double> maxDistance) {
-            new (self)
-                Skin(cage, meshOf(mesh), bindingOptions(interpolation.name, normals.name, outside.name, maxDistance));
+          [](Skin* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolation>& interpolation,
+             const Choice<Normals>& normals, const Choice<OutsideRule>& outside, std::optional<double> maxDistance) {
+            new (self) Skin(cage, meshOf(mesh), bindingOptions(interpolation, normals, outside, maxDistance));
           },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
           "outside"_a = "nearest", "max_distance"_a = nb::none(),
@@ -153,7 +152,7 @@ void bindSkins(nb::module_& module) {
       .words([](const Palette& p) { return counted(p.count(), "bone", "bones"); })
       .def(
           "__init__",
-          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolations>& interpolation,
+          [](Palette* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolation>& interpolation,
              bool gradients, const Choice<Layouts>& layout) {
             new (self) Palette(cage, meshOf(mesh), interpolation.name, gradients, layout.name);
           },

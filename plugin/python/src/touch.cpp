@@ -26,25 +26,24 @@ const PointHandle& alivePoint(const PointHandle& point) {
   return point;
 }
 
-std::optional<HitHandle> hitOf(const std::shared_ptr<World>& world, const RayHit& found) {
+std::optional<HitHandle> hitOf(const std::shared_ptr<World>& world, const World::RayHit& found) {
   if (!found.body) return std::nullopt;
   return HitHandle{{world, found.body}, found.hit};
 }
 std::optional<HitHandle> raycast(const BodyHandle& body, const Vec3& from, const Vec3& to) {
   const Locked lock(*body.world);
-  return hitOf(body.world, body.world->raycast(body.state, toBullet(from, "start"), toBullet(to, "end")));
+  return hitOf(body.world, take(body.world->raycast(body.state, toBullet(from, "start"), toBullet(to, "end"))));
 }
 std::optional<HitHandle> raycastAll(const std::shared_ptr<World>& world, const Vec3& from, const Vec3& to) {
   const Locked lock(*world);
-  return hitOf(world, world->raycast(toBullet(from, "start"), toBullet(to, "end")));
+  return hitOf(world, take(world->raycast(toBullet(from, "start"), toBullet(to, "end"))));
 }
 
 template <class Find>
 PointHandle pointOf(const BodyHandle& body, Find&& find) {
   const Locked lock(*body.world);
-  btSoftBody& soft = alive(body).body();
-  checkSurface(body);
-  return {body, take(find(body.world->treeOf(*body.state), soft))};
+  const SurfaceTree& tree = treeOf(*body.world, *body.state);
+  return {body, take(find(tree, body.state->body->body()))};
 }
 
 SpringHandle addSpring(const std::shared_ptr<World>& world, const PointHandle& point,
@@ -53,19 +52,19 @@ SpringHandle addSpring(const std::shared_ptr<World>& world, const PointHandle& p
   const Locked lock(*world);
   alivePoint(point);
   if (point.body.world != world) fail(StatusCode::NotInWorld, "the point is of a body in another world");
-  const std::shared_ptr<RigidState> other = rigidOf(world, rigid);
+  const std::shared_ptr<World::RigidBody> other = rigidOf(world, rigid);
   SurfaceSpringOptions options;
   options.stiffness = stiffness;
   options.dampingRatio = dampingRatio;
   options.maxForce = maxForce;
   options.collideConnected = collide;
-  TouchState touch;
+  World::Touch touch;
   touch.body = point.body.state;
   touch.rigid = other;
   touch.spring =
       other ? take(SurfaceSpring::add(world->bullet(), point.point, *other->body, toBullet(pivot, "pivot"), options))
             : take(SurfaceSpring::add(world->bullet(), point.point, options));
-  return {{world, world->addTouch(std::move(touch))}};
+  return {{world, world->add(std::move(touch))}};
 }
 
 WeldHandle addWeld(const std::shared_ptr<World>& world, const PointHandle& point, const RigidHandle& rigid,
@@ -73,11 +72,11 @@ WeldHandle addWeld(const std::shared_ptr<World>& world, const PointHandle& point
   const Locked lock(*world);
   alivePoint(point);
   if (point.body.world != world) fail(StatusCode::NotInWorld, "the point is of a body in another world");
-  TouchState touch;
+  World::Touch touch;
   touch.body = point.body.state;
   touch.rigid = rigidOf(world, rigid);
   touch.weld = take(SurfaceWeld::add(world->bullet(), point.point, *touch.rigid->body, collide));
-  return {{world, world->addTouch(std::move(touch))}};
+  return {{world, world->add(std::move(touch))}};
 }
 
 SurfaceSpring& spring(const SpringHandle& handle) {

@@ -26,26 +26,26 @@ std::unique_ptr<ParallelFor> poolOf(int threads) {
 
 int step(const std::shared_ptr<World>& world, double dt, int substeps) {
   return unlocked(*world, [&] {
-    return world->step(dt, substeps, [&](btScalar whole, int count, btScalar substep) {
+    return facade::step(*world, dt, substeps, [&](btScalar whole, int count, btScalar substep) {
       return world->bullet().stepSimulation(whole, count, substep);
     });
   });
 }
 
 nb::bytes save(const std::shared_ptr<World>& world) {
-  const std::vector<char> bytes = unlocked(*world, [&] { return world->save(); });
+  const std::vector<char> bytes = unlocked(*world, [&] { return take(world->save()); });
   return nb::bytes(bytes.data(), bytes.size());
 }
 
 void restore(const std::shared_ptr<World>& world, const nb::bytes& snapshot) {
   const char* data = snapshot.c_str();
   const std::size_t size = snapshot.size();
-  unlocked(*world, [&] { world->restore(data, size); });
+  unlocked(*world, [&] { check(world->restore(data, size)); });
 }
 
 }  // namespace
 
-Locked::Locked(World& world) : lock_(world.mutex(), std::try_to_lock) {
+Locked::Locked(World& world) : lock_(world.mutex, std::try_to_lock) {
   if (!lock_.owns_lock()) {
     const nb::gil_scoped_release release;
     // Returns at once if a thread of this process has the lock.
@@ -70,12 +70,16 @@ Class<World> bindWorlds(nb::module_& module) {
   world
       .words([](const World& w) {
         return counted(w.bodies().size(), "soft body", "soft bodies") + ", " +
-               counted(w.rigids().size(), "rigid body", "rigid bodies");
+               counted(w.rigidBodies().size(), "rigid body", "rigid bodies");
       })
       .def(
           "__init__",
           [](World* self, const Vec3& gravity, int threads, bool deterministic, bool recordForces) {
-            new (self) World(gravity, poolOf(threads), deterministic, recordForces);
+            WorldOptions options;
+            options.gravity = toBullet(gravity, "gravity");
+            options.deterministic = deterministic;
+            options.recordForces = recordForces;
+            new (self) World(poolOf(threads), options);
           },
           nb::kw_only(), "gravity"_a = Vec3{0, -9.81, 0}, "threads"_a = 1, "deterministic"_a = false,
           "record_forces"_a = true,
@@ -93,7 +97,7 @@ Class<World> bindWorlds(nb::module_& module) {
            "Restores a state in place. The world must have the same bodies and joints as when it was saved, made in "
            "the same order. On an Error nothing is changed.")
       .def("shift_origin", locked([](const std::shared_ptr<World>& w, const Vec3& origin) {
-             w->shiftOrigin(toBullet(origin, "origin"));
+             check(w->shiftOrigin(toBullet(origin, "origin")));
            }),
            "origin"_a,
            "Makes a point the origin: subtracts it from all positions in the world, which continues as before. For "

@@ -62,6 +62,9 @@ enum class [[nodiscard]] StatusCode{
 
 /// Name of a status code, for messages and logs: a few words in lower case. Never null; a static string.
 TETSKIN_CORE_API const char* toString(StatusCode code);
+/// Name of a status code as it is spelt above, "FileNotFound", for other languages and for files. Never null; a static
+/// string.
+TETSKIN_CORE_API const char* nameOf(StatusCode code);
 
 /// Outcome of an operation on data that may be bad. The message says what is wrong, where, and what to do about it; it
 /// is empty on success.

@@ -10,44 +10,58 @@ namespace tetskin {
 
 namespace {
 
+struct Words {
+  const char* name;  ///< as in the enumeration
+  const char* said;  ///< to people
+};
+
 /// By their codes.
-constexpr const char* kWords[] = {
-    "ok",
-    "file not found",
-    "file not writable",
-    "unsupported format",
-    "malformed",
-    "empty",
-    "index out of range",
-    "not finite",
-    "degenerate",
-    "size mismatch",
-    "invalid option",
-    "outside the cage",
-    "cage mismatch",
-    "too large",
-    "asleep",
-    "hidden",
-    "unbound",
-    "topology changed",
-    "no hit",
-    "body deleted",
-    "released",
-    "other body",
-    "not in the world",
-    "not added",
-    "enclosed by another body",
-    "cannot be saved",
-    "snapshot of another world",
-    "cancelled",
+constexpr Words kWords[] = {
+    {"Ok", "ok"},
+    {"FileNotFound", "file not found"},
+    {"FileNotWritable", "file not writable"},
+    {"UnsupportedFormat", "unsupported format"},
+    {"Malformed", "malformed"},
+    {"Empty", "empty"},
+    {"IndexOutOfRange", "index out of range"},
+    {"NonFinite", "not finite"},
+    {"Degenerate", "degenerate"},
+    {"SizeMismatch", "size mismatch"},
+    {"InvalidOption", "invalid option"},
+    {"OutsideCage", "outside the cage"},
+    {"CageMismatch", "cage mismatch"},
+    {"TooLarge", "too large"},
+    {"Asleep", "asleep"},
+    {"Hidden", "hidden"},
+    {"Unbound", "unbound"},
+    {"TopologyChanged", "topology changed"},
+    {"NoHit", "no hit"},
+    {"BodyDeleted", "body deleted"},
+    {"Released", "released"},
+    {"OtherBody", "other body"},
+    {"NotInWorld", "not in the world"},
+    {"NotAdded", "not added"},
+    {"Enclosed", "enclosed by another body"},
+    {"NotSaved", "cannot be saved"},
+    {"SnapshotMismatch", "snapshot of another world"},
+    {"Cancelled", "cancelled"},
 };
 static_assert(sizeof kWords / sizeof *kWords == static_cast<std::size_t>(StatusCode::Cancelled) + 1);
+
+const Words& wordsOf(StatusCode code) {
+  static constexpr Words kUnknown = {"Unknown", "unknown status"};
+  const auto index = static_cast<std::size_t>(code);
+  return index < sizeof kWords / sizeof *kWords ? kWords[index] : kUnknown;
+}
 
 }  // namespace
 
 const char* toString(StatusCode code) {
-  const auto index = static_cast<std::size_t>(code);
-  return index < sizeof kWords / sizeof *kWords ? kWords[index] : "unknown status";
+  return wordsOf(code).said;
+}
+
+const char* nameOf(StatusCode code) {
+  return wordsOf(code).name;
 }
 
 void failResult(const std::string& message) {
