@@ -87,7 +87,7 @@ function(_tetskin_make_bullet_target includes libraries definitions)
     INTERFACE_LINK_LIBRARIES "${libraries}" INTERFACE_COMPILE_DEFINITIONS "${definitions}")
 endfunction()
 
-# The names of Bullet's targets, if there are any.
+# The names of Bullet's targets, if they exist.
 function(_tetskin_bullet_targets result)
   set(targets)
   if(TARGET BulletSoftBody)
@@ -152,7 +152,7 @@ function(_tetskin_bullet_library result part config_folder)
   list(TRANSFORM names APPEND _Debug OUTPUT_VARIABLE debug_names)
   list(TRANSFORM names APPEND _RelWithDebugInfo OUTPUT_VARIABLE information_names)
   list(TRANSFORM names APPEND _MinsizeRel OUTPUT_VARIABLE small_names)
-  # The folders are absolute: those of a cross compiler's root are no place to look in.
+  # The folders are absolute: do not search in a cross compiler's root.
   set(places PATHS ${ARGN} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH NO_CACHE)
   find_library(release NAMES ${names} ${information_names} ${small_names} ${places})
   find_library(debug NAMES ${debug_names} ${places})
@@ -172,7 +172,7 @@ endfunction()
 function(_tetskin_bullet_of_variables config_folder)
   _tetskin_bullet_definitions(definitions)
   _tetskin_require_precision("${definitions}" "${config_folder}")
-  # A package is where its configuration is, wherever it was built for.
+  # A package is where its configuration is, whatever prefix it was built for.
   cmake_path(SET beside NORMALIZE "${config_folder}/../..")
   _tetskin_absolute(folders ${BULLET_LIBRARY_DIRS})
   _tetskin_absolute(includes ${BULLET_INCLUDE_DIRS})

@@ -19,7 +19,7 @@ import zlib
 from pathlib import Path
 
 PROGRAM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-# Drawn without a graphics card; no calls home; no prompts; timers of a page that nobody looks at run as ever.
+# Drawn without a graphics card; no calls home; no prompts; timers of an invisible page run normally.
 FLAGS = ["--headless", "--no-sandbox", "--remote-debugging-pipe", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
          "--disable-extensions", "--disable-background-timer-throttling", "--disable-backgrounding-occluded-windows",
@@ -349,7 +349,7 @@ class Page:
     def javascript_memory(self):
         """Bytes of JavaScript's heaps in use after a collection, with those of arrays, which are outside of them, in the page
         and in its workers together."""
-        self.browser.listen(0.2)  # workers that have ended are told
+        self.browser.listen(0.2)  # ended workers are reported
         total = 0
         for session in (self.session, *self.workers):
             self.browser.call("HeapProfiler.collectGarbage", session)

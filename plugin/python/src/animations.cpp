@@ -57,7 +57,7 @@ class GlbAnimation {
 
  private:
   void checkOpen() const {
-    if (frames_ > 0 || finished_) fail(StatusCode::InvalidOption, "what is shown is added before the first frame");
+    if (frames_ > 0 || finished_) fail(StatusCode::InvalidOption, "add bodies and objects before the first frame");
   }
   static Eigen::Affine3d placeOf(const btTransform& pose) {
     Eigen::Affine3d place = Eigen::Affine3d::Identity();

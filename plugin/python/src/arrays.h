@@ -204,7 +204,7 @@ class Class : public nb::class_<T> {
       try {
         new (&self) T(set(state));
       } catch (const nb::cast_error&) {
-        fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+        fail(StatusCode::Malformed, "not the pickled state: something in it has another type");
       }
     };
     def("__setstate__", make, nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));

@@ -81,11 +81,11 @@ WeldHandle addWeld(const std::shared_ptr<World>& world, const PointHandle& point
 
 SurfaceSpring& spring(const SpringHandle& handle) {
   if (!handle.state->spring)
-    fail(StatusCode::Released, "the spring has been released, or what it was attached to removed");
+    fail(StatusCode::Released, "the spring has been released, or its body or rigid body removed");
   return *handle.state->spring;
 }
 SurfaceWeld& weld(const WeldHandle& handle) {
-  if (!handle.state->weld) fail(StatusCode::Released, "the weld has been released, or what it was attached to removed");
+  if (!handle.state->weld) fail(StatusCode::Released, "the weld has been released, or its body or rigid body removed");
   return *handle.state->weld;
 }
 

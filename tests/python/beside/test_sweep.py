@@ -23,7 +23,7 @@ from distributed import Client, LocalCluster
 from conftest import torus
 
 SCRIPT = Path(__file__).parents[3] / "demos/examples/python/sweep.py"
-HANG = 300  # seconds after which a program is taken to hang, on any machine
+HANG = 300  # seconds after which a program counts as hanging, on any machine
 
 sys.path.insert(0, str(SCRIPT.parent))  # also that of processes that are spawned, which find both modules by it
 import sweep
@@ -65,7 +65,7 @@ def test_runs_on_workers_are_those_of_one_process_to_the_bit(what, client):
     work = getattr(sweep, what)
     there, here = work(client, options(what, "--frames", "20")), work(None, options(what, "--frames", "20"))
     assert result_of(there).equals(result_of(here)) and there["status"].eq("ok").all()
-    assert there["sha256"].nunique() > 5  # of rollouts, some do not reach the ball
+    assert there["sha256"].nunique() > 5  # some rollouts do not reach the ball
     assert set(there["worker"]).isdisjoint(here["worker"])
 
 
@@ -110,7 +110,7 @@ def test_a_killed_worker_costs_its_run_again_and_no_result(client, tmp_path, mon
 
 
 def test_a_run_that_kills_all_its_workers_is_a_row_and_the_others_go_on(cluster, client, monkeypatch):
-    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)  # each run that was there is given up, at first
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)  # each current run is given up, at first
     monkeypatch.setattr(sweep, "bend_and_compare", KillsItsWorker(None, 2))
     table = sweep.sweep(client, options())
     failed = table[table["status"].ne("ok")]
