@@ -6,7 +6,7 @@
 library_packages=(g++ cmake ninja-build libbullet-dev libeigen3-dev libassimp-dev libtinygltf-dev)
 drop_packages=(libcli11-dev nlohmann-json3-dev libjs-three)
 demo_packages=(libbenchmark-dev python3-matplotlib)
-# What the page needs that is run in browsers; it needs none of the libraries, but their headers.
+# Packages for the page that runs in browsers; it needs only the headers of the libraries.
 live_packages=(emscripten nodejs cmake ninja-build libeigen3-dev libtinygltf-dev nlohmann-json3-dev libjs-three python3)
 test_packages=(libgtest-dev)
 check_packages=(ccache clang clang-format-14 clang-tidy-14 pkgconf binutils doxygen libegl-dev libgl1-mesa-dri
@@ -56,8 +56,8 @@ fuzzer_runtime() {
   echo "libclang-rt-${version:-14}-dev"
 }
 
-# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed. By the commands that
-# are exported, the Python package finds what has been compiled already.
+# configure REPOSITORY [CMAKE ARGUMENTS]: configures build/, Release. Fast when nothing has changed. By the exported
+# commands, the Python package finds objects that have been compiled already.
 configure() {
   local repository=$1
   shift

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A fine mesh on a btSoftBody that Bullet itself has made of TetGen's data, in Bullet's own world:
+// A fine mesh on a btSoftBody that Bullet itself has made from TetGen's data, in Bullet's own world:
 //
 //   tetskin_attach [MESH NODE_FILE ELE_FILE]
 //
@@ -68,7 +68,7 @@ int main(int argc, char** argv) try {
     makeBar(nodes, tets);
   }
 
-  // What an application has: nothing here is tetskin's.
+  // The application's part: nothing here is tetskin's.
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
@@ -88,7 +88,7 @@ int main(int argc, char** argv) try {
 
   // The mesh on it.
   tetskin::SoftBodySkin attached;
-  std::puts(attached.bind(*body, mesh).value().describe().c_str());  // once, where they fit each other
+  std::puts(attached.bind(*body, mesh).value().describe().c_str());  // once, while they fit each other
   auto files = tetskin::ObjSequenceWriter::create("out/attach", tetskin::ObjLayout::create(mesh)).value();
   for (int frame = 0; frame <= 60; ++frame) {
     if (frame % 20 == 0) {  // or draw
@@ -100,6 +100,6 @@ int main(int argc, char** argv) try {
     if (attached.update() == tetskin::StatusCode::NonFinite) return 1;
   }
   world.removeSoftBody(body.get());
-} catch (const std::exception& fault) {  // value() of what has failed: what, where, and the cure
+} catch (const std::exception& fault) {  // value() of a failed result: what, where, and the cure
   return std::puts(fault.what()), 2;
 }

@@ -55,7 +55,7 @@ void requireContact(const DropOptions& options, bool given) {
   }
 }
 
-/// Seconds. Bullet's neo-Hookean force damps rocking, too; with the library's force, only the material itself damps it.
+/// Seconds. Bullet's neo-Hookean force also damps rocking; with the library's force, only the material itself damps it.
 constexpr double kDamping = 0.04;
 
 SceneOptions howOf(const DropOptions& options) {
@@ -70,7 +70,7 @@ SceneOptions howOf(const DropOptions& options) {
 /// A body slower than this over the last half second is at rest, in body lengths per second.
 constexpr double kRestSpeed = 0.05;
 
-/// What is measured during the run.
+/// Measurements during the run.
 struct Totals {
   double extentMax = 1.0;
   double lowest = HUGE_VAL;

@@ -35,7 +35,7 @@ using namespace tetskin;
 using namespace tetskin::scenes;
 using benchmark::State;
 
-/// A body made of the model's cage, with Bullet's own render nodes at the model's vertices.
+/// A body made from the model's cage, with Bullet's own render nodes at the model's vertices.
 struct Bench {
   explicit Bench(Model made, bool renderNodes = true) : model(std::move(made)) {
     auto result = createSoftBody(model.cage, worldInfo);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Scenes in which something is measured, beside what is promised of it: contact and joints compared with analytic
-// results, gaps between surfaces and obstacles, stiff and extreme cases.
+// Scenes with measurements and the promises about them: contact and joints compared with analytic results, gaps between
+// surfaces and obstacles, stiff and extreme cases.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -47,7 +47,7 @@ MeasuredScenes scenesOf(const std::string& group) {
 
 struct Results {
   SceneResults scenes;
-  std::size_t broken = 0;  ///< what is outside its promised limits, or not as expected
+  std::size_t broken = 0;  ///< figures outside their promised limits, or not as expected
 };
 
 /// Runs each scene once: by the first of the kinds asked for that it has. Limits are promised of contact at the surface
@@ -87,14 +87,14 @@ int run(const MeasureOptions& options) {
 int main(int argc, char** argv) {
   MeasureOptions options;
   CommandLine line(
-      "Measures bodies in many scenes, beside what is promised of them: contact and joints compared with analytic "
+      "Measures bodies in many scenes, and checks the promises about them: contact and joints compared with analytic "
       "results, gaps between bodies and the obstacles that they rest on or hit, and stiff and extreme cases. S is the "
       "body's size, the largest side of its bounding box.",
       {{{"tetskin_measure --group contact --json contact.json", "all scenes of contact, in two minutes"},
         {"tetskin_measure --only copies", "the scenes with this in their names"},
         {"tetskin_measure --only stop --elasticity bullet", "the same with Bullet's own solver"},
         {"tetskin_measure --only gap/300/floor/round", "one body on the floor"},
-        {"tetskin_measure --group stress --quick --elasticity both", "extreme cases, with Bullet's forces, too"}},
+        {"tetskin_measure --group stress --quick --elasticity both", "extreme cases, also with Bullet's forces"}},
        "a figure is outside its promised limits, or a case is not as expected"});
   line.addWord("--group", options.group, {"all", "contact", "gaps", "stress"}, "Scenes of one kind");
   line.addFlag("--quick", options.quick, "600 cases of the stress and one gap, about 30 s");

@@ -62,7 +62,7 @@ int run(const PileOptions& options) {
       });
 }
 
-/// Gives the options that are not on the command line what the scene has for them, and refuses what it cannot have.
+/// Sets options that are not on the command line to the scene's defaults, and refuses those that it does not support.
 void complete(const CommandLine& line, PileOptions& options) {
   const PileScene& scene = pileSceneNamed(options.scene);
   const PileOptions preset = presetOf(options.scene);

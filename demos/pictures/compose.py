@@ -31,7 +31,7 @@ DROP_VIEW = (0.35, 1.75, 5.15), (0.06, -0.10, 0.1), 28.5
 GAP_VIEW = (-0.5, -0.80, 5.5), (-0.05, -0.72, 0.0), 20.0
 PILE_VIEWS = ((0.0, 5.5, 13.0), (0.0, 1.5, 0.0), 29.0), ((13.0, 5.0, -3.0), (0.0, 1.5, 0.0), 29.0)
 PIT_VIEWS = ((4.4, 4.3, 6.6), (0.0, 0.15, 0.15), 32.0), ((2.0, 1.3, 2.5), (0.75, 0.45, 0.45), 29.0)
-PIT_FRONT = np.array((1.0, 0.0, 1.0))  # walls on this side are left out, as they are between the viewer and the mat
+PIT_FRONT = np.array((1.0, 0.0, 1.0))  # walls on this side are left out, as they would hide the mat
 
 TWIST = 1.8  # radians per unit of length
 TWIST_VIEW = (0.9, 1.5, 4.2), (0.12, 0.44, 0.0), 22.0  # position, focus, angle

@@ -25,9 +25,9 @@ BATCH = 40                    # frames per start of Chromium, which hands all of
 FRAMES_PER_SECOND = 30        # of 60 that were simulated
 REST, FADE = 0.7, 9           # seconds that the last frame stays, and the frames from it to the first
 QUALITY = 85
-BLOCK, DIFFERENCE = 16, 8      # pixels per side of what is encoded anew, and levels of grey from which it is
+BLOCK, DIFFERENCE = 16, 8      # pixels per side of a block, and levels of grey that make it differ
 
-# Appended to the page: draws frames without what is around them, and leaves them in the page's document.
+# Appended to the page: draws frames without their surroundings, and leaves them in the page's document.
 PROBE = """
 const {size: [width, height], direction, first, end} = JOB, {player} = window, {stage} = player, frames = [];
 player.play(false);
@@ -106,8 +106,8 @@ def blocks(values):
 
 
 def frame_chunk(frame, shown, duration):
-    """A frame: those blocks that differ from what is shown, and nothing of the others, so that they stay as they are.
-    `shown` is changed into what is then shown. Pillow's own encoder would leave lines where its rectangles end."""
+    """A frame: only the blocks that differ from the shown picture; the others stay. Updates `shown` to the new picture.
+    Pillow's own encoder would leave lines where its rectangles end."""
     error = blocks(np.abs(frame.astype(int) - shown).max(axis=2))
     changed = error >= min(DIFFERENCE, error.max())
     rows, columns = (np.flatnonzero(changed.any(axis=axis)) for axis in (1, 0))

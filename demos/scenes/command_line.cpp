@@ -129,7 +129,7 @@ class HelpFormat : public CLI::Formatter {
   }
 };
 
-/// label  what --help shows for the value; preset  what it shows as the default
+/// label  shown by --help for the value; preset  shown as the default
 CLI::Option* labelled(CLI::Option* option, const std::string& label, const std::string& preset = "") {
   option->type_name(label);
   if (!preset.empty()) option->default_str(preset);

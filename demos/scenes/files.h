@@ -23,8 +23,8 @@ std::filesystem::path existingComponent(std::filesystem::path folder);
 /// file.
 void requireWritable(const std::string& path);
 
-/// Throws InputError if this is not the name of a file with one of these extensions, which are in lower case and
-/// include their dots; if there are none, any extension is permitted.
+/// Throws InputError unless this is the name of a file with one of these extensions, which are in lower case and
+/// include their dots; without extensions, any is permitted.
 void requireExtension(const std::string& path, const std::vector<std::string>& extensions);
 
 /// A size in words: "12 MB", "1.2 MB", "3 kB".

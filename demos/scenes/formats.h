@@ -8,14 +8,14 @@
 
 namespace tetskin::scenes {
 
-/// Which files a run writes beside its summary and its page.
+/// The files that a run writes besides its summary and its page.
 struct Formats {
-  bool obj = true;   ///< every n-th frame in a file of its own
+  bool obj = true;   ///< every n-th frame in a separate file
   bool glb = false;  ///< all frames in one file
   bool pc2 = false;  ///< every n-th frame in one file, and the mesh in another
 };
 
-/// The formats that the command line requests; without a request, OBJ and, where this build can write it, GLB.
+/// The formats that the command line requests; without a request, OBJ and, if this build can write it, GLB.
 Formats formatsOf(const OutputOptions& options);
 
 /// The first file that a run writes, for its summary.

@@ -31,7 +31,7 @@ struct FramePlan {
   int every = 1;           ///< every n-th frame is written, beginning with the first
   bool cages = false;      ///< writes the cage beside each frame
   std::string materials;   ///< a material library for the frames; empty: that of the layout, or none
-  TriangleMesh obstacles;  ///< what the surface falls on, in a file of its own; may be empty
+  TriangleMesh obstacles;  ///< the obstacles on which the surface falls, in a separate file; may be empty
   bool quiet = false;
 
   int count() const { return (frames - 1) / every + 1; }
@@ -58,7 +58,7 @@ class FrameWriter {
  public:
   /// The layout has normals if the frames have. Throws InputError if the folder cannot be written.
   FrameWriter(const FramePlan& plan, const ObjLayout& layout);
-  /// Tells, before the first frame, that somebody else writes a file of this name into the folder at the end of the
+  /// Announces, before the first frame, that another writer adds a file of this name to the folder at the end of the
   /// run.
   void addOther(const std::string& name, double bytes);
   /// Before it writes the first frame, which is number 0, prints how much the run will write. Throws InputError, also
@@ -67,7 +67,7 @@ class FrameWriter {
   /// cage    if and only if the plan has cages
   void write(int frame, const std::vector<Eigen::Vector3d>& surface, const Box3& bounds, PointView<const float> normals,
              const TetMesh* cage = nullptr);
-  /// Completes what has all frames in one file. Throws InputError.
+  /// Completes files that hold all frames. Throws InputError.
   void finish();
 
  private:

@@ -41,7 +41,7 @@ const Maker& makerOf(BuiltIn model) {
   return makers[static_cast<std::size_t>(model)];
 }
 
-/// Tells what of a file was not read as it stands there.
+/// Reports the parts of a file that were not read as they are.
 void warn(const std::string& path, const std::string& what) {
   if (!what.empty()) std::fprintf(stderr, "%s: %s\n", path.c_str(), what.c_str());
 }
@@ -80,7 +80,7 @@ Cage loadCage(const std::string& path) {
   TetFileReport report;
   Result<Cage> loaded = tetskin::loadCage(path, &report);
   require(loaded.status());
-  // Most files hold surfaces, too, which need no word.
+  // Most files also hold surfaces, which are not reported.
   if (report.movedNodes > 0) warn(path, report.describe());
   Cage cage = std::move(loaded).value();
   if (const Status status = validate(cage.mesh); !status.ok()) {
@@ -96,7 +96,8 @@ Cage loadCage(const std::string& path, const Surface& surface) {
   if (cage.hasDuplicates()) {
     throw InputError(path + " is not a cage of " + surface.name + ": " + status.message + " with tetskin_cage");
   }
-  // Without duplicate elements, the tets of any mesh's vertices are found by position, as for another level of detail.
+  // Without duplicate elements, the tets of any mesh's vertices are found by position, like for another level of
+  // detail.
   cage.vertexTets.clear();
   cage.meshHash.reset();
   return cage;

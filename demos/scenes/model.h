@@ -41,7 +41,7 @@ struct ModelOptions {
   bool calibrate = false;         ///< see tetskin::calibrate
   std::size_t fineTets = 30000;   ///< tets from which the modes of a reduced body are computed
   bool quiet = true;              ///< does not print that a cage is built, which may take seconds
-  /// Called with what was loaded, before a cage is built for it.
+  /// Called with the loaded mesh, before a cage is built for it.
   std::function<void(const TriangleMesh& mesh, const ObjLayout& layout)> loaded = {};
 };
 
@@ -54,7 +54,7 @@ struct Model : Surface {
   ObjLayout layout;  ///< the layout in which frames are written
 };
 
-/// The functions that load or make throw InputError with the file and what is wrong with it.
+/// Functions that load or make something throw InputError with the file and its fault.
 Surface loadSurface(const ModelOptions& options);
 /// A valid cage, its tets in the order of the file; refused if the file says that it belongs to another mesh.
 Cage loadCage(const std::string& path);

@@ -9,8 +9,8 @@
 namespace tetskin::scenes {
 
 /// The files that a command line reads and writes. They are checked before any work: no file that is read may be
-/// written, and none may be written twice. Files are identified by what they are, not by their names: a link, ./a and a
-/// may be the same file.
+/// written, and none may be written twice. Files are identified by the file itself, not by name: a link, ./a and a may
+/// be the same file.
 class NamedFiles {
  public:
   using IsWritten = std::function<bool(const std::string& name)>;

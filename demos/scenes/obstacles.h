@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The scene of tetskin_drop, which is made without the table of all scenes: who tries it compiles no other.
+// The scene of tetskin_drop. It does not use the table of all scenes, so that a first build compiles no other scene.
 #pragma once
 
 #include <tetskin/core/cage.h>

@@ -39,7 +39,7 @@ std::vector<Eigen::Matrix<Scalar, 3, 1>> nodesOf(const btSoftBody& body) {
   return nodes;
 }
 
-/// Where a rigid body is, as pages and GLB take it.
+/// The placement of a rigid body, in the form of pages and GLB.
 Eigen::Affine3d affineOf(const btTransform& transform);
 
 /// Scales a box to kSize, and puts its centre at the origin.

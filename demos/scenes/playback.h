@@ -37,9 +37,9 @@ using FrameStep = std::function<bool(int frame, Playback& run)>;
 Playback playFrames(const char* doing, const OutputOptions& output, World& world, const FrameStep& step,
                     const OfFrame& measure, const OfFrame& write);
 
-/// Ends a run: writes what is left of its frames, its GLB, its summary and its page. Returns the exit status, and says
-/// so if the simulation exploded.
-/// summarise  called once the GLB is written; what all runs have is added to it; print  called unless the run is quiet
+/// Ends a run: writes the rest of its frames, its GLB, its summary and its page. Returns the exit status, and reports
+/// if the simulation exploded.
+/// summarise  called once the GLB is written; the values of all runs are added; print  called unless the run is quiet
 int finishRun(const char* program, const OutputOptions& output, const Playback& run, FrameWriter& writer,
               Recording& recording, const std::function<nlohmann::ordered_json()>& summarise,
               const std::function<void(const nlohmann::ordered_json& json)>& print);

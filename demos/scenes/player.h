@@ -33,10 +33,10 @@ class Player {
   /// InputError if mesh and cage do not fit.
   Carried& carry(const SkinOptions& options);
 
-  /// From now on, rigid bodies meet the model's mesh, for which `carry` must have been called before.
+  /// From now on, rigid bodies touch the model's mesh, for which `carry` must have been called before.
   void touchBySurface();
 
-  /// From now on, the body meets itself at its surface, if it can: see `selfContactOf`.
+  /// From now on, the body has self-contact at its surface, if possible: see `selfContactOf`.
   void touchItself(SelfContactWish wish);
   const SelfContact& selfContact() const { return selfContact_; }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the demos print for people: tables with aligned columns, and summaries with one line per value.
+// The demos' printed output: tables with aligned columns, and summaries with one line per value.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,7 +14,7 @@ namespace tetskin::scenes {
 struct TableColumn {
   std::string title;
   std::string unit = {};  ///< second line of the header
-  std::size_t width = 0;  ///< at least so many characters
+  std::size_t width = 0;  ///< at least this many characters
 };
 
 /// Rows are gathered, and printed at the end, so that they do not mix with the progress of the run.

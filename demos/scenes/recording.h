@@ -33,7 +33,7 @@ class Recording {
   /// Wall time that the GLB has taken so far: keeping its frames, and writing it.
   double glbMilliseconds() const { return glbMs_; }
 
-  // What is shown: see ViewPage. Names are those of the GLB's nodes. Throws InputError if a mesh does not fit its cage.
+  // The title: see ViewPage. Names are those of the GLB's nodes. Throws InputError if a mesh does not fit its cage.
 
   std::size_t addModel(const std::string& name, const Cage& cage, const TriangleMesh& mesh, const Embedding& embedding);
   void addBody(const ViewBody& body);

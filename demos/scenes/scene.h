@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scene: soft bodies in a Bullet world, what is done to them while they are simulated, and what must hold.
+// A scene: soft bodies in a Bullet world, the actions on them during the simulation, and the conditions that must hold.
 // `sceneTable` (scenes/table.h) lists them all.
 #pragma once
 
@@ -22,7 +22,7 @@ constexpr double kExploded = 20.0;
 /// size.
 constexpr double kFloorTolerance = 0.01;
 
-/// What a scene is made of. The scene itself decides which nodes are pinned.
+/// The inputs of a scene. The scene itself decides which nodes are pinned.
 struct SceneOptions {
   SoftBodyOptions body = oneKilogram();
   Force force = Force::Elastic;
@@ -33,7 +33,7 @@ struct SceneOptions {
   int frames = 0;          ///< length of the run, over which the scene spreads its events; 0: the scene's own
   std::size_t bodies = 1;  ///< used by scenes with several bodies
   double harshness = 0.0;  ///< how hard the scene is, in units of its own; 0: the scene's own
-  double size = kSize;     ///< largest side of a body; gravity is scaled with it, so that all sizes fall alike
+  double size = kSize;     ///< largest side of a body; gravity is scaled with it, so that all sizes fall equally
   Box3 box;                ///< the box by which the scene is laid out, the same for many cages; empty: the cage's own
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< shift of the body from where its cage is
 

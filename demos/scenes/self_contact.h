@@ -15,16 +15,16 @@
 
 namespace tetskin::scenes {
 
-/// Whether a body meets itself, as requested on the command line.
+/// Whether a body has self-contact, as requested on the command line.
 enum class SelfContactWish { WherePossible, On, Off };
 
-/// By default, a body meets itself if its surface meets others.
+/// By default, a body has self-contact if its surface touches other bodies.
 SelfContactWish wishBeside(Contact contact, SelfContactWish wish);
 
 /// Contact of a body with itself in a run.
 struct SelfContact {
   std::shared_ptr<const ContactShape> shape;  ///< null: no contact with itself
-  std::string refusal;                        ///< why there is none although there should be; or empty
+  std::string refusal;                        ///< why there is no self-contact although it was requested; or empty
 
   /// The state as a word: "on", "off" or "refused".
   const char* word() const;

@@ -45,7 +45,7 @@ void appendTriangles(TriangleMesh& mesh, const TubeVertices& vertex) {
     for (int column = 0; column < vertex.grid.columns; ++column) {
       const int a = vertex(ring, column), b = vertex(ring, column + 1);
       const int c = vertex(ring + 1, column), d = vertex(ring + 1, column + 1);
-      // Diagonals alternate: if they were all alike, every relief would look brushed to one side.
+      // Diagonals alternate: if all had one direction, every relief would look brushed to one side.
       const bool rising = (ring + column) % 2 == 0;
       if (ring > 0) mesh.triangles.push_back({a, b, rising && ring < rings ? d : c});
       if (ring < rings) mesh.triangles.push_back({rising || ring == 0 ? a : b, d, c});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Options that several programs share, and those that belong beside them: name, description and position in --help are
-// the same everywhere.
+// Options that several programs share, and those listed next to them: name, description and position in --help are the
+// same everywhere.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct SharedOption {
 
 /// The shared options in the order of --help.
 const std::vector<SharedOption>& sharedOptions();
-/// Null for an option that the program describes itself. `names` may contain a short name, too: "-o,--output".
+/// Null for an option that the program describes itself. `names` may also contain a short name: "-o,--output".
 const SharedOption* sharedOption(const std::string& names);
 
 }  // namespace tetskin::scenes

@@ -29,7 +29,7 @@ Vector3d inSpace(const Vector3d& p) {
           std::cos(kBeamLean) * along - std::sin(kBeamLean) * across, 0.5 * kWidth - p.z()};
 }
 
-/// The beam as a grid of cells, of which those in the slot are empty: the sides of the slot are planes of the grid.
+/// The beam as a grid of cells, where those in the slot are empty: the sides of the slot are planes of the grid.
 struct Cells {
   int solid, free;  ///< cells along the solid end, and along the slot
   int prong, slot;  ///< cells across a prong, and across the slot

@@ -11,7 +11,7 @@
 namespace tetskin::scenes {
 namespace {
 
-/// A stage in a summary, and as it is printed; those of the solver first, in the order of a step.
+/// A stage's name in a summary, and in print; those of the solver first, in the order of a step.
 struct StageName {
   const char* key;
   const char* printed;

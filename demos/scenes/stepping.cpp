@@ -28,7 +28,7 @@ void save(BulletWorld& world, Snapshot& snapshot) {
   require(saveSnapshot(world, snapshot.data(), snapshot.size()).status());
 }
 
-/// Saves, steps, goes back, steps again, and compares all that a snapshot holds.
+/// Saves, steps, goes back, steps again, and compares everything in a snapshot.
 class TwiceFromOneState : public Stepping {
  public:
   explicit TwiceFromOneState(BulletWorld& world) : world_(world) { save(world_, before_); }

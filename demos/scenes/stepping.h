@@ -20,17 +20,17 @@ struct OutputOptions;
 class Stepping {
  public:
   virtual ~Stepping() = default;
-  /// In place of Bullet's `stepSimulation`: one step of this many seconds. Returns the number of Bullet's steps.
+  /// Replaces Bullet's `stepSimulation`: one step of this many seconds. Returns the number of Bullet's steps.
   virtual int step(double seconds) = 0;
   /// True if there are no steps any more.
   virtual bool hasEnded() const { return false; }
-  /// What has been found, in a line; empty: nothing was looked for.
+  /// The result of the checks, in a line; empty: nothing was checked.
   virtual std::string finding() const { return {}; }
-  /// False if the run has been another one than it should have been.
+  /// False if the run has differed from the expected one.
   virtual bool holds() const { return true; }
 };
 
-/// What a run has found that was played, in a line.
+/// The result of a played run, in a line.
 std::string findingOf(const Replay& replay);
 
 /// By the options; null: as they come. Throws InputError where a file cannot be used, or the world has something that

@@ -186,8 +186,7 @@ class Stuffing {
   }
 
   /// A prism with two triangles, corner k opposite corner k + 3: as three tets, with the diagonal of each side from the
-  /// corner with the lowest index, so that neighbours agree. Where both triangles share a corner, tets that would be
-  /// flat are left out.
+  /// corner with the lowest index, so that neighbours agree. If both triangles share a corner, flat tets are left out.
   void addPrism(std::array<int, 6> p) {
     const auto first = std::min_element(p.begin(), p.end()) - p.begin();
     if (first >= 3) std::swap_ranges(p.begin(), p.begin() + 3, p.begin() + 3);

@@ -30,12 +30,12 @@ TetMesh tetsOf(const ImplicitSolid& solid, double spacing);
 /// The boundary of the same mesh: closed, welded, all vertices on the surface, no slivers.
 TriangleMesh surfaceOf(const ImplicitSolid& solid, double spacing);
 
-/// The same with about so many tets or triangles, of a lattice with at most this spacing.
+/// The same with about this many tets or triangles, of a lattice with at most this spacing.
 TetMesh tetsOf(const ImplicitSolid& solid, std::size_t tets, double maxSpacing);
 TriangleMesh surfaceOf(const ImplicitSolid& solid, std::size_t triangles, double maxSpacing);
 
 /// Moves the nodes of the boundary, which are on the surface, so that the tets around each have the volume of the solid
-/// there. Their flat faces cut pieces off what is round: with four tets around it, a limb is a third too thin.
+/// there. Their flat faces cut pieces off round shapes: with four tets around it, a limb is a third too thin.
 /// mesh      positive tets, in the solid's space
 /// distance  of a point near the surface from it, in the same space; negative inside
 void matchVolume(TetMesh& mesh, const std::function<double(const Eigen::Vector3d&)>& distance);

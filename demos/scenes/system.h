@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// All that the demos ask of the operating system beyond the standard library.
+// Everything that the demos need from the operating system beyond the standard library.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace tetskin::scenes {
 
-/// True if a person reads the stream as it is written.
+/// True if the stream is written to a terminal.
 bool isTerminal(std::FILE* stream);
 /// True if files can be made in a folder that exists.
 bool mayWriteInto(const std::filesystem::path& folder);

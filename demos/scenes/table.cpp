@@ -12,7 +12,7 @@ namespace tetskin::scenes {
 // whether it lands, description.
 #define TETSKIN_SCENES(SCENE)                                                                                       \
   SCENE(Sag, "sag", 60, false, "pinned at its lower end, under gravity")                                            \
-  SCENE(Twist, "twist", 60, false, "pinned at both ends, of which the upper is turned")                             \
+  SCENE(Twist, "twist", 60, false, "pinned at both ends; the upper one is turned")                                  \
   SCENE(Drop, "drop", 48, true, "falls on a box")                                                                   \
   SCENE(Exact, "exact", 1, false, "nodes moved by a smooth map, without Bullet")                                    \
   SCENE(Obstacles, "obstacles", 240, true, "falls on a floor, a ramp and a dome")                                   \
@@ -44,7 +44,7 @@ namespace tetskin::scenes {
   SCENE(Flatten, "flatten", 60, false, "squeezed to a tenth of its height between two plates and released")         \
   SCENE(Squeeze, "squeeze", 60, false, "squeezed to half its height between plates once per second")                \
   SCENE(Mill, "mill", 60, true, "hit by a bar that rotates and moves")                                              \
-  SCENE(ObstaclesGo, "obstacles_go", 60, true, "what it lies on, and what lies on it, is removed")                  \
+  SCENE(ObstaclesGo, "obstacles_go", 60, true, "its support, and an object on it, are removed")                     \
   SCENE(BodyGoes, "body_goes", 60, true, "removed from the floor on which it lies")                                 \
   SCENE(NodeNaN, "node_nan", 30, false, "a node is NaN for one update")                                             \
   SCENE(NodeInfinite, "node_infinite", 30, false, "a node is infinite for one update")                              \

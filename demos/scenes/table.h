@@ -19,7 +19,7 @@ using MakeScene = std::unique_ptr<Scene> (*)(const Cage& cage, const SceneOption
 struct SceneEntry {
   std::string name;
   int frames;         ///< number of frames if the options do not give one
-  bool lands;         ///< bodies meet a floor
+  bool lands;         ///< bodies touch a floor
   std::string about;  ///< description for people: what happens to the body
   MakeScene maker;
 
@@ -32,7 +32,7 @@ const std::vector<SceneEntry>& sceneTable();
 std::string sceneNames();
 /// The scene with this name. Throws InputError, with all names, if there is none.
 const SceneEntry& sceneNamed(const std::string& name);
-/// What makes this scene, for `Player`. Throws InputError, with all names, if there is none.
+/// The function that makes this scene, for `Player`. Throws InputError, with all names, if there is none.
 std::function<std::unique_ptr<Scene>(const Cage&, const SceneOptions&)> makerOf(const std::string& name);
 
 }  // namespace tetskin::scenes

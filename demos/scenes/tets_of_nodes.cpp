@@ -71,7 +71,7 @@ std::vector<int> tetsByMap(const TriangleMesh& mesh, const Cage& driver, const C
 }  // namespace
 
 std::vector<int> tetsOfNodes(const TriangleMesh& mesh, const Cage& driver, const Cage& cage) {
-  // Where neither has duplicate elements, the nearest tet is the correct one more often than the one where a search
+  // If neither has duplicate elements, the nearest tet is the correct one more often than the one where a search
   // through faces ends.
   const bool byPosition = cage.vertexTets.empty() || !(cage.hasDuplicates() || driver.hasDuplicates());
   return byPosition ? tetsByPosition(driver, cage) : tetsByMap(mesh, driver, cage);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The pages of the demos. What a page is made of is in demos/view, which the Python package has, too.
+// The pages of the demos. The parts of a page are in demos/view, which the Python package also contains.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ using view::withCommas;
 std::string whyNoView();
 /// Throws InputError if no page can be made.
 void requireViewable();
-/// The file of a run's page, empty for none. Where a default page cannot be made, prints why. Throws InputError where a
+/// The file of a run's page, empty for none. If a default page cannot be made, prints why. Throws InputError where a
 /// page that was requested cannot be made.
 std::string viewPath(const OutputOptions& options);
 
@@ -36,7 +36,7 @@ void writePage(const ViewPage& page, const std::string& path, bool quiet);
 
 /// A model's name: that of its file, without the folder.
 std::string titleOf(const std::string& name);
-/// A sentence on what meets obstacles and other bodies.
+/// A sentence on which parts of the body touch obstacles and other bodies.
 std::string factOf(Contact contact, bool withItself);
 /// Numbers of vertices, triangles and tets.
 std::vector<std::string> factsOf(const Model& model);

@@ -65,7 +65,7 @@ enum class Force {
   Reduced,          ///< no elastic force: vibration modes of fine tets, in Bullet's reduced solver
 };
 
-/// What of a soft body meets rigid ones: its surface, or its cage's nodes.
+/// Which part of a soft body touches rigid ones: its surface, or its cage's nodes.
 enum class Contact { Surface, Cage };
 
 /// Totals of the library's solver over the steps so far.
@@ -95,17 +95,17 @@ class World {
   /// Makes a soft body that moves by vibration modes, for Force::Reduced. It exists as long as the world.
   btSoftBody& add(const Cage& cage, const VibrationModes& modes, const ReducedBodyOptions& options);
 
-  /// From now on, rigid bodies meet this mesh instead of the cage's nodes; for Force::Elastic only. Throws InputError
+  /// From now on, rigid bodies touch this mesh instead of the cage's nodes; for Force::Elastic only. Throws InputError
   /// if body and mesh do not fit.
   SurfaceContact& touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh,
                                  const SurfaceContactOptions& options);
   /// The same with samples closer together than obstacles here are thick.
   void touchBySurface(btSoftBody& body, const SoftBodyBinding& binding, const TriangleMesh& mesh);
 
-  /// Soft bodies for which this was called meet each other at their visual surfaces, and, if requested, themselves; for
-  /// Force::Elastic only. Throws InputError if body and shape do not fit.
+  /// Soft bodies for which this was called touch each other at their visual surfaces, and, if requested, themselves;
+  /// for Force::Elastic only. Throws InputError if body and shape do not fit.
   void touchEachOther(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool itself = false);
-  /// Contacts of soft bodies in the last substep; empty if no body was to meet another.
+  /// Contacts of soft bodies in the last substep; empty if contact among soft bodies was not requested.
   std::vector<SoftContact> softContacts() const;
 
   /// slope  radians about z; mass  0: a fixed box, drawn as an obstacle

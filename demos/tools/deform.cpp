@@ -132,7 +132,7 @@ std::string formatOf(const std::string& path) {
   return extension;
 }
 
-/// What the command line makes of the deformed cages, one after the other.
+/// The outputs that the command line requests from the deformed cages, one after the other.
 class Output {
  public:
   Output(const DeformCommand& command, const Model& model, const SkinBinding<double>& binding)

@@ -48,7 +48,7 @@ class Player {
     };
     for (const id of ['surface', 'cage', 'skin']) element(id).onchange = () => this.select();
     for (const list of document.querySelectorAll('select')) list.addEventListener('change', () => list.blur());
-    // What the mouse has clicked leaves the space bar to the player.
+    // A clicked element leaves the space bar to the player.
     document.querySelector('footer').addEventListener('click', event => {
       if (event.detail > 0 && event.target.tagName !== 'SELECT') event.target.blur();
     });

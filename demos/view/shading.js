@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Normals of what is drawn: smooth, also across vertices that coincide, but for creases. What is a crease is found
-// once, where a body starts: an edge that turned into one while its body bends would flicker.
+// Normals for drawing: smooth, also across vertices that coincide, except at creases. Creases are found once, at a
+// body's start: an edge that became one while its body bends would flicker.
 
 /** Cosine of the angle between two faces from which their edge is a crease. */
 const CREASE = Math.cos(50 * Math.PI / 180);

@@ -6,7 +6,7 @@
 // With b the weights of a tet's first three nodes and e_ij the vector of its edge (i, j):
 //   linear     x(b) = x3 + sum_k b_k (x_k - x3)
 //   quadratic  the same + sum_{i<j} b_i b_j e_ij,  e_ij = (F_i - F_j) (X_j - X_i) / 2,  F the gradients at the nodes
-// Outside its tet, a vertex takes what the quadratic part adds at the closest point, continued to first order.
+// Outside its tet, a vertex takes the quadratic part at the closest point, continued to first order.
 
 class Skin {
   /** cage: the "cage" of a model in the page's data */

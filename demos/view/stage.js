@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is on the canvas: bodies, things that move, obstacles, lights, and the camera.
+// The contents of the canvas: bodies, moving objects, obstacles, lights, and the camera.
 
 const BACKGROUND = 0xf4f2ee;
 /** For materials that the demos do not know, in turn. */
@@ -11,7 +11,7 @@ const PLAIN_COLOURS = [
 const FIRST_DIRECTION = [-0.20, 0.36, 1.0];
 const SHINE = 0.5;  // of the materials' own, under these lights
 const SUN_DIRECTION = [-0.45, 1.0, 0.45];
-const NEAREST = 0.01;  // that is drawn, in radii of what is looked at
+const NEAREST = 0.01;  // that is drawn, in radii of the viewed scene
 const CLEARANCE = 2 * NEAREST;  // of the camera over the floor and obstacles
 
 // Newer revisions of three.js have other names, and other defaults.
@@ -90,7 +90,7 @@ class Body {
     this.nodeCount = model.cage ? model.cage.nodes : model.vertices;
     this.nodes = new Float32Array(3 * this.nodeCount);
     this.positions = model.cage ? new Float32Array(3 * model.vertices) : this.nodes;
-    if (model.cage && !model.skin) model.skin = new Skin(model.cage);  // bodies of one model share what it works with
+    if (model.cage && !model.skin) model.skin = new Skin(model.cage);  // bodies of one model share its data
     this.move(0);
     this.skin(false);
     this.drawn = new DrawnMesh(model.triangles, this.positions);
@@ -290,7 +290,7 @@ class Stage {
     for (const thing of [...this.bodies, ...this.props]) this.scene.add(thing.mesh);
     this.seen = this.seenPoints();
     for (const body of this.bodies) if (body.cage) this.scene.add(body.cage);
-    this.solids = [];  // obstacles that are not seen through, all of them convex
+    this.solids = [];  // opaque obstacles, all of them convex
     this.floorY = -Infinity;
     if (data.obstacles) this.addObstacles(data.obstacles, materials);
     this.addLights();

@@ -17,7 +17,7 @@ namespace tetskin::view {
 
 /// The files that pages are made from.
 struct ViewFiles {
-  std::string folder;  ///< of view.html and what it names
+  std::string folder;  ///< of view.html and the files that it names
   std::string three, orbitControls;
 };
 
@@ -41,7 +41,7 @@ struct ViewBody {
 /// the cages' nodes by frame, and does linear and quadratic skinning itself. See demos/view/.
 class ViewPage {
  public:
-  /// title  what is shown; facts  about it, in the line below; materials  those that meshes may name, in any order
+  /// title  of the page; facts  shown in the line below; materials  those that meshes may name, in any order
   ViewPage(std::string title, std::vector<std::string> facts, Interpolation interpolation,
            std::vector<ViewMaterial> materials = {});
 

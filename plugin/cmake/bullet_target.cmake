@@ -1,6 +1,6 @@
-# tetskin::bullet_physics is all that tetskin knows of Bullet: its headers, its libraries, and what it was compiled with.
-# A project that defines this target before it adds or finds tetskin says by it which Bullet is used. Otherwise
-# tetskin_find_bullet() makes it
+# tetskin::bullet_physics is all that tetskin knows about Bullet: its headers, its libraries, and its compile
+# definitions. A project that defines this target before it adds or finds tetskin says by it which Bullet is used.
+# Otherwise tetskin_find_bullet() makes it
 #   1. of targets in the same build: BulletSoftBody and those that it needs (Bullet as a subproject), or Bullet::Bullet;
 #   2. of the targets of an installed package, by the same names (vcpkg, Conan);
 #   3. of the variables that Bullet's own package sets: a relative include path, libraries in the wrong order for static
@@ -31,7 +31,7 @@ function(_tetskin_check_bullet_links what)
   file(WRITE "${probe}" "#include <BulletSoftBody/btSoftBody.h>\n"
     "void (btSoftBody::*volatile probe)(btScalar, bool) = &btSoftBody::setTotalMass;\n"
     "int main() { return probe == nullptr; }\n")
-  # What a package states may depend on the configuration (Conan).
+  # A package's properties may depend on the configuration (Conan).
   set(configurations ${CMAKE_BUILD_TYPE} ${CMAKE_CONFIGURATION_TYPES})
   if(NOT CMAKE_TRY_COMPILE_CONFIGURATION AND configurations)
     list(GET configurations 0 CMAKE_TRY_COMPILE_CONFIGURATION)
@@ -87,7 +87,7 @@ function(_tetskin_make_bullet_target includes libraries definitions)
     INTERFACE_LINK_LIBRARIES "${libraries}" INTERFACE_COMPILE_DEFINITIONS "${definitions}")
 endfunction()
 
-# The names of Bullet's targets, if there are any.
+# The names of Bullet's targets, if they exist.
 function(_tetskin_bullet_targets result)
   set(targets)
   if(TARGET BulletSoftBody)
@@ -120,7 +120,7 @@ function(_tetskin_bullet_of_targets)
   list(JOIN ARGN ", " what)
   set(what "the targets ${what}")
   _tetskin_bullet_definitions(definitions ${ARGN})
-  # What is built here states its precision, and has not been linked yet. An installed package may leave it unsaid, but
+  # A Bullet built here states its precision, and cannot be linked yet. An installed package may leave it unsaid, but
   # links.
   if(built_here OR "BT_USE_DOUBLE_PRECISION" IN_LIST definitions)
     _tetskin_require_precision("${definitions}" "${what}")
@@ -145,14 +145,14 @@ function(_tetskin_absolute result)
   set(${result} ${absolute} PARENT_SCOPE)
 endfunction()
 
-# The path of one of Bullet's libraries. On Windows, each configuration's has a name of its own.
+# The path of one of Bullet's libraries. On Windows, each configuration has its own library name.
 function(_tetskin_bullet_library result part config_folder)
   set(names ${BULLET_LIBRARIES})
   list(FILTER names INCLUDE REGEX "^${part}(-.*)?$")
   list(TRANSFORM names APPEND _Debug OUTPUT_VARIABLE debug_names)
   list(TRANSFORM names APPEND _RelWithDebugInfo OUTPUT_VARIABLE information_names)
   list(TRANSFORM names APPEND _MinsizeRel OUTPUT_VARIABLE small_names)
-  # The folders are absolute: those of a cross compiler's root are no place to look in.
+  # The folders are absolute: do not search in a cross compiler's root.
   set(places PATHS ${ARGN} NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH NO_CACHE)
   find_library(release NAMES ${names} ${information_names} ${small_names} ${places})
   find_library(debug NAMES ${debug_names} ${places})
@@ -172,7 +172,7 @@ endfunction()
 function(_tetskin_bullet_of_variables config_folder)
   _tetskin_bullet_definitions(definitions)
   _tetskin_require_precision("${definitions}" "${config_folder}")
-  # A package is where its configuration is, wherever it was built for.
+  # A package is where its configuration is, whatever prefix it was built for.
   cmake_path(SET beside NORMALIZE "${config_folder}/../..")
   _tetskin_absolute(folders ${BULLET_LIBRARY_DIRS})
   _tetskin_absolute(includes ${BULLET_INCLUDE_DIRS})

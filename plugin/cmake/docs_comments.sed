@@ -1,4 +1,4 @@
-# From the headers' comments, as they are meant to be read there, to Doxygen's commands. Every line stays a line, so that
+# Turns the headers' comments, which are written for readers, into Doxygen's commands. Every line stays a line, so that
 # warnings name the right one.
 
 # The head of a file is about the file.
@@ -12,10 +12,10 @@ s|^( *///) ([a-z][A-Za-z0-9]*)  +|\1 @param \2 |
 s|^( *///) ([A-Z][a-z]+)  +|\1 @\L\2 |
 s/^( *\/\/\/) (Cost|Errors|Error|Memory): /\1 @\L\2 /
 
-# That something is moved or copied, or may not be, needs no words.
+# Move and copy functions, and deleted ones, need no comment.
 s/^.*(&&( other)?\) (noexcept|= default)|operator=\(.*\) = default);$//
 
-# Nor what only Bullet calls, up to the next blank line.
+# Nor do functions that only Bullet calls, up to the next blank line.
 /^ *\/\/ What Bullet calls\.$/,/^$/ {
   s|^ *// What Bullet calls\.$|/// @cond|
   s|^$|/// @endcond|

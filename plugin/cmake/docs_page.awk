@@ -1,5 +1,5 @@
 # Pages of the repository as pages of the documentation, which has neither the files around them nor anchors for their
-# headings, and knows each name but once: a heading's is <page>-<heading as links name it>, a page's is page_<page>.
+# headings, and allows each name only once: a heading's is <page>-<heading as links name it>, a page's is page_<page>.
 # Blocks of code are left alone.
 function of_page(file) {
   sub(/.*\//, "", file)
@@ -14,7 +14,7 @@ function anchor(heading) {
   return heading
 }
 
-# What a link leads to in the documentation; nothing if it is not part of it.
+# A link's target in the documentation; empty if it is not part of it.
 function place(target, parts) {
   if (target ~ /:/) return target
   split(target, parts, "#")
@@ -47,7 +47,7 @@ function linked(line, result, text, target, picture) {
 
 /^```/ { code = !code }
 code || /^```/ { print; next }
-# A link's text may go on in the next line.
+# A link's text may continue in the next line.
 {
   while (/\[[^]]*$/ && (getline more) > 0) {
     if (more ~ /^(```|$)/) {

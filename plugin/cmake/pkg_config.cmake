@@ -26,7 +26,7 @@ if(TARGET tetskin_bullet)
     list(APPEND pc_definitions -DBT_USE_DOUBLE_PRECISION -DTETSKIN_BULLET_DOUBLE)
   endif()
   # Bullet's own bullet.pc does not state its precision: its libraries are given by their paths, as in
-  # tetskin::bullet_physics. Where a package (Conan's) is one target without a file, its bullet.pc must do.
+  # tetskin::bullet_physics. If a package (Conan's) is one target without a file, its bullet.pc must do.
   get_target_property(bullet_includes tetskin::bullet_physics INTERFACE_INCLUDE_DIRECTORIES)
   get_target_property(bullet_libraries tetskin::bullet_physics INTERFACE_LINK_LIBRARIES)
   foreach(folder ${bullet_includes})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What gdb prints of the library's data, in one line: (gdb) source plugin/debug/tetskin_gdb.py
+"""Makes gdb print the library's data in one line: (gdb) source plugin/debug/tetskin_gdb.py
 
     Ok                                            a Status, or what is wrong: OutsideCage: vertex 3 ...
     TetMesh of 8 nodes, 5 tets                    and Cage, TriangleMesh

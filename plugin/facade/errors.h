@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bindings to other languages do with the outcomes of the library: they throw, and the language's own exception
-// has the code and the message. An argument that no status is for is a std::invalid_argument.
+// How bindings to other languages report errors of the library: they throw, and the language's own exception has the
+// code and the message. A wrong argument without a matching status is a std::invalid_argument.
 #pragma once
 
 #include <tetskin/core/types.h>
@@ -13,7 +13,7 @@
 
 namespace tetskin::facade {
 
-/// What programs in another language see as the error of this library.
+/// The library's error for programs in another language.
 struct Failure : std::runtime_error {
   explicit Failure(const Status& status) : std::runtime_error(status.message), code(status.code) {}
   StatusCode code;

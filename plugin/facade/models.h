@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Meshes and cages as other languages hold them: immutable, so that bodies, skins and threads share them.
+// Meshes and cages for other languages: immutable, so that bodies, skins and threads can share them.
 #pragma once
 
 #include "errors.h"
@@ -25,7 +25,7 @@ struct MeshModel {
 };
 struct ReportedCage : Cage {
   ReportedCage(Cage&& cage, std::string&& words) : Cage(std::move(cage)), report(std::move(words)) {}
-  std::string report;  ///< of what made it, in words; may be empty
+  std::string report;  ///< on how it was made, in words; may be empty
 };
 struct CageModel {
   std::shared_ptr<const ReportedCage> cage;
@@ -40,15 +40,15 @@ struct Choice {
   std::string name;
 };
 
-/// Throws unless all numbers are finite, and no larger than what the library supports.
+/// Throws unless all numbers are finite, and no larger than the library supports.
 const Vec3& finite(const Vec3& vector, const char* name);
 
-/// Options by their words.
+/// Options from their names.
 BindingOptions bindingOptions(const Choice<Interpolation>& interpolation, const Choice<Normals>& normals,
                               const Choice<OutsideRule>& outside, std::optional<double> maxDistance);
 Interpolation interpolationOf(const std::string& name);
 
-/// A rest space's place in the world.
+/// The placement of a rest space in the world.
 Eigen::Affine3d placementOf(const Vec3& position, const Quaternion& rotation);
 
 }  // namespace tetskin::facade

@@ -9,10 +9,10 @@
 namespace tetskin::facade {
 namespace {
 
-/// Bullet's hulls are rounded by their margin; this share of their size cannot be seen.
+/// Bullet's hulls are rounded by their margin; this share of their size is invisible.
 constexpr btScalar kHullMargin = btScalar(0.01);
 
-/// A mesh's arrays, as Bullet refers to them.
+/// A mesh's arrays, to which Bullet refers.
 struct MeshArrays {
   std::vector<float> vertices;
   std::vector<int> indices;

@@ -94,7 +94,7 @@ ForceRecord& forcesOf(World& world) {
 
 namespace {
 
-/// Where it is, or where it will be in the next step.
+/// Its current position, or that in the next step.
 btTransform poseOf(const World::RigidBody& rigid) {
   btTransform pose = alive(rigid).getWorldTransform();
   rigid.motion->getWorldTransform(pose);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Worlds as other languages use them: the calls of tetskin::World with words and numbers of these languages, which
-// throw. The bindings hold shares of a world and of a thing in it, so that the order in which they let go does not
-// matter. What has been removed refuses to be used.
+// Worlds for other languages: the calls of tetskin::World with words and numbers of these languages, which throw. The
+// bindings hold shares of a world and of an object in it, so that the order of release does not matter. A removed
+// object refuses to be used.
 #pragma once
 
 #include "models.h"
@@ -18,7 +18,7 @@ namespace tetskin::facade {
 btVector3 toBullet(const Vec3& vector, const char* name);
 btTransform toBullet(const Vec3& position, const Quaternion& rotation);
 
-/// A collision shape, with what it refers to. Shared by bodies.
+/// A collision shape, with the data that it refers to. Shared by bodies.
 struct ShapeModel {
   std::shared_ptr<btCollisionShape> shape;
 };
@@ -67,9 +67,9 @@ std::shared_ptr<World::Body> addBody(World& world, const CageModel& cage, const 
 std::shared_ptr<World::RigidBody> addRigid(World& world, const ShapeModel& shape, double mass, const btTransform& pose,
                                            double friction, bool kinematic);
 
-/// What is out of range is an argument's fault, unless the world is within a step.
+/// An option out of range is an argument's fault, unless the world is within a step.
 void checkStepped(const Status& status, bool wasInStep);
-/// As `World::step`. stepped  how the world is stepped: by itself, or by a recorder
+/// As `World::step`. stepped  makes the step: directly, or by a recorder
 template <class Stepped>
 int step(World& world, double dt, int substeps, Stepped&& stepped) {
   const bool inStep = world.inStep();
@@ -78,7 +78,7 @@ int step(World& world, double dt, int substeps, Stepped&& stepped) {
   return made.value();
 }
 
-/// Throw if the thing has been removed from its world.
+/// Throw if the object has been removed from its world.
 btRigidBody& alive(const World::RigidBody& rigid);
 DeformableBody& alive(const World::Body& body);
 void checkSurface(const World::Body& body);
@@ -91,7 +91,7 @@ ForceRecord& forcesOf(World& world);
 void setPosition(World& world, World::RigidBody& rigid, const Vec3& position);
 void setRotation(World& world, World::RigidBody& rigid, const Quaternion& rotation);
 
-/// By node. Throw, and change nothing, for another count, a number that is not finite, a node that is not there.
+/// By node. Throw, and change nothing, for a wrong count, a number that is not finite, or a node that does not exist.
 /// velocities, positions  three numbers for each; velocities of pinned nodes stay
 void setVelocities(World::Body& body, const double* velocities, std::size_t numbers);
 void setPinned(World::Body& body, const std::vector<int>& nodes, bool pinned);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Makes the npm package of what Emscripten has made: the module in one file, its types, licences and pages.
+// Makes the npm package from Emscripten's output: the module in one file, its types, licences and pages.
 //   node pack.mjs core.js core.wasm FOLDER   the folder is replaced
-// The variable TETSKIN_REPOSITORY is the address of the public repository, which package.json then tells as its own.
+// The variable TETSKIN_REPOSITORY is the address of the public repository, which package.json then contains.
 //
-// WebAssembly is deflated, and in base64, in that file: less than half of what it would be otherwise. All is in one
-// function, whose names nothing else sees; the last line is the only one of an ES module, so that a page may replace
-// it.
+// In that file WebAssembly is deflated and in base64: less than half of the size otherwise. Everything is in one
+// function, whose names are invisible outside; only the last line has ES module syntax, so that a page may replace it.
 import {cpSync, mkdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {dirname, join} from "node:path";
 import {fileURLToPath} from "node:url";
@@ -48,7 +47,7 @@ writeFileSync(join(folder, "package.json"), JSON.stringify({...description, vers
 cpSync(join(here, "tetskin.d.ts"), join(folder, "tetskin.d.ts"));
 cpSync(join(here, "README.md"), join(folder, "README.md"));
 cpSync(join(repository, "LICENSE"), join(folder, "LICENSE"));
-// What the Python package contains, too, has its licence there.
+// The licences of software that the Python package also contains are there.
 for (const name of ["bullet", "eigen", "tinygltf", "json"]) {
   cpSync(join(repository, "plugin/python/licences", `${name}.txt`), join(folder, "licences", `${name}.txt`));
 }

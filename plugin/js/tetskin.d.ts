@@ -3,17 +3,17 @@
 //
 // tetskin for JavaScript: soft bodies of Bullet, simulated in coarse cages, with detailed surfaces embedded in them.
 //
-// Units are yours, with seconds for time; vectors are x, y, z; quaternions x, y, z, w; a count of "n x 3" is 3 n
-// numbers side by side. Rest space is that of the mesh as it was read, world space that of the simulation.
+// Choose your own units, with seconds for time; vectors are x, y, z; quaternions x, y, z, w; "n x 3" means 3 n
+// contiguous numbers. Rest space is that of the mesh as it was read, world space that of the simulation.
 //
-// Views are typed arrays of the module's own memory: nothing is copied, and the next call that changes the thing
-// changes them. When the memory grows, which any call may do, all views that were made before have the length 0: get
-// each view anew where it is used, or compare `memoryVersion`, or copy it with `slice()`.
+// Views are typed arrays of the module's own memory: nothing is copied, and the next call that changes the object
+// changes them. When the memory grows, which any call may cause, all earlier views have the length 0: get each view
+// again where it is used, or compare `memoryVersion`, or copy it with `slice()`.
 
-/** Of the npm package. */
+/** Version of the npm package. */
 export const version: string;
 
-/** Compiles and starts the module, with its own memory. Each call returns a new one: they share nothing. */
+/** Compiles and starts the module, with its own memory. Each call returns a new instance: they share nothing. */
 export function load(): Promise<Tetskin>;
 
 export type ErrorCode =
@@ -21,21 +21,21 @@ export type ErrorCode =
   | "Degenerate" | "SizeMismatch" | "InvalidOption" | "OutsideCage" | "CageMismatch" | "TooLarge" | "Asleep" | "Hidden"
   | "Unbound" | "TopologyChanged" | "NoHit" | "BodyDeleted" | "Released" | "OtherBody" | "NotInWorld" | "NotAdded"
   | "Enclosed" | "NotSaved" | "SnapshotMismatch" | "Cancelled"
-  /** An argument is of another type, or has another shape, than it should. */
+  /** An argument has the wrong type or shape. */
   | "InvalidArgument"
-  /** A thing was used after its `delete()`, or that of its world. */
+  /** An object was used after its `delete()`, or its world's. */
   | "Deleted"
-  /** There is not enough memory for this. What there was is unharmed. */
+  /** There is not enough memory for this. Existing objects are unharmed. */
   | "OutOfMemory"
-  /** The browser has no WebAssembly with SIMD and exceptions: see the page on JavaScript for the versions that have. */
+  /** The browser has no WebAssembly with SIMD and exceptions: the page on JavaScript lists the versions that have it. */
   | "Unsupported"
-  /** A fault of tetskin's own, which its message asks to report. */
+  /** A fault of tetskin itself; the message asks you to report it. */
   | "Internal";
 
-/** What all functions throw. Nothing has changed then, except on `NonFinite`, which `step` throws after the step. */
+/** Thrown by all functions. A failed call changes nothing, except on `NonFinite`, thrown after the step. */
 export class TetskinError extends Error {
   readonly name: "TetskinError";
-  /** For programs; `message` says what is wrong, and what to do. */
+  /** The kind of error; `message` says what is wrong, and what to do. */
   readonly code: ErrorCode;
 }
 
@@ -48,23 +48,23 @@ export type Quaternion = Numbers;
 
 declare global {
   interface SymbolConstructor {
-    /** As TypeScript's lib esnext.disposable has it, for programs that are compiled without. */
+    /** As in TypeScript's lib esnext.disposable, for programs compiled without it. */
     readonly dispose: unique symbol;
   }
 }
 
-/** What has memory of the module's. It is freed by `delete()`, or by `using` at the end of a block. */
+/** An object in the module's memory. It is freed by `delete()`, or by `using` at the end of a block. */
 export interface Thing {
-  /** Frees it. Deleting again does nothing. What others still need of it stays until they are deleted. */
+  /** Frees it. Deleting again does nothing. Data that other objects still need stays until they are deleted. */
   delete(): void;
   readonly deleted: boolean;
   [Symbol.dispose](): void;
 }
 
 export interface Tetskin {
-  /** Grows by 1 whenever the memory has grown: views that were made before are then empty. */
+  /** Grows by 1 whenever the memory has grown: earlier views are then empty. */
   readonly memoryVersion: number;
-  /** Bytes that the module has taken, which never become fewer. At most 2 GB. */
+  /** Bytes that the module has allocated; never shrinks. At most 2 GB. */
   readonly memoryBytes: number;
 
   /**
@@ -81,25 +81,25 @@ export interface Tetskin {
    * @param triangles  m x 3 vertex indices, counter-clockwise from outside
    */
   createMesh(positions: Numbers, triangles: Numbers, options?: MeshArrays): Mesh;
-  /** The mesh that `toBytes` has written, in any instance of the module of this version. */
+  /** The mesh written by `toBytes`, in any instance of this version of the module. */
   meshFromBytes(bytes: Uint8Array): Mesh;
 
   /**
-   * Builds a cage of tets around a mesh. The same input gives the same cage. Blocks until it is done, half a second for
-   * 60,000 triangles or so on a desktop: call it in a worker, and hand over `toBytes()`.
+   * Builds a cage of tets around a mesh. The same input gives the same cage. Blocks until it is done, about half a
+   * second for 60,000 triangles on a desktop: call it in a worker, and hand over `toBytes()`.
    * @throws Cancelled, Empty, Degenerate, InvalidOption, OutOfMemory
    */
   createCage(mesh: Mesh, options?: CageOptions): Cage;
-  /** A copy with the stiffness factors that make the cage as compliant as the body in it. Takes seconds. */
+  /** A copy with stiffness factors that make the cage as compliant as the body in it. Takes seconds. */
   calibrate(cage: Cage, options?: CalibrationOptions): Cage;
-  /** A cage of quadratic tets: each tet becomes one, held as eight. For meshes that fill their cage. */
+  /** A cage of quadratic tets: each tet becomes one, stored as eight. For meshes that fill their cage. */
   refineQuadratic(cage: Cage): Cage;
   /** A cage of tets alone: n x 3 nodes, t x 4 node indices. */
   cageOfTets(nodes: Numbers, tets: Numbers): Cage;
-  /** The cage that `toBytes` has written, in any instance of the module of this version. */
+  /** The cage written by `toBytes`, in any instance of this version of the module. */
   cageFromBytes(bytes: Uint8Array): Cage;
 
-  /** What a GPU needs to draw a mesh in its cage. */
+  /** The data that a GPU needs to draw a mesh in its cage. */
   createPalette(cage: Cage, mesh: Mesh, options?: PaletteOptions): Palette;
 
   createWorld(options?: WorldOptions): World;
@@ -139,16 +139,16 @@ export interface CageOptions {
   duplicateElements?: boolean;
   /** Whether the boundary is moved towards the surface; true */
   fit?: boolean;
-  /** Called with the fraction done, 0 to 1; cancels by returning false. What it throws is thrown. */
+  /** Called with the fraction done, 0 to 1; cancels by returning false. Its exceptions are passed on. */
   progress?: (fraction: number) => boolean | void;
 }
 
 export interface CalibrationOptions {
   /** Of the material that will be simulated; 0.3 */
   poissonRatio?: number;
-  /** How many vibrations are compared; 6 */
+  /** Number of vibrations to compare; 6 */
   modeCount?: number;
-  /** As of CageOptions */
+  /** As in CageOptions */
   progress?: (fraction: number) => boolean | void;
 }
 
@@ -160,9 +160,9 @@ export interface Cage extends Thing {
   readonly nodes: Float64Array;
   /** t x 4 node indices */
   readonly tets: Int32Array;
-  /** Of each vertex of the mesh that the cage was made for, the tet that carries it; or empty. */
+  /** For each vertex of the mesh that the cage was made for, the tet that carries it; or empty. */
   readonly vertexTets: Int32Array;
-  /** Of each tet, the number of the quadratic tet that it is an eighth of, or -1; or empty. */
+  /** For each tet, the number of the quadratic tet that it is an eighth of, or -1; or empty. */
   readonly quadraticTet: Int32Array;
   /** e x 2 node indices of all edges, a new array. */
   edges(): Int32Array;
@@ -170,7 +170,7 @@ export interface Cage extends Thing {
   boundaryFaces(): Int32Array;
   /** How it was made, and how well it fits; empty for a cage from bytes or arrays. */
   readonly report: string;
-  /** A copy of another size, with its masses. */
+  /** A copy of another size, with masses to match. */
   scaled(scale: number): Cage;
   /** All of it as bytes, a new array; a worker may transfer its buffer. */
   toBytes(): Uint8Array;
@@ -181,12 +181,12 @@ export interface PaletteOptions {
   interpolation?: "linear" | "quadratic";
   /** Whether bones of the linear surface have the gradients of their nodes, for normals in a shader; false. */
   gradients?: boolean;
-  /** rows: 12 floats a bone, 3 rows of 4; columns: 16 floats, a matrix of WebGL's; "rows" */
+  /** rows: 12 floats per bone, 3 rows of 4; columns: 16 floats, a matrix for WebGL; "rows" */
   layout?: "rows" | "columns";
 }
 
 /**
- * Bones [A | t], one per node, by which a vertex shader draws the surface. With the four bones and weights b of a
+ * Bones [A | t], one per node, for a vertex shader that draws the surface. With the four bones and weights b of a
  * vertex at X, rest space:
  *   position            sum of b_i (A_i X + t_i)
  *                       linear with gradients: X + sum of b_i t_i
@@ -197,7 +197,7 @@ export interface Palette extends Thing {
   readonly boneCount: number;
   /** vertices x 4: which bones carry a vertex, a new array. */
   vertexBones(): Uint16Array;
-  /** vertices x 4: how much of each, a new array. They sum to 1; some are negative where a vertex is outside. */
+  /** vertices x 4: the bones' weights, a new array. They sum to 1; a vertex outside has negative ones. */
   vertexWeights(): Float32Array;
   /** A view of boneCount x 12 or 16 floats, which the next update overwrites. */
   readonly bones: Float32Array;
@@ -213,11 +213,11 @@ export interface WorldOptions {
   gravity?: Vector;
   /** The same bits in every browser and on every processor, as natively, for some percent of the time; false */
   deterministic?: boolean;
-  /** For `forcesOn`: some time per contact point; false. It changes nothing else. */
+  /** For `forcesOn`: costs some time per contact point; false. It changes nothing else. */
   recordForces?: boolean;
 }
 
-/** A force, and its torque about the centre of mass of what it acts on; world space. */
+/** A force, and its torque about the centre of mass of the object that it acts on; world space. */
 export interface Wrench {
   /** Mass length / s^2, a new array */
   readonly force: Float64Array;
@@ -251,7 +251,7 @@ export interface StageTimes {
   readonly system: number;
   /** What is left: Bullet's own work */
   readonly other: number;
-  /** Surfaces that are visible, on the CPU */
+  /** Visible surfaces, on the CPU */
   readonly surfaces: number;
   /** Of all */
   readonly total: number;
@@ -266,7 +266,7 @@ export interface RigidOptions {
   velocity?: Vector;
   /** Radians / s */
   angularVelocity?: Vector;
-  /** Coulomb's coefficient, which is multiplied by that of what is touched; 0.5 */
+  /** Coulomb's coefficient, which is multiplied by that of the touched object; 0.5 */
   friction?: number;
   /** Whether it is moved by assigning its position and rotation; false */
   kinematic?: boolean;
@@ -334,22 +334,22 @@ export interface World extends Thing {
    * @throws NonFinite, after the step, if the simulation is unstable: restore a snapshot
    */
   step(dt?: number, substeps?: number): number;
-  /** Of the last step. */
+  /** Durations of the last step. */
   readonly times: StageTimes;
-  /** Seconds simulated since the world was made. Snapshots do not have it. */
+  /** Seconds simulated since the world was made. Not part of snapshots. */
   readonly time: number;
 
-  /** All below a plane: normal . x < offset; y < 0 by default. */
+  /** Everything below a plane: normal . x < offset; y < 0 by default. */
   addPlane(options?: {normal?: Vector; offset?: number; friction?: number}): RigidBody;
   addBox(halfExtents: Vector, options?: RigidOptions): RigidBody;
   addSphere(radius: number, options?: RigidOptions): RigidBody;
-  /** Along y; height is that of the part between the caps. */
+  /** Along y; height: of the part between the caps. */
   addCapsule(radius: number, height: number, options?: RigidOptions): RigidBody;
   /** Along y. */
   addCylinder(radius: number, height: number, options?: RigidOptions): RigidBody;
-  /** The hull of n x 3 points. */
+  /** The convex hull of n x 3 points. */
   addConvexHull(points: Numbers, options?: RigidOptions): RigidBody;
-  /** A surface, for bodies without a mass: met from the side from which triangles look counter-clockwise. */
+  /** A surface, for bodies without mass: collides on the side from which triangles look counter-clockwise. */
   addMesh(mesh: Mesh, options?: RigidOptions): RigidBody;
   /** A soft body. Without a mesh (null) it has no surface, and collides at its nodes. */
   addBody(cage: Cage, mesh: Mesh | null, options?: BodyOptions): Body;
@@ -358,60 +358,60 @@ export interface World extends Thing {
   readonly bodies: readonly Body[];
   /** In the order in which they were added. */
   readonly rigidBodies: readonly RigidBody[];
-  /** Of all rigid bodies, 7 numbers each: position and rotation. A view, which the next call overwrites. */
+  /** For all rigid bodies, 7 numbers each: position and rotation. A view, which the next call overwrites. */
   poses(): Float32Array;
 
   /** The first intersection of the segment with the surfaces of soft bodies, or null. */
   raycast(start: Vector, end: Vector): Hit | null;
-  /** Pulls the point of a surface that a ray has hit to where it is now, which `setTarget` moves. */
+  /** Pulls the surface point that a ray has hit to its current position, which `setTarget` moves. */
   addSpring(hit: Hit, options?: SpringOptions): Spring;
-  /** Mass times velocity, at the point of a hit, at once. */
+  /** Mass times velocity, at the point of a hit; acts at once. */
   applyImpulse(hit: Hit, impulse: Vector): void;
 
   /**
-   * Forces on a soft body from all that it touches or is attached to, or on a rigid body from all soft ones; with
-   * `other`, from this alone.
-   * @throws NotAdded, where the world was made without `recordForces`
+   * Forces on a soft body from all objects that it touches or is attached to, or on a rigid body from all soft ones;
+   * with `other`, from that one alone.
+   * @throws NotAdded, if the world was made without `recordForces`
    */
   forcesOn(thing: Body | RigidBody, other?: Body | RigidBody): AppliedForces;
 
-  /** Bytes of a snapshot now. */
+  /** Size of a snapshot of the current state, in bytes. */
   readonly snapshotSize: number;
   /**
-   * The state, from which `restore` goes on to the last bit, in this instance or another.
+   * The state. After `restore` the world continues to the last bit, in this instance or another.
    * @param into  memory for it of at least snapshotSize bytes; without it, new memory
    * @returns the part of `into` that was written
    */
   save(into?: Uint8Array): Uint8Array;
-  /** Takes a state back. The world has the bodies and springs that it had then, made in the same order. */
+  /** Restores a state. The world must have the same bodies and springs as then, made in the same order. */
   restore(snapshot: Uint8Array): void;
-  /** Makes a point the origin: the world goes on as before, nearer to where floats have more digits. */
+  /** Makes a point the origin: the world continues as before, with smaller coordinates, which floats resolve better. */
   shiftOrigin(origin: Vector): void;
-  /** 16 hexadecimal digits of the positions and velocities of all nodes and rigid bodies, to the last bit. */
+  /** A hash of the positions and velocities of all nodes and rigid bodies, to the last bit: 16 hexadecimal digits. */
   readonly hash: string;
 }
 
-/** Where a ray has met a surface. */
+/** Where a ray has hit a surface. */
 export interface Hit {
   readonly body: Body;
   /** Index in the mesh */
   readonly triangle: number;
-  /** Barycentric, of the triangle's corners */
+  /** Barycentric weights of the triangle's corners */
   readonly weights: readonly [number, number, number];
   /** World space */
   readonly point: readonly [number, number, number];
-  /** Of the triangle, unit length */
+  /** The triangle's, unit length */
   readonly normal: readonly [number, number, number];
   /** From the start of the ray, world length */
   readonly distance: number;
 }
 
 export interface SpringOptions {
-  /** Over a point's mass, in 1 / (1/240 s)^2; 10 */
+  /** Divided by a point's mass, in 1 / (1/240 s)^2; 10 */
   stiffness?: number;
   /** 0 */
   dampingRatio?: number;
-  /** Without it, some times the body's weight */
+  /** Without it, a few times the body's weight */
   maxForce?: number;
 }
 
@@ -432,7 +432,7 @@ export interface Spring extends Thing {
 
 /** Deleting it takes it out of its world. */
 export interface RigidBody extends Thing {
-  /** World space, a new array. Assigned to a kinematic body, it moves there in the next step. */
+  /** World space, a new array. A kinematic body moves to an assigned position in the next step. */
   get position(): Float64Array;
   set position(at: Vector);
   /** A new array. */
@@ -455,21 +455,21 @@ export interface Body extends Thing {
   /** Null without a surface */
   readonly mesh: Mesh | null;
   readonly nodeCount: number;
-  /** n x 3, world space. A view, which is filled by this call, and by the next one. */
+  /** n x 3, world space. A view, which this call fills, and the next one overwrites. */
   readonly nodes: Float32Array;
-  /** n x 3, world length / s. A view, as nodes. */
+  /** n x 3, world length / s. A view, like nodes. */
   get velocities(): Float32Array;
-  /** n x 3. Those of pinned nodes stay. */
+  /** n x 3. Velocities of pinned nodes stay. */
   set velocities(velocities: Numbers);
   /** vertices x 3, world space. A view, which each step overwrites if the body is visible. */
   readonly positions: Float32Array;
-  /** vertices x 3, or empty. A view, as positions. */
+  /** vertices x 3, or empty. A view, like positions. */
   readonly normals: Float32Array;
   /** Two corners of the surface's box, world space; a new array. */
   readonly bounds: Float64Array;
   /** Whether steps compute positions and normals. When shown again, they are computed at once. */
   visible: boolean;
-  /** Whether it is at rest. */
+  /** Whether it sleeps. */
   readonly asleep: boolean;
   /** Total, without pinned nodes */
   readonly mass: number;
@@ -478,20 +478,20 @@ export interface Body extends Thing {
   poissonRatio: number;
   stiffnessDamping: number;
   friction: number;
-  /** Its own gravity; null: that of the world. */
+  /** Its own gravity; null: the world's. */
   setGravity(gravity: Vector | null): void;
-  /** Pins nodes where they are, or releases them. */
+  /** Pins nodes at their current positions, or releases them. */
   setPinned(nodes: Numbers, pinned?: boolean): void;
-  /** Of each node 1 if it is pinned, otherwise 0; a new array. */
+  /** For each node 1 if it is pinned, otherwise 0; a new array. */
   readonly pinned: Uint8Array;
   /** Moves pinned nodes to n x 3 positions, world space, in the next step: once per frame. */
   setPinnedPositions(nodes: Numbers, positions: Numbers): void;
   /**
-   * Puts the body elsewhere in its motion: rotated about the world's origin, then by position. Velocities, pins and
-   * vibrations go along, and nothing on the way is met.
+   * Moves the body at once, without stopping it: rotated about the world's origin, then by position. Velocities, pins
+   * and vibrations move along, and nothing on the way collides.
    */
   transform(position: Vector, rotation?: Quaternion): void;
-  /** Puts the body back to where it was added, at rest; what has been set stays. Its steps are then those of a new body. */
+  /** Puts the body back to where it was added, at rest; settings stay. Its steps are then those of a new body. */
   reset(): void;
   /**
    * Pushes the surface in a ball away from its centre.

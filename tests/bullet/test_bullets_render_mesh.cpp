@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the first page says of Bullet's render mesh, with the library's skin beside it, which has none of this.
+// The first page's claims about Bullet's render mesh, compared with the library's skin, which has none of these
+// defects.
 #include "bullets_render_mesh.h"
 #include "worlds.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What may happen to a body while a skin is bound to it. These tests also run under the address sanitizer: a skin reads
-// the body's nodes by index at their current address, and never reads a body that has been destroyed.
+// Changes of a body while a skin is bound to it. These tests also run under the address sanitizer: a skin reads the
+// body's nodes by index at their current address, and never reads a body that has been destroyed.
 #include "worlds.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
@@ -167,7 +167,7 @@ TEST(BodyTakenOutOfItsWorld, IsFollowedWhereverItIs) {
   deformable.addSoftBody(&world.body());
 }
 
-/// With an origin of its own near the body, a skin adds nothing to the rounding of the body's nodes.
+/// With an origin near the body, a skin adds nothing to the rounding of the body's nodes.
 TEST(FarFromTheOrigin, TheSurfaceIsAsExactAsTheNodes) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
   const TriangleMesh mesh = test::sphere(20, 0.45, Eigen::Vector3d::Constant(0.5));

@@ -37,7 +37,7 @@ class FramesBetweenSteps : public test::SkinTest {
     EXPECT_EQ(skin.update(alpha), StatusCode::Ok);
     return surfaceOf(skin);
   }
-  /// Checks that every update shows the body as it is now.
+  /// Checks that every update shows the body's current state.
   void expectNothingBetween() {
     SoftBodySkin now;
     ASSERT_TRUE(now.bind(*body, skin.binding()).ok());

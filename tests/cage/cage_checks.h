@@ -24,7 +24,7 @@ std::string faultOfCage(const TriangleMesh& mesh, const Cage& cage, const CageRe
 /// face, no coincident nodes, tets connected face to face around every node, and a manifold boundary.
 std::string faultOfTopology(const TetMesh& cage);
 
-/// Creates a cage and describes what is wrong with it, including the number of tets; empty if nothing is.
+/// Creates a cage and describes its faults, including the number of tets; empty if there are none.
 std::string buildFault(const TriangleMesh& mesh, std::size_t targetTets, bool fit = true, CageReport* report = nullptr);
 
 }  // namespace tetskin::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which tets are kept: those that intersect the surface, those inside, and no others.
+// The fill keeps exactly the tets that intersect the surface or lie inside.
 #include "cage_models.h"
 #include "support/odd_meshes.h"
 

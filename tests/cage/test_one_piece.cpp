@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What triangles join stays one piece: open sheets of every curvature, tubes, bags, sheets with holes or junctions.
+// Surfaces connected by triangles stay connected: open sheets of every curvature, tubes, bags, sheets with holes or
+// junctions.
 #include "cage_checks.h"
 #include "cage_models.h"
 
@@ -26,7 +27,7 @@ TriangleMesh sheetOf(int n, int m, const Map& map, const Hole& hole = {}) {
       mesh.triangles.push_back({a, b + 1, a + 1});
     }
   }
-  // So that what is closed is closed to the last bit.
+  // So that closed surfaces are closed to the last bit.
   for (Eigen::Vector3d& p : mesh.positions) p = (p.array() * 0x1p40).round() * 0x1p-40;
   return mesh;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Components and limbs of a mesh that are closer to each other than the size of a tet: they stay apart, and what is
-// connected stays connected.
+// Components and limbs of a mesh that are closer to each other than the size of a tet: they stay apart, and connected
+// parts stay connected.
 #include "cage_checks.h"
 #include "cage_models.h"
 #include "copy_checks.h"
@@ -92,7 +92,7 @@ TEST(SplitCages, HaveAPartForEachRingOfAChain) {
   }
 }
 
-/// However narrow a gap is, what the mesh connects is never torn, and the cage is sound.
+/// However narrow a gap is, connected parts of the mesh are never torn, and the cage is sound.
 TEST(SplitCages, NeverTearWhatHangsTogether) {
   for (const double gap : {1e-6, 0.02}) {
     for (const ComponentModel& model : {jaw(gap), claw(gap), coil(4, gap), sheet()}) {

@@ -25,8 +25,8 @@ using Points = std::vector<Eigen::Vector3d>;
 
 /// Relative to the cage's diagonal.
 constexpr double kDistance = 0.01, kJitter = 0.01;
-/// No vertex may deviate by more under the default rule: besides the largest weight there may be one as large of the
-/// opposite sign, and the boundary moves, too.
+/// No vertex may deviate by more under the default rule: besides the largest weight there may be an equal one of the
+/// opposite sign, and the boundary also moves.
 constexpr double kMaxStrayed = 10.0 * kJitter;
 static_assert(2.0 * kMaxWeight + 2.0 <= 10.0);
 constexpr int kSteps = 60;
@@ -86,7 +86,7 @@ Points nodesOf(const btSoftBody& body) {
   return nodes;
 }
 
-/// What is printed for one cage under one rule, and what is wrong.
+/// The output for one cage under one rule, and its faults.
 struct Row {
   EmbedReport fit;
   double strayed = 0.0;  ///< relative to the diagonal

@@ -1,4 +1,4 @@
-# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -P: tests that what demos/run --all builds can be installed, and that the
+# cmake -DSOURCE= -DFOLDER= -DGENERATOR= -P: tests that the build of demos/run --all can be installed, and that the
 # package is found. Nothing is compiled: see no_compiler.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)

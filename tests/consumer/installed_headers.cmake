@@ -18,8 +18,7 @@ list(LENGTH private count)
 if(count LESS 50)
   message(FATAL_ERROR "Only ${count} private headers found: look for them elsewhere")
 endif()
-# Judged by what the compiler finds: a header that is found, but does not compile because another one is missing, would
-# be no better.
+# The compiler decides: a header that is found, but does not compile because another one is missing, would be no better.
 set(file ${PREFIX}/../finds_headers.cpp)
 foreach(folder ${PREFIX}/include ${STAGED})
   set(text "#if !__has_include(<tetskin/tetskin.h>)\n#error nothing is found\n#endif\n")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Runs the program of a page as a reader would, with a mesh of theirs: `PROGRAM yours.obj`, in a folder of its own. It
-must end with 0, and print what the block of text after it on the page shows: the same words, and numbers within 2 % or
-0.002, as processors and compilers round differently.
+"""Runs the program of a page as a reader would, with a mesh: `PROGRAM yours.obj`, in a separate folder. It must exit
+with 0, and print the block of text after it on the page: the same words, and numbers within 2 % or 0.002, as processors
+and compilers round differently.
 
 page_program.py --source REPOSITORY --page PAGE --program PROGRAM --folder FOLDER
 PAGE is the page's path with _ for everything but letters and digits, as the file of the program is called.

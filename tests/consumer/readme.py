@@ -6,7 +6,7 @@ installs the library, builds the first program with it, and runs it. Prints each
 
 readme.py --folder FOLDER --prefix PREFIX --generator GENERATOR
 
-Nothing of a developer's build is used: no options except the page's, no compiler cache, nothing installed before.
+It uses nothing from a developer's build: no options except the page's, no compiler cache, nothing installed before.
 PREFIX is kept for other tests.
 """
 import argparse
@@ -35,7 +35,7 @@ def block(language, words):
 
 
 def copy_repository(folder):
-    """Copies what a clone would have, and files that are not committed yet."""
+    """Copies the files of a clone, and files that are not committed yet."""
     names = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY,
                            check=True, capture_output=True, text=True).stdout
     for name in filter(None, names.split("\0")):

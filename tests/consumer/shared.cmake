@@ -1,5 +1,5 @@
 # cmake -DSOURCE= -DFOLDER= -DGENERATOR= -DVERSION= -DNM= -DPKG_CONFIG= -DCOMPILER= -P: all libraries shared, installed, and used by the README's
-# first program; their names tell the ABI, and private names are hidden.
+# first program; their names contain the ABI, and private names are hidden.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

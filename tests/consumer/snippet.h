@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the documentation's snippets use without declaring it: objects that an application would have at that point. The
-// snippets are compiled and linked, but not run.
+// Names that the documentation's snippets use without declaring them: objects that an application would have at that
+// point. The snippets are compiled and linked, but not run.
 #pragma once
 
 #include <BulletSoftBody/btSoftBodyHelpers.h>

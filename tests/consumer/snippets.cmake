@@ -1,8 +1,8 @@
 # Writes the code that the documentation shows between fences, ```cpp and ```cmake, to files, so that it is compiled and
 # stays correct.
 
-# Splits the text `rest`: `before` ends with the next fence, and the new `rest` is what follows; empty if there is no
-# such fence.
+# Splits the text `rest`: `before` ends with the next fence, and the new `rest` is the text after it; empty if there is
+# no such fence.
 macro(next_fence fence)
   string(FIND "${rest}" "${fence}" start)
   if(start EQUAL -1)

@@ -122,8 +122,8 @@ TEST(BulletsContact, MissesBodiesThatWereOnlyToldOnceWhereTheyAre) {
   }
 }
 
-/// Bullet makes two triangles of a plane where it and a body meet first, and keeps them. The library's counterpart is
-/// DeformableWorld.ABodySlidesAlongAPlaneAnyFar, for contact by nodes; here, the surface.
+/// Bullet represents a plane by two triangles where it and a body first touch, and keeps them. The library's
+/// counterpart is DeformableWorld.ABodySlidesAlongAPlaneAnyFar, for contact by nodes; here, the surface.
 TEST(BulletsContact, LosesAPlaneWhereABodySlidesAlongIt) {
   constexpr double kHeight = 3.0;
   const auto slide = [](EmptyWorld& world, btSoftBody& body) {

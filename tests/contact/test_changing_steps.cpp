@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Rest does not depend on the step: an application that passes the time of each frame as one step has steps of any
-// length, and what lies stays where it lies.
+// length, and resting bodies stay in place.
 #include "contact_test.h"
 #include "solver/recorded_forces.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What goes wrong while contacts are added, restored or removed leaves nothing half done.
+// Failures while contacts are added, restored or removed leave nothing half done.
 #include "contact_test.h"
 #include "soft_fixtures.h"
 #include "support/allocation_count.h"
@@ -78,7 +78,7 @@ TEST(RefusedSnapshotsOfContacts, AreToldByEachBodysShape) {
   EXPECT_TRUE(savedOf(other.world) == before);
 }
 
-/// Without a DeformableBody. Bullet would put what has been removed to sleep, which may have been destroyed.
+/// Without a DeformableBody. Bullet would put removed bodies to sleep, which may have been destroyed.
 TEST(ChangesWithinSteps, AreNoticedInAWorldOfBodiesWithContactAlone) {
   TetskinWorld world;
   const TetMesh cage = looseCage();

@@ -29,7 +29,7 @@ struct OnAPlatform {
   btSoftBody& soft() { return body.body->body(); }
   btBroadphaseProxy& proxy() { return *soft().getBroadphaseHandle(); }
   btRigidBody& rigid() { return platform.body(); }
-  /// Whether the platform still supports the body after so many frames.
+  /// Whether the platform still supports the body after this many frames.
   bool isPinned(int frames) {
     step(world, frames);
     return body.height() > 4.9;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies in contact by their surfaces do to each other, as ForceRecord reports it.
+// Forces between bodies in contact at their surfaces, as ForceRecord reports them.
 #include "contact_test.h"
 #include "soft_fixtures.h"
 #include "solver/recorded_forces.h"
@@ -186,7 +186,7 @@ TEST(ContactForces, OfABodyOnAnotherAreItsWeight) {
   expectNear(forces->forcesOn(above->body()).total().force, -weightOf(1), 1e-3 * kWeight);
 }
 
-// ---- what does not change them, and what ends them
+// ---- events that do not change them, and events that end them
 
 TEST(ContactForces, AndContactsAreToldWithoutAllocation) {
   Balls balls(btVector3(0, -10, 0));

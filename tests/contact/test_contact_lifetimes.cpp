@@ -39,8 +39,7 @@ TEST(ContactLifetimes, ABodyAtTheOldAddressIsAnother) {
   for (int k = 0; k < 4; ++k) {
     const auto body = lying(world);
     body->body.reset();
-    // Without surface contact of its own, the new body rests on the floor by its cage, whatever remains of the other
-    // body.
+    // Without surface contact, the new body rests on the floor by its cage, whatever remains of the other body.
     TetMesh cage = lifted(looseCage(), 0.52);
     const auto plain = added(world, cage);
     step(world, 60);
@@ -85,7 +84,7 @@ void fillGlobals() {
 }
 
 TEST(ContactLifetimesDeathTest, GlobalsGoInAnyOrderAtTheEndOfTheProgram) {
-  // This runs in a process of its own, which ends like any other: static objects are destroyed.
+  // This runs in a separate process, which ends like any other: static objects are destroyed.
   const auto run = [] {
     fillGlobals();
     for (const auto* contacts : {&contactsBeforeTheWorld, &contactsAfterTheWorld}) {
@@ -148,7 +147,8 @@ TEST(ContactLifetimes, ContactThatWasLeftBehindByItsWorldsDispatcherStartsAnewIn
   ASSERT_TRUE(made.ok()) << made.status().message;
   step(second, 10);
   EXPECT_FALSE(made.value()->contacts().empty());
-  // The body's original world is gone and cannot take it back: whoever moved it removes it, and its owner frees it.
+  // The body's original world is gone and cannot take it back: the code that moved it removes it, and its owner frees
+  // it.
   second.deformable().removeSoftBody(&body->body->body());
 }
 
@@ -215,7 +215,7 @@ TEST(ContactLifetimes, AlgorithmsOfTheApplicationServeBodiesWithoutSurfaceContac
   step(world, 60);
   EXPECT_EQ(first.count + second.count, 1);
   EXPECT_GT(lowest(plain->body()), -0.01);
-  // Without its contacts, a body is as any other: at once, by the algorithm of its pair, and with each new pair.
+  // Without its contacts, a body is like any other: at once, by the algorithm of its pair, and with each new pair.
   touching->contact.reset();
   step(world, 10);
   EXPECT_EQ(first.count + second.count, 2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a body may be in contact with, apart from what stands still.
+// Objects that a body may touch, apart from static ones.
 #include "contact_test.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -82,8 +82,8 @@ btVector3 carried(EmptyWorld& world, Told told, bool bySurface, int steps = 1) {
 }
 
 /// Bullet moves the body to its new position in the first step of the frame, and derives its velocity from its previous
-/// interpolation transform: where an application sets that transform as well, in each step, the velocity is zero, and
-/// what lies on the body is carried only by sticking friction.
+/// interpolation transform: if an application also sets that transform in each step, the velocity is zero, and only
+/// sticking friction carries bodies that lie on it.
 TEST(ContactPartners, AKinematicBodyCarriesHoweverAndHoweverOftenItIsMoved) {
   for (const int steps : {1, 2, 4, 8}) {
     for (const Told told : {Told::World, Told::MotionState, Told::Both}) {

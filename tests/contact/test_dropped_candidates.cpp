@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a search remembers only to be fast changes no bit: a run that forgets it goes on as one that keeps it.
+// Data that a search keeps only for speed changes no bit: a run that drops it continues like one that keeps it.
 #include <tetskin/contact/src/soft/soft_contact_rows.h>
 
 #include "soft_fixtures.h"

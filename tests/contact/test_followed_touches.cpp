@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kCubeEdge = 0.6;
 
-/// A cube that fills its cage but for a hundredth of its size.
+/// A cube that fills its cage except for a hundredth of its size.
 struct SoftCube {
   TetMesh cage = latticeCage(3, 3, 3, kCubeEdge / 3);
   TriangleMesh mesh;
@@ -115,7 +115,7 @@ TEST(FollowedTouches, EndWhenABodyIsPutElsewhere) {
   }
 }
 
-/// Half of the upper cube is then beside the lower one, and meets nothing there.
+/// Half of the upper cube is then beside the lower one, and touches nothing there.
 TEST(FollowedTouches, OfABodyThatIsPutAsideAreWhereItThenIs) {
   TwoCubes cubes;
   cubes.steps(240);
@@ -131,7 +131,7 @@ TEST(FollowedTouches, OfABodyThatIsPutAsideAreWhereItThenIs) {
   EXPECT_GT(beyond, 0U) << "the whole width is found";
 }
 
-/// A ball that rests on a plate and is thrown at it: more of its surface meets the plate in each step.
+/// A ball that rests on a plate and is thrown at it: more of its surface touches the plate in each step.
 /// searched  touches are searched for in each step, since bodies that are added again have none that could be followed
 double deepestOfAThrow(bool searched) {
   const auto world = worldWith(btVector3(0, -10, 0));

@@ -240,7 +240,7 @@ std::pair<double, double> restOf(const TriangleMesh& mesh, TetMesh cage) {
   return {static_cast<double>(skin.bounds().min().y()), static_cast<double>(skin.bounds().max().y())};
 }
 
-/// A negative scale mirrors points, and leaves the winding of triangles as it is.
+/// A negative scale mirrors points, and does not change the winding of triangles.
 TEST(OutwardSides, OfMirroredBodiesAreMetAsTheOriginalsOrRefused) {
   TriangleMesh egg = ballMesh(12, 0.35);
   for (Eigen::Vector3d& p : egg.positions) p = Eigen::Vector3d(p.x() > 0 ? 1.2 * p.x() : p.x(), 0.8 * p.y(), p.z());

@@ -11,7 +11,7 @@ using namespace contact_detail;
 
 constexpr btScalar kMotionStep = btScalar(0.004);
 
-/// Two balls that overlap, and what they move by.
+/// Two balls that overlap, and their motions.
 class SoftMotion : public StillBalls {
  protected:
   void SetUp() override {

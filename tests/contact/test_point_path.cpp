@@ -116,7 +116,7 @@ TEST_F(PointPathTest, ACornerThatAPathLeadsIntoIsInItsWay) {
   }
 }
 
-/// What rests, falls or is pressed on moves hardly aside.
+/// Points that rest, fall or are pressed on hardly move sideways.
 TEST_F(PointPathTest, ARestingPointIsAskedForOnce) {
   for (const btVector3& motion : {btVector3(0, btScalar(-0.0001), 0), btVector3(btScalar(0.0001), btScalar(-0.001), 0),
                                   btVector3(btScalar(0.003), btScalar(0.0001), 0)}) {
@@ -185,7 +185,8 @@ TEST_F(PointPathTest, AnInnerEdgeOfAMeshIsNotInTheWay) {
   }
 }
 
-/// Whatever decides, what is behind its plane contains the convex shape: no point that keeps to the plane enters it.
+/// In all cases the space behind the plane contains the convex shape: no point that stays in front of the plane enters
+/// it.
 TEST_F(PointPathTest, TheShapeIsBehindThePlaneThatDecides) {
   const TriangleMesh ball = ballMesh(4, 0.05);
   btConvexHullShape hull;

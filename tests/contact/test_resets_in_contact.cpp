@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies that are put back to their start, or elsewhere, while they touch others.
+// Bodies that are reset or teleported while they touch others.
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/replay/recorder.h>
 #include <tetskin/solver/src/base/body_channel.h>
@@ -56,8 +56,8 @@ struct LandingBalls {
   std::vector<btScalar> motion() const { return motionOf(bodies); }
 };
 
-/// By which the box in the broadphase covers where the surface will be: otherwise what is fast passes through thin
-/// things.
+/// With this the box in the broadphase covers the surface's next position: otherwise fast bodies pass through thin
+/// objects.
 TEST(ResetsInContact, KeepTheReachOfASurface) {
   LandingBalls scene;
   const auto reachOf = [](DeformableBody& body) { return bullet_detail::channelOf(body.body())->reach(); };
@@ -119,7 +119,7 @@ TEST(ResetsInContact, AreRecordedAndPlayed) {
   std::filesystem::remove(path);
 }
 
-/// Friction would otherwise pull what lies on the floor back to where it stuck.
+/// Friction would otherwise pull a body on the floor back to where it stuck.
 TEST(TeleportsInContact, LeaveNoPullBehind) {
   LandingBalls scene, beside;
   const auto frames = [&](int count) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A body's nodes are read once for all objects that it meets in a step, and for each of them outside of steps.
+// A body's nodes are read once for all objects that it touches in a step, and for each of them outside of steps.
 #include "contact_test.h"
 
 #include <tetskin/solver/src/base/body_channel.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What two fingers hold by friction stays where it is between them while they shake it, as far as Coulomb's law allows,
-// and slides by that law beyond.
+// An object that two fingers hold by friction does not slip while they shake it, as far as Coulomb's law allows, and
+// slides by that law beyond.
 #include "contact_test.h"
 #include "solver/recorded_forces.h"
 
@@ -142,7 +142,7 @@ TEST(ShakenGrip, SlidesByCoulombsLawAboveTheLimit) {
     Grip grip(true, perStep, 4);
     const btVector3 from = grip.at;
     const double acceleration = 1.5 * grip.limit();
-    double time = 0.0, held = 0.0;  // what the plates press with now: a sheared body presses less
+    double time = 0.0, held = 0.0;  // the current force of the plates: a sheared body presses less
     const auto pull = [&](double seconds) {
       const double before = time;
       grip.simulate(seconds, [&](double t) {
@@ -154,7 +154,7 @@ TEST(ShakenGrip, SlidesByCoulombsLawAboveTheLimit) {
       held = 2.0 * static_cast<double>(kFriction * std::abs(force.x()));
       return grip.held().z();
     };
-    // By the first time, the body has been sheared as far as friction shears it, and has a speed of its own.
+    // At the first time, friction has sheared the body as far as it can, and the body already has a speed.
     const double each = 0.15, first = pull(0.1), second = pull(each), third = pull(each);
     const double law = (acceleration - held) * each * each;
     EXPECT_NEAR((2.0 * second - first - third) / law, 1.0, 0.02) << (perStep ? "per step" : "per frame");

@@ -117,7 +117,7 @@ TEST(ConvexProbe, FindsTheDistanceOfAHullsFacesOnBothSides) {
   }
 }
 
-/// Triangles farther than the reach decide, too, where others are within the thickness, but behind.
+/// Triangles beyond the reach also decide, if others are within the thickness, but behind.
 TEST(MeshProbe, APointBesideAThinMeshIsNotInsideOfItsOtherSide) {
   const TriangleMesh ball = ballMesh(12, 0.03);
   btTriangleMesh mesh;

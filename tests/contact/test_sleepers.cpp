@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What wakes a sleeping body, and what does not: contact by nodes, by the surface, and with other soft bodies.
+// Events that wake a sleeping body, and events that do not: contact by nodes, by the surface, and with other soft
+// bodies.
 #include "contact_test.h"
 #include "soft_fixtures.h"
 
@@ -213,7 +214,7 @@ TEST_P(Sleepers, MoveAsTheyAreToldTo) {
   EXPECT_LT(centreOf(soft()).y(), before + btScalar(0.8));
 }
 
-// ---- what they weigh
+// ---- their weight
 
 TEST_P(Sleepers, KeepTheForcesThatWereReadBefore) {
   const auto forces = std::move(ForceRecord::add(world.deformable()).value());
@@ -277,7 +278,7 @@ TEST_P(Sleepers, AreCarriedFromTheFirstFrameByWhatIsMovedOncePerFrame) {
       ways[perFrame / 4] = place() - start;
       gaps[perFrame / 4] = gap();
     }
-    // Moved once per frame, the platform starts within a frame, and not at once: what rolls is set going otherwise.
+    // Moved once per frame, the platform starts within a frame, and not at once: otherwise round bodies start to roll.
     EXPECT_NEAR(ways[0], ways[1], 0.2 * static_cast<double>(velocity.length() + rate));
     EXPECT_NEAR(gaps[0], gaps[1], 0.0005);
   }
@@ -331,7 +332,7 @@ TEST(SleepersOnSoftBodies, AreLiftedTogether) {
   }
 }
 
-/// In whatever order bodies come to rest, they fall asleep together, and what is read of their forces stays.
+/// In whatever order bodies come to rest, they fall asleep together, and their reported forces stay.
 TEST(SleepersOnSoftBodies, KeepTheForcesThatWereReadBefore) {
   for (const int substeps : {1, 4}) {
     SoftPile pile;

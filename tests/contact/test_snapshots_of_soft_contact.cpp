@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies that meet each other go on from a snapshot as they did when it was saved, to the bit.
+// Bodies in contact continue from a snapshot like the run that saved it, to the bit.
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/contact/src/soft/pair_search.h>
 #include <tetskin/replay/snapshot.h>

@@ -102,8 +102,8 @@ TEST(SnapshotsWithContacts, NeedWhatTheSearchRemembers) {
   EXPECT_GT(needed, 0);
 }
 
-/// A snapshot has no clearances, so that restoring drops them: what is far away is searched for again. A run that drops
-/// them in each frame, or now and then, goes on as one that keeps them.
+/// A snapshot has no clearances, so restoring drops them: distant objects are searched again. A run that drops them in
+/// each frame, or now and then, continues like one that keeps them.
 TEST(SnapshotsWithContacts, ClearancesChangeNoBit) {
   OnKinds kept, always, sometimes;
   std::mt19937 random(3);

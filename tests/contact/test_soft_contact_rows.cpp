@@ -145,7 +145,7 @@ TEST_F(SoftRows, NothingIsLeftOfABodyThatGoes) {
   EXPECT_TRUE(contacts().empty());
 }
 
-/// What leaves may be thrown back within the step, by the elastic forces of a light node.
+/// The elastic forces of a light node may throw a separating point back within the step.
 TEST_F(SoftRows, KeepWhatLeavesUnlessItIsFartherThanItGoesInAStep) {
   addTwo(2 * Ball::kRadius + 0.006);  // more than a tenth of a cell of the grid
   const auto contactsAt = [&](btScalar speed) {

@@ -18,12 +18,12 @@ class SoftSearch : public StillBalls {};
 constexpr btScalar kFollowedMotion = btScalar(0.05);
 /// How much their distances may differ, in cubes: they approach by that motion, as does a surface that curves.
 constexpr btScalar kFollowedError = 2 * kFollowedMotion;
-/// In cubes: how much the distance of a followed touch may differ from what is found for the same sample.
+/// In cubes: how much the distance of a followed touch may differ from the one found for the same sample.
 constexpr btScalar kPlaneError = btScalar(0.3) * kFollowedMotion;
 /// In cubes: the depth from which on a sample touches whatever the normals are.
 constexpr btScalar kPiercingDepth = btScalar(0.2);
 
-/// A search from step to step, beside one that knows no candidates and thus follows no touches.
+/// A search from step to step, compared with one that has no candidates and thus follows no touches.
 class FollowingSearch {
  public:
   struct Found {
@@ -55,7 +55,7 @@ class FollowingSearch {
       EXPECT_EQ(touches_[k].distance, wanted_[k].distance);
     }
   }
-  /// What touches for the first time is found later, when it is at most that deep.
+  /// New touches are found later, when they are at most this deep.
   void expectNearlySame(const ContactBody& first, btScalar cube) const {
     const btScalar tolerance = kFollowedError * cube;
     const std::vector<int>& nodes = first.data().sampleNodes;
@@ -117,7 +117,7 @@ TEST_F(SoftSearch, FindsTheSamplesThatTestingAllPairsFinds) {
     const std::set<int> wanted = insideByBruteForce(*first, *second, 1e-4);
     ASSERT_GT(wanted.size(), 10u);
     std::size_t found = 0;
-    memory.sides.beginStep();  // what has been found now counts as found in the previous step
+    memory.sides.beginStep();  // the current touches count as those of the previous step
     for (const int s : wanted) found += memory.sides.find(s, btVector3(0, 0, 0), 10) ? 1 : 0;
     EXPECT_EQ(found, wanted.size()) << squeeze;
   }
@@ -214,7 +214,7 @@ TEST_F(SoftSearch, ATipFinerThanTheGridTouchesWhatItEnters) {
   }
 }
 
-/// The sample by which a node touched goes on touching beside another that has become deeper, unless they are close.
+/// The sample by which a node touched stays a contact next to another that has become deeper, unless they are close.
 TEST_F(SoftSearch, ANodeKeepsTheSampleItTouchedWithBesideADeeperOne) {
   auto first = include(Eigen::Vector3d(0, 0, 0)), second = include(Eigen::Vector3d(0.78, 0, 0));
   const auto pairsIn = [&](const std::vector<Touch>& touches, const std::vector<Touch>& before) {

@@ -230,7 +230,7 @@ TEST(ContactShape, HasCellsThatSeeAThinBody) {
   const Status thin = ContactShape::create(cage, sheet(1e-4, 1.1e-3)).status();
   EXPECT_EQ(thin.code, StatusCode::Degenerate);
   EXPECT_NE(thin.message.find("gridResolution"), std::string::npos) << thin.message;
-  // What is thick enough keeps the usual ones, whatever stands out of it.
+  // Shapes that are thick enough keep the usual ones, whatever sticks out of them.
   EXPECT_NEAR(dataOf(*ContactShape::create(ball().cage, ball().mesh).value()).grid.spacing(),
               boundingBox(ball().cage.nodes).sizes().maxCoeff() / 64, 1e-6);
 }
@@ -294,7 +294,7 @@ TEST(OtherParts, AreNearButFarAlongTheBody) {
       EXPECT_GT(from.y() + to.y(), 0.4);
       ++listed;
     }
-    // What is not listed is in the same leg, or far away, or near the bottom.
+    // Points not listed are in the same leg, or far away, or near the bottom.
     const std::set<int> others(data.otherComponents[r].begin(), data.otherComponents[r].end());
     for (std::size_t t = 0; t < cage.tets.size(); ++t) {
       const Eigen::Vector3d to = centroidOf(cage.tets[t]);

@@ -217,7 +217,7 @@ TEST(SurfaceContact, RestsOnConvexHullsMeshesHeightFieldsAndChildrenOfCompounds)
   }
 }
 
-/// A floor of 900 boxes, each turned, in a compound that is turned, too.
+/// A floor of 900 boxes, each turned, in a compound that is also turned.
 std::unique_ptr<btCompoundShape> paving(btBoxShape& stone, bool withTree) {
   auto compound = std::make_unique<btCompoundShape>(withTree);
   for (int i = -15; i < 15; ++i) {

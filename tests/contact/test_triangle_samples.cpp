@@ -15,7 +15,7 @@ using namespace contact_detail;
 namespace {
 
 constexpr btScalar kSampleMargin = btScalar(0.002), kSampleSlack = btScalar(0.005);
-/// What may be left out over something flat: far below the margin.
+/// Depth that samples may miss over something flat: far below the margin.
 constexpr btScalar kLeftOut = btScalar(0.0003);
 
 /// Counts the questions.
@@ -133,7 +133,7 @@ TEST_F(TriangleSamples, TouchAsDeepAsALookAtEachOfThemFinds) {
     if (all < -kLeftOut) {
       ASSERT_FALSE(touches.empty()) << k;
     }
-    // Of points that move, the one that will be deepest is taken.
+    // Among moving points, the one that will be deepest is taken.
     if (!touches.empty()) {
       EXPECT_LT(deepest(touches), all + kLeftOut + speed) << k;
     }
@@ -178,7 +178,7 @@ TEST_F(TriangleSamples, TouchTrianglesAsDeepAsALookAtEachOfThemFinds) {
   EXPECT_GT(touching, 4);
 }
 
-/// How often the search asks for the distance of a point, and for what is near a ball.
+/// How often the search asks for the distance of a point, and for objects near a ball.
 struct Questions {
   int points = 0, balls = 0;
   std::size_t touches = 0;

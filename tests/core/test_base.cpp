@@ -30,8 +30,8 @@ TEST(PackLists, HoldEveryValueOfTheirKeyInTheOrderOfTheVisits) {
 }
 
 TEST(Hash, TellsNeighbouringWordsApartAndNotTheSignOfZero) {
-  // The words are like the coordinates of a grid: the last bits of the index in a table must depend on a word's first
-  // bits, too.
+  // The words are like the coordinates of a grid: the last bits of the index in a table must also depend on a word's
+  // first bits.
   for (const int shift : {0, 32, 48, 52}) {
     std::set<std::uint32_t> indices;
     for (std::uint64_t word = 0; word < 4096; ++word) {

@@ -21,7 +21,7 @@ namespace {
 
 using PointList = test::Points;
 
-/// Of positions in a cage of size 1 that is sent to four times that at most.
+/// Of positions in a cage of size 1 that is mapped to at most four times that.
 constexpr double kRounding = 2e-6;
 
 SkinOptions optionsFor(Interpolation interpolation) {
@@ -375,8 +375,8 @@ TEST_F(SkinnedMeshes, HaveTheNodesAndWeightsOfTheBindingInItsOrder) {
   }
 }
 
-/// Of a twisted cube of size 1 of tets a quarter as long: inside, what 16 bits round off; outside, weights below 0 are
-/// left out, and a vertex is off by up to about its distance from the cube.
+/// For a twisted cube of size 1 with tets a quarter as long: inside, the rounding of 16 bits; outside, weights below 0
+/// are left out, and a vertex is off by up to about its distance from the cube.
 TEST_F(SkinnedMeshes, MoveByLittleWithWeightsOf16BitsUnlessOutside) {
   const TetMesh cube = test::latticeCage(4, 4, 4, 0.25);
   for (const Interpolation interpolation : {Interpolation::Linear, Interpolation::Quadratic}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What an embedding reports, for good and for bad input.
+// The report of an embedding, for good and bad input.
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 

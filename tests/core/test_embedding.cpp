@@ -71,7 +71,7 @@ TEST(Embedding, MovedFromIsStillThere) {
   Embedding first = embed(cage, viewOf(Points{{0.1, 0.2, 0.3}})).value();
   const Embedding second = std::move(first);
   EXPECT_EQ(second.vertexCount(), 1u);
-  EXPECT_FALSE(first.empty());  // NOLINT: what is left of it
+  EXPECT_FALSE(first.empty());  // NOLINT: its moved-from state
   EXPECT_TRUE(Embedding().empty());
 }
 

@@ -201,7 +201,7 @@ TEST_F(SavedEmbedding, OfAnotherMeshOrCageCarriesNoSkin) {
   refuses(cage, mesh, "59 vertices");
 }
 
-/// Corrects the checksum, so that what comes after it is tested.
+/// Corrects the checksum, so that the data after it is tested.
 void seal(Bytes& bytes) {
   const auto mix = [](std::uint64_t hash, std::uint64_t word) {
     hash = (hash ^ word) * 0x9E3779B97F4A7C15u;

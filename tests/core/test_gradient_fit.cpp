@@ -49,7 +49,7 @@ TEST(GradientFit, StencilsDoNotReachAcrossCopies) {
   for (std::size_t t = 0; t < copyOf.size(); ++t) {
     cage.sourceTet[t] = cage.sourceTet[static_cast<std::size_t>(copyOf[t])] = static_cast<int>(t);
   }
-  // Each branch moves by a map of its own.
+  // Each branch moves by a different map.
   const auto branchOf = [&](std::uint32_t n) { return n >= trunkNodes ? 2 : cage.mesh.nodes[n].x() > 2.0 ? 1 : 0; };
   std::size_t withoutCopies = 0;
   CageNeighbours neighbours(cage.mesh, cage.sourceTet), blind(cage.mesh);

@@ -346,7 +346,7 @@ TEST_F(MeshSkins, SayWhyThereIsNoUpdate) {
   EXPECT_EQ(skin.update(StepHistory<float>(), 0.5f), StatusCode::TopologyChanged);
   EXPECT_EQ(at(skin.positions(), 9), before);
   MeshSkin<float> moved = std::move(skin);
-  EXPECT_FALSE(skin.bound());  // NOLINT: what is left of it
+  EXPECT_FALSE(skin.bound());  // NOLINT: its moved-from state
   update(moved, twisted);
 }
 

@@ -153,7 +153,7 @@ TEST(OutsideNeighbours, TheBarycentricRuleIsLeftPure) {
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) EXPECT_EQ(bindings[v].tet, brute[v].tet);
 }
 
-/// Every triangle has vertices of its own, which are connected by their positions.
+/// Every triangle has separate vertices, which are connected by their positions.
 TEST(OutsideNeighbours, SeamsChangeTogether) {
   const TetMesh cage = legs(true);
   const TriangleMesh whole = pokingOut();

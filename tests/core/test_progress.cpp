@@ -9,7 +9,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Goes on until the application is asked, for some seconds at most.
+/// Continues until the application is asked, for some seconds at most.
 void goOnUntilAsked(const std::vector<double>& told) {
   const std::size_t before = told.size();
   const auto start = Clock::now();

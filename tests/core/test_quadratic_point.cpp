@@ -11,7 +11,7 @@ namespace {
 
 const Eigen::Vector3d kCageCentre = Eigen::Vector3d::Constant(0.5);
 
-/// Points in and around a jittered cage, skinned all at once and one by one.
+/// Points in and around a jittered cage, skinned all at once and singly.
 template <class Scalar>
 class QuadraticPoints : public testing::Test {
  protected:

@@ -268,8 +268,7 @@ TEST(QuadraticReport, CountsTheNodesOfACageOneCellThick) {
   }
 }
 
-/// Where the offsets across the layer are not all alike, they almost determine second derivatives: the fit must not
-/// trust these.
+/// If the offsets across the layer differ, they almost determine second derivatives: the fit must not trust these.
 TEST(QuadraticReport, AnUnevenCageOneCellThickIsNoWorseThanLinear) {
   for (const double jitter : {0.1, 0.25}) {
     for (unsigned seed = 1; seed <= 5; ++seed) {

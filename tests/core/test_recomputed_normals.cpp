@@ -61,7 +61,7 @@ TEST(RecomputedNormals, WithoutAuthoredNormalsTheCornersOfABoxAreSmooth) {
   }
 }
 
-/// Every triangle has vertices of its own, as in an STL file; normals at the same position differ slightly, and every
+/// Every triangle has separate vertices, as in an STL file; normals at the same position differ slightly, and every
 /// fourth has this length.
 void expectSmoothSeams(float length) {
   const TetMesh cage = test::latticeCage(4, 4, 4, 0.25);
@@ -207,7 +207,7 @@ TEST(NormalTopology, SplitsAPositionByTheFirstNormalOfEachGroup) {
   EXPECT_EQ(NormalTopology(mesh, {}, kHardEdgeDegrees).groupCount(), 1u);
 }
 
-/// Such a vertex neither creates hard edges nor softens any: the others are grouped as if it were not there.
+/// Such a vertex neither creates hard edges nor softens any: the others are grouped as without it.
 TEST(NormalTopology, AVertexWithoutARestNormalJoinsTheFirstGroupOfItsPosition) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   TriangleMesh mesh;

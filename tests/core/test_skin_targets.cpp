@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A skin never reads back what it writes into the caller's memory: that memory may be mapped for writing only, and
-// reading it may be a hundred times slower.
+// A skin never reads back from the caller's memory: that memory may be mapped for writing only, and reading it may be a
+// hundred times slower.
 #include "support/embed_into.h"
 #include "support/odd_meshes.h"
 #include "support/smooth_maps.h"
@@ -15,7 +15,7 @@
 namespace tetskin {
 namespace {
 
-/// Overwrites the caller's memory between any two stages of an update, so that only what the last stage writes is left.
+/// Overwrites the caller's memory between any two stages of an update, so that only the last stage's output remains.
 class Forgetful : public ParallelFor {
  public:
   void run(std::size_t count, Task task) override {

@@ -12,7 +12,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Points in, on and near a tet: mixtures of its corners, some of which are beyond a face only by the last bits.
+/// Points in, on and near a tet: mixtures of its corners, some beyond a face only by the last bits.
 Points pointsAbout(const TetCorners& p, unsigned seed) {
   Points points(p.begin(), p.end());
   for (const Eigen::Vector3d& w : test::randomPoints(400, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, seed)) {

@@ -48,7 +48,7 @@ EmbedReport expectBruteForce(const TetMesh& cage, const Points& vertices, Outsid
   return report;
 }
 
-/// A quarter of what is compared with brute force where sanitizers make that ten times slower.
+/// A quarter of the comparisons with brute force if sanitizers make these ten times slower.
 constexpr std::size_t manageable(std::size_t count) {
 #ifdef __SANITIZE_ADDRESS__
   return count / 4;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Pages as a browser shows them: their scripts leave what they have seen in the page's document.
+// Pages as a browser shows them: their scripts leave their observations in the page's document.
 #pragma once
 
 #include <gtest/gtest.h>

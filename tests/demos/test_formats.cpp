@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a run writes: --format.
+// The output formats of a run: --format.
 
 #include <cstring>
 #include <filesystem>

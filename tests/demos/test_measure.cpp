@@ -27,8 +27,8 @@ class Measure : public testing::Test {
   CommandFolder folder;
 };
 
-/// The program sums up momentum and energy itself, independently of the solver: where nothing is in contact, only
-/// rounding may change them.
+/// The program sums up momentum and energy itself, independently of the solver: without contact, only rounding may
+/// change them.
 TEST_F(Measure, NothingIsLostInFreeFlight) {
   const auto scenes = resultsOf({"--only", "free flight"});
   ASSERT_EQ(scenes.size(), 2u);
@@ -66,8 +66,8 @@ TEST_F(Measure, WhatIsPromisedOfSoftBodiesAmongThemselvesHolds) {
   }
 }
 
-/// What slides comes near to edges from aside: those of tiles, and its own on a soft slab. With contact at nodes
-/// nothing is promised, but they take the same side of an edge.
+/// Sliding bodies meet edges sideways: those of tiles, and their own on a soft slab. With contact at nodes nothing is
+/// promised, but they take the same side of an edge.
 TEST_F(Measure, ThingsSlideAsFarAsCoulombSays) {
   const char* distance = "distance over v^2 / (2 mu g)";
   for (const char* scene :
@@ -125,8 +125,8 @@ TEST_F(Measure, QuickStressCasesHold) {
     if (off == figures.end()) continue;
     steps += row["steps"].get<double>();
     unconverged += off->second["value"].get<double>();
-    // Where rigid bodies slide on rigid ones under a soft one, or balls rain on it, the bounds of friction converge
-    // slowly over the passes; how often this happens depends on the last bit, and on the processor.
+    // If rigid bodies slide on rigid ones under a soft one, or balls rain on it, the bounds of friction converge slowly
+    // over the passes; how often this happens depends on the last bit, and on the processor.
     EXPECT_LE(off->second["value"].get<double>(), row["steps"].get<double>() / 2) << row;
   }
   EXPECT_EQ(groups, (std::set<std::string>{"map", "force", "poisson", "damping", "substeps", "event", "stiff", "cage",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the programs' command lines have in common, tested for each program.
+// The common features of the programs' command lines, tested for each program.
 #include <LinearMath/btScalar.h>
 
 #include <cctype>
@@ -49,7 +49,7 @@ class Options : public testing::Test {
   CommandFolder folder;
 };
 
-/// The check is that of the option's kind, whatever program has it.
+/// The check depends only on the option's kind, not on the program.
 TEST_F(Options, ValuesThatMakeNoSenseAreRefused) {
   for (const char* option : {"--mesh", "--cage", "--out", "--json"}) expectRefusal(kDrop, {option, ""}, option);
   expectRefusal(kDeform, {"--mesh", "m.obj", "--cage", "c.vtk", "--dump-embedding", ""}, "--dump-embedding");

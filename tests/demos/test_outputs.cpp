@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The files that the programs write, and that they overwrite no other: files are identified by what they are, not by
-// their names.
+// The files that the programs write, and that they overwrite no other: files are identified by the file itself, not by
+// name.
 
 #include <filesystem>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the programs refuse: in one line that names it, and before they write a file.
+// Refusals of the programs: in one line that names the reason, and before they write a file.
 #include <tetskin/io/files.h>
 
 #include <set>
@@ -49,7 +49,7 @@ struct Refusal {
   std::string arguments;
   Words words;
 };
-/// Arguments that come first in all the rows of a program; of an option given twice, the last counts.
+/// Arguments that come first in all rows of a program; if an option is given twice, the last counts.
 struct Refused {
   std::string program, first;
   std::vector<Refusal> rows;

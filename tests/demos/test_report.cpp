@@ -69,7 +69,7 @@ TEST(Advice, SaysUpToWhichDeformationLinearModesServe) {
 }
 
 TEST(Advice, FindsTheReferencesOwnErrorFromCoarserOnes) {
-  // Errors relative to the exact solution fall as C edge^p; the reference is such a cage, too.
+  // Errors relative to the exact solution fall as C edge^p; the reference is also such a cage.
   const auto level = [](double edge, double p) {
     return report::CoarserLevel{edge, 3.0 * (std::pow(edge, p) - std::pow(0.01, p))};
   };

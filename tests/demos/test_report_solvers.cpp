@@ -120,7 +120,7 @@ TEST(Xpbd, DampingShortensTheSwing) {
     }
     return static_cast<double>(low);
   };
-  // Without damping it swings to twice the static stretch, but for what the steps damp.
+  // Without damping it swings to twice the static stretch, except for the damping of the steps.
   EXPECT_NEAR(lowest(0.0), -1.0 - 2 * 0.0981, 0.01);
   EXPECT_NEAR(lowest(0.2), -1.0 - 0.0981, 0.005) << "critically damped";
 }

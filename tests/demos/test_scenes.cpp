@@ -150,7 +150,7 @@ TEST(SceneTable, ObstaclesDoWhatTheySay) {
   EXPECT_LT(boxOf(*played("squeeze", 30, options)).sizes().y(), 0.7 * rest.sizes().y());
   const double untouched = boxOf(*played("land", 60, options)).center().x();
   EXPECT_GT(std::abs(boxOf(*played("mill", 60, options)).center().x() - untouched), 0.05);
-  // The body rests until what is below it is removed: a third of a second later it is on the floor.
+  // The body rests until its support is removed: a third of a second later it is on the floor.
   const double lying = boxOf(*played("obstacles_go", 39, options)).min().y();
   EXPECT_LT(boxOf(*played("obstacles_go", 60, options)).min().y(), lying - 0.2);
   // A body that was removed from the world stays where it was.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Appended to a page by its test: has it show two frames with each skin, and leaves in the document what was seen.
+// Appended to a page by its test: makes it show two frames with each skin, and leaves the observations in the document.
 'use strict';
 
 const FRAMES = [0, 100];

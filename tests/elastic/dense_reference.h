@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Eigen's dense decompositions, compiled once: in each source that used them, their templates would take the compiler
-// seconds. What crosses into that one source are plain numbers, column by column, as some tests give Eigen's namespace
+// seconds. Only plain numbers cross into that source, column by column, because some tests give Eigen's namespace
 // another name.
 #pragma once
 

@@ -86,7 +86,7 @@ std::vector<PlainPoint> plainPoints(const Cage& cage, const std::vector<double>&
   for (const QuadraticTet& tet : quadratic) {
     const Eigen::Matrix<double, 3, 4> gradients = weightGradients(cage.mesh.nodes, tet.nodes.data());
     for (int q = 0; q < 4; ++q) {
-      // The rule of four points that is exact for quadratics: (5 - sqrt 5) / 20, and for one weight what is left of 1.
+      // The rule of four points that is exact for quadratics: (5 - sqrt 5) / 20, and for one weight the rest to 1.
       Weights weights = Weights::Constant((5.0 - std::sqrt(5.0)) / 20.0);
       weights[q] = 1.0 - 3.0 * weights[q];
       points.push_back({{tet.nodes.begin(), tet.nodes.end()},

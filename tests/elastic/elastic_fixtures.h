@@ -103,8 +103,8 @@ inline Eigen::Matrix<double, 6, 6> rigidMass(const Points& nodes, const std::vec
   return sum;
 }
 
-/// Tets of which no two are alike, linear ones, quadratic ones of eight each, or some of both; the number of each kind
-/// is no multiple of eight.
+/// Tets that all differ: linear ones, quadratic ones of eight each, or some of both; the number of each kind is not a
+/// multiple of eight.
 Cage oddCage();
 Cage oddQuadraticCage();
 Cage oddMixedCage();
@@ -116,7 +116,7 @@ inline std::vector<Cage> oddCages() {
 std::vector<double> variedScale(const Cage& cage);
 constexpr Lame kLame{1.0, 0.7};
 
-/// A point at which a tet, linear or quadratic, is integrated: what formulas of finite elements need, in double.
+/// An integration point of a tet, linear or quadratic: the data for formulas of finite elements, in double.
 struct PlainPoint {
   std::vector<int> nodes;
   Eigen::Matrix3Xd gradients;  ///< of the nodes' shape functions
@@ -127,7 +127,7 @@ struct PlainPoint {
 /// scale  see `variedScale`
 std::vector<PlainPoint> plainPoints(const Cage& cage, const std::vector<double>& scale);
 
-/// A deformed body, and its matrix computed in a way of its own.
+/// A deformed body, and its matrix computed independently.
 struct DeformedBody {
   DeformedBody(const Cage& rest, double amount, double alphaOfMatrix);
 
@@ -179,7 +179,7 @@ struct AssembledBody : DeformedBody {
     for (std::size_t i = 0; i < 3 * nodes.size(); ++i)
       wide[wideIndex(i)] = static_cast<S>(v[static_cast<Eigen::Index>(i)]);
   }
-  /// Four scalars per slot, the last of which has no meaning.
+  /// Four scalars per slot; the last one has no meaning.
   std::vector<S> toPoints(const Eigen::VectorXd& v) const {
     std::vector<S> points(4 * matrix.slotCount(), S(0));
     for (std::size_t n = 0; n < nodes.size(); ++n) {

@@ -29,7 +29,7 @@ Eigen::VectorXd solutionOf(const AssembledBody<S>& body) {
   return body.fromWide(body.matrix.solution());
 }
 
-/// Sets what the solver expects: a start, and the residual that it leaves.
+/// Sets the solver's input: a start, and its residual.
 template <class S>
 void begin(AssembledBody<S>& body, const Eigen::MatrixXd& a, const Eigen::VectorXd& b, const Eigen::VectorXd& start) {
   body.toWide(start, body.matrix.solution());
@@ -40,7 +40,7 @@ inline Eigen::VectorXd rightSide(const AssembledBody<double>& body, unsigned see
   return Random(seed).vector(3 * body.nodes.size());
 }
 
-/// What the solver finds from this start.
+/// The solver's result from this start.
 inline VectorXd solvedFrom(const VectorXd& start, AssembledBody<double>& body, const MatrixXd& a, const VectorXd& b) {
   begin(body, a, b, start);
   Solver solver;

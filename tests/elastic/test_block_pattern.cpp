@@ -27,7 +27,7 @@ BlockPattern patternOf(const TetMesh& cage) {
   return BlockMatrix<double>(cage.nodeCount(), elastic_detail::restTets(cage)).pattern();
 }
 
-/// By slot: its node, -1 where there is none.
+/// By slot: its node, or -1.
 std::vector<int> nodesOf(const BlockPattern& pattern) {
   std::vector<int> nodes(pattern.slotCount(), -1);
   for (std::size_t n = 0; n < pattern.slotOf.size(); ++n) nodes[pattern.slotOf[n]] = static_cast<int>(n);

@@ -131,7 +131,7 @@ VectorXd displacementsOf(const TetMesh& mesh, const Polynomial& polynomial) {
   return u;
 }
 
-/// Quadratic tets of various shapes, of which every third is linear again; the tets are in no order.
+/// Quadratic tets of various shapes, every third of them made linear again; the tets are unordered.
 Cage mixedCage() {
   Cage cage = refineQuadratic(jittered(latticeCage(2, 1, 1), 0.2, 3)).value();
   int number = 0;

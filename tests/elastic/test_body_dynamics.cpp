@@ -127,7 +127,7 @@ TYPED_TEST(BodyDynamicsOf, StartsAgainFromASolution) {
   });
 }
 
-/// A history after some steps of 0.1 s with the same impulses, of which all but a fifth is damping.
+/// A history after some steps of 0.1 s with the same impulses; all but a fifth of these is damping.
 ImpulseHistory<double> historyOf(const BlockMatrix<double>& matrix, const AlignedVector<double>& impulses, int steps) {
   ImpulseHistory<double> history;
   for (int k = 0; k < steps; ++k) {

@@ -246,7 +246,7 @@ TEST(Calibration, OfAMixedCageIsBetweenThoseOfLinearAndQuadraticOnes) {
   }
 }
 
-/// Of a beam whose half is quadratic, the other half alone was too stiff.
+/// In a beam with one quadratic half, only the other half was too stiff.
 TEST(Calibration, OfAMixedCageLeavesFullQuadraticTetsAlone) {
   Cage mixed = mixedBeam();
   const CalibrationReport report = calibrate(mixed).value();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient method for one body that moves freely: what it finds, and when it stops.
+// The conjugate gradient method for one free body: its result, and when it stops.
 
 #include <utility>
 

@@ -10,13 +10,13 @@
 namespace tetskin::test {
 namespace {
 
-/// The solution of a x = b in the span of `basisOfTheFree`; all other components stay as they are at the start.
+/// The solution of a x = b in the span of `basisOfTheFree`; all other components keep their values from the start.
 VectorXd solveWithin(const MatrixXd& a, const VectorXd& b, const VectorXd& start, const MatrixXd& basisOfTheFree) {
   const MatrixXd& z = basisOfTheFree;
   return start + z * solved(z.transpose() * a * z, z.transpose() * (b - a * start));
 }
 
-/// A basis of what is left free, in columns, from the fixed directions by node.
+/// A basis of the free directions, in columns, from the fixed directions by node.
 MatrixXd freeBasis(std::size_t nodes, const std::vector<std::pair<std::size_t, Vector3d>>& fixed) {
   const auto size = static_cast<Eigen::Index>(3 * nodes);
   MatrixXd projection = MatrixXd::Identity(size, size);

@@ -264,7 +264,7 @@ TYPED_TEST(CorotatedTetsOf, AnEvenStrainHasItsEnergyAndLeavesInnerNodesAlone) {
 }
 
 /// A small bending, whose displacements are quadratic and whose stress, linear, is in equilibrium without forces
-/// inside. Its stress is not even: linear tets meet it with forces inside.
+/// inside. Its stress is not uniform: linear tets have forces inside.
 TEST(CorotatedTets, QuadraticOnesBendWithoutForcesInside) {
   constexpr double kCurvature = 1e-6;
   const double poisson = 0.5 * kLame.lambda / (kLame.lambda + kLame.mu);

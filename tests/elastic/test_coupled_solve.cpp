@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The conjugate gradient method with additional terms beside its matrices, and over several matrices.
+// The conjugate gradient method with terms in addition to its matrices, and over several matrices.
 
 #include <limits>
 #include <utility>

@@ -122,8 +122,8 @@ TEST(ElasticBars, ACantileverOfFewQuadraticTetsBendsAsTheTextbookSays) {
   }
 }
 
-/// An even pressure on the top of a block, in two ways: spread by small triangles, as contact does it, it sinks the
-/// corners of quadratic tets deeper than their other nodes, by a third of what it compresses a layer of such tets.
+/// A uniform pressure on the top of a block, in two ways. Spread over small triangles, as contact does, it sinks the
+/// corners of quadratic tets deeper than their other nodes, by a third of the compression of a layer of such tets.
 TEST(ElasticBars, PressureOnSmallTrianglesSinksCornersOfQuadraticTetsByAThirdOfALayerMore) {
   constexpr int kAcross = 4, kHigh = 2;
   constexpr double kPressure = 10.0;
@@ -164,7 +164,7 @@ TEST(ElasticBars, PressureOnSmallTrianglesSinksCornersOfQuadraticTetsByAThirdOfA
   EXPECT_NEAR(deeper(Cage(cage.mesh), bySmallTriangles), 0.0, 0.04);
 }
 
-/// What a solve leaves is small beside gravity in each step, and must not add up to a wrong sag, or to a creeping one.
+/// The residual of a solve is small compared with gravity in each step, and must not add up to a wrong or creeping sag.
 TEST(ElasticBars, AHeldBarComesToRestWhereItBelongsAndNeedsNoIterationsThere) {
   const TetMesh cage = latticeCage(20, 3, 3, 0.1);
   const auto settled = [&](double tolerance) {

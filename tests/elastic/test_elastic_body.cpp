@@ -23,7 +23,7 @@ struct Refused {
   StatusCode code = StatusCode::InvalidOption;
 };
 
-/// Where the options give nothing else, a body has what its cage says.
+/// Unless options say otherwise, a body uses the data of its cage.
 TYPED_TEST(ElasticBodyOf, TakesFactorsAndMassesFromItsCage) {
   Cage cage(latticeCage(2, 1, 1));
   ElasticOptions options = soft();
@@ -40,7 +40,7 @@ TYPED_TEST(ElasticBodyOf, TakesFactorsAndMassesFromItsCage) {
   options.stiffnessScale.assign(cage.mesh.tetCount(), 3.0);
   EXPECT_NEAR(energyOf() / plain, 3.0, 1e-5);
 
-  // The momentum that a stretched body keeps tells its masses.
+  // The momentum that a stretched body keeps reveals its masses.
   cage.masses = lumped(cage.mesh);
   cage.masses[0] *= 100.0;
   options.density = 7.0;

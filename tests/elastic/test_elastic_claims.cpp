@@ -90,7 +90,7 @@ TYPED_TEST(ElasticClaimsOf, SpinningFreelyKeepsMomentumAndGainsNoEnergyFromSoftT
   }
 }
 
-/// No rigid motion along straight lines turns so fast: bodies swell, but keep what they must.
+/// No rigid motion along straight lines turns so fast: bodies swell, but conserve their momenta.
 TYPED_TEST(ElasticClaimsOf, KeepsAngularMomentumBeyondOneRadianPerStep) {
   const TetMesh cage = block();
   for (const double youngsModulus : {1e3, 1e6, 1e9}) {
@@ -187,7 +187,7 @@ TYPED_TEST(ElasticClaimsOf, ABodyThatIsTurnedByItsHeldNodesFollowsUnstrained) {
   }
 }
 
-/// Each component moves as a rigid body of its own.
+/// Each component moves as a separate rigid body.
 TYPED_TEST(ElasticClaimsOf, PartsThatShareNoNodeSpinByThemselves) {
   TetMesh cage = block();
   const auto first = static_cast<int>(cage.nodeCount());

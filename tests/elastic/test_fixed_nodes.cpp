@@ -43,7 +43,7 @@ Matrix3d freeInverseOf(const BlockMatrix<S>& matrix, std::size_t node) {
   return symmetric(m);
 }
 
-/// What the sweeps use as the inverse of a node's block: their result for a residual that is 0 at all other nodes.
+/// The inverse of a node's block as used by the sweeps: their result for a residual that is 0 at all other nodes.
 template <class S>
 Matrix3d inverseInUse(BlockMatrix<S>& matrix, std::size_t node) {
   Matrix3d inverse;

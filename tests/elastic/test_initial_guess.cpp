@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where a solve begins, according to the solves before.
+// The initial guess of a solve, from previous solves.
 #include <tetskin/elastic/src/dynamics/initial_guess.h>
 
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kManyIterations = 100;
 
-/// A body of which two nodes are pinned, with a linear system and solutions of steps before.
+/// A body with two pinned nodes, a linear system, and solutions of previous steps.
 struct HeldBody {
   HeldBody() : body(smallCage()) {
     for (const std::size_t n : {std::size_t{2}, std::size_t{9}}) body.hold(n);
@@ -31,7 +31,7 @@ struct HeldBody {
   MatrixXd freeMatrix() const { return a(unknowns, unknowns); }
   /// A vector without the components of pinned nodes.
   VectorXd freePart(const VectorXd& v) const { return v(unknowns); }
-  /// The solution with pinned nodes as they are at the start.
+  /// The solution with pinned nodes as at the start.
   VectorXd exact() const {
     const VectorXd correction = solved(freeMatrix(), freePart(b - a * start));
     VectorXd x = start;

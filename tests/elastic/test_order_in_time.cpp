@@ -14,7 +14,7 @@ namespace tetskin::test {
 namespace {
 
 const std::array<double, 3> kDown = {0, -9.81, 0};
-/// So little that tets do not turn enough for the matrix to be made anew.
+/// So small that tets do not turn enough for a new matrix.
 const std::array<double, 3> kFaintlyDown = {0, -0.01, 0};
 
 TetMesh beamCage() {
@@ -84,8 +84,8 @@ TEST(OrderInTime, StepsThatBecomeMuchLongerOrShorterAreStable) {
   }
 }
 
-/// What is so fast and so large that the matrix is far from the stiffness of the deformed body: a bar is bent, and let
-/// go. The energies are those of positions between two steps, with the mean of their velocities.
+/// Motion so fast and large that the matrix is far from the stiffness of the deformed body: a bar is bent, and
+/// released. The energies are those of positions between two steps, with the mean of their velocities.
 TEST(OrderInTime, ABodyThatIsBentFarAndLetGoGainsNoEnergy) {
   const TetMesh cage = latticeCage(8, 2, 2, 0.125);
   std::vector<double> masses = lumped(cage);
@@ -226,7 +226,7 @@ TEST(OrderInTime, ABodyThatIsPutBackToRestStaysThere) {
   }
 }
 
-/// Without, the impulses that the last step has left would throw the stopped nodes back.
+/// Otherwise the impulses left by the last step would throw the stopped nodes back.
 TEST(OrderInTime, ABodyThatIsStoppedStartsAgainAsOneThatHasNeverMoved) {
   const TetMesh cage = beamCage();
   for (const double damping : {0.0, 0.02}) {

@@ -31,7 +31,7 @@ double byPoints(const RestQuadraticTet& rest, const std::function<double(const E
   return sum * rest.volume / kQuadraticPoints;
 }
 
-/// The same over the cells of a cage, whose factor is by cell: by points so many in each that quadratics are exact.
+/// The same over the cells of a cage, with a factor per cell: by enough points in each for exact quadratics.
 double byCells(const Cage& cage, const std::function<double(std::size_t cell)>& factor,
                const std::function<double(const Eigen::Vector3d&)>& f) {
   const QuadraticTet tet = quadraticTets(cage).value().at(0);
@@ -75,7 +75,7 @@ TEST(RestQuadraticTets, AreIntegratedExactlyUpToSquares) {
                     cage, [](std::size_t) { return 1.0; }, f),
                 1e-14);
   }
-  // A full tet is integrated by the usual rule: (5 - sqrt 5) / 20, and for one weight what is left of 1.
+  // A full tet is integrated by the usual rule: (5 - sqrt 5) / 20, and for one weight the rest to 1.
   const double far = (5.0 - std::sqrt(5.0)) / 20.0;
   for (std::size_t q = 0; q < kQuadraticPoints; ++q) {
     const Eigen::Vector3d p = Eigen::Vector3d::Map(&rest.points[3 * q]);

@@ -75,7 +75,7 @@ TEST(RigidMotions, LeaveWhatIsOrthogonalToThemByMassAsItWas) {
   Fields again = deformation;
   rigid.removeFrom(again);
   EXPECT_LT((again - deformation).norm(), 1e-12 * before.norm());
-  // What has been removed is a rigid motion.
+  // The removed part is a rigid motion.
   const Fields taken = before - deformation;
   const Eigen::MatrixXd found = solved(motions.transpose() * motions, motions.transpose() * taken);
   EXPECT_LT((motions * found - taken).norm(), 1e-12 * before.norm());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Of one vibration, whose steps are exact functions of its frequency, of the damping and of the step.
+// A single vibration, whose steps are exact functions of its frequency, the damping and the step.
 #include <tetskin/elastic/src/dynamics/time_scheme.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The solve in two levels: what the matrix is as a sum of strains, what groups of nodes do, and what both find
-// together.
+// The solve in two levels: the matrix as a sum of strains, the groups of nodes, and the result of both together.
 #include <gtest/gtest.h>
 #include <tetskin/elastic/src/dynamics/two_level_gradient.h>
 
@@ -115,7 +114,7 @@ TEST(GroupMotions, AnswerTheLoadsOfTheirOwnMotionsExactly) {
   std::vector<double> masses(one.slots, 0.0);
   for (std::size_t n = 0; n < slotOf.size(); ++n) masses[slotOf[n]] = one.body.masses[n];
   ASSERT_TRUE(groups.assemble(stiffness, masses, one.bySlot(one.positions())));
-  // What answers some load is a motion of groups; its own load is answered by itself.
+  // The answer to any load is a motion of groups; the load of such a motion is answered by the motion itself.
   std::vector<double> motion(3 * one.slots, 0.0), again = motion;
   groups.addResponse(one.bySlot(Random(7).vector(3 * slotOf.size())), motion);
   std::vector<double> load(motion.size());

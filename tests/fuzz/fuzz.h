@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the fuzzers share. Each fuzzer is one function, called with bytes by libFuzzer, or by `random_driver.cpp` where
-// the compiler has no libFuzzer.
+// Code shared by the fuzzers. Each fuzzer is one function, called with bytes by libFuzzer, or by `random_driver.cpp`
+// where the compiler has no libFuzzer.
 #pragma once
 
 #include <cstddef>

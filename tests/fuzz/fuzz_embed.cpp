@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Small cages and meshes with arbitrary coordinates and indices: what embed accepts has finite weights that sum to 1
-// and survives save and load, and what it refuses has a message. The remaining bytes are loaded as an embedding.
+// Small cages and meshes with arbitrary coordinates and indices: accepted input gives finite weights that sum to 1 and
+// survive save and load, and refused input gives a message. The remaining bytes are loaded as an embedding.
 #include "fuzz.h"
 
 #include <tetskin/core/embedding.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the fuzzers of files share.
+// Code shared by the fuzzers of files.
 #pragma once
 
 #include "fuzz.h"

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Stands in for libFuzzer, with the options that the tests use: -max_total_time=SECONDS, and folders of seeds. Runs
-// every seed, and then seeds changed at random until the time is over. What was tried last is in the file crash_input.
+// every seed, and then seeds changed at random until the time is over. The last input is in the file crash_input.
 #include "fuzz.h"
 
 #include <chrono>
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   std::signal(SIGSEGV, keepInput);
   std::vector<Input> seeds = readSeeds(folders);
   for (const Input& seed : seeds) run(seed);
-  // Where there are no seeds: bytes at random, of all lengths.
+  // Without seeds: random bytes of all lengths.
   std::mt19937 random(1);
   for (std::size_t length = 16; seeds.size() < 8; length *= 2) {
     seeds.emplace_back(length);

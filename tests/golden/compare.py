@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a change does to the bits: runs the demos of two builds, and says which scenes end differently.
+"""The effect of a change on the bits: runs the demos of two builds, and says which scenes end differently.
 
     tests/golden/compare.py BEFORE AFTER [--quick] [--only TEXT...]
 
-BEFORE and AFTER are build folders with demos, of two commits on one machine: processors with other vector instructions
-round differently, and so do compilers, which is why no hashes are kept here. One line per scene that differs, that only
-one of them has, or that failed; exit status 1 if there is any. Without --quick a minute and a half, and every case of
+BEFORE and AFTER are build folders with demos, of two commits on one machine: no hashes are stored, because processors
+with other vector instructions, and other compilers, round differently. One line per scene that differs, that only one
+of them has, or that failed; exit status 1 if there is any. Without --quick a minute and a half, and every case of
 stress by tetskin's force; the same folder twice shows that runs repeat themselves.
 """
 import argparse
@@ -84,7 +84,7 @@ def hash_of_cage(build, arguments):
 
 def hashes_of_stress(build, quick):
     """The hashes of the cases, by name."""
-    now = (pathlib.Path(build) / "demos" / "tetskin_measure").exists()  # earlier, a program of their own
+    now = (pathlib.Path(build) / "demos" / "tetskin_measure").exists()  # earlier, a separate program
     program = ["tetskin_measure", "--group", "stress"] if now else ["tetskin_stress"]
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "stress.json"

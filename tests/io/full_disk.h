@@ -10,7 +10,7 @@
 
 namespace tetskin::test {
 
-/// What `write` returns while files may only have so many bytes. This stands in for a full disk.
+/// The result of `write` while the size of files is limited to this many bytes. This stands in for a full disk.
 template <class Write>
 Status onAFullDisk(rlim_t bytes, Write&& write) {
   rlimit before{};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A GLB as tinygltf reads it, the rules of glTF 2.0 that the Khronos validator checks, and what a player draws.
+// A GLB as tinygltf reads it, the rules of glTF 2.0 that the Khronos validator checks, and the vertices that a player
+// draws.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -24,7 +25,7 @@ class GlbModel {
   std::vector<double> numbers(int accessor) const;
   /// The index of the node with this name; expects that there is exactly one.
   int node(const std::string& name) const;
-  /// What a player draws of a node's mesh in a frame: linear blend skinning, or the mesh in the node's place.
+  /// A player's drawing of a node's mesh in a frame: linear blend skinning, or the mesh in the node's place.
   std::vector<Eigen::Vector3d> positions(const std::string& name, std::size_t frame) const;
   /// The triangles of a node's mesh with their material's name, by primitive.
   std::vector<std::string> materials(const std::string& name) const;

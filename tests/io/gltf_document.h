@@ -25,7 +25,7 @@ struct Document {
   std::string bytes, views, accessors, moreBuffers;
   int viewCount = 0, accessorCount = 0;
 
-  /// Adds a view of its own. Returns its number.
+  /// Adds a separate view. Returns its number.
   int view(const std::string& data, int stride = 0) {
     bytes.resize((bytes.size() + 3) / 4 * 4);
     views += (viewCount > 0 ? "," : "") + std::string(R"({"buffer":0,"byteLength":)") + std::to_string(data.size()) +
@@ -55,7 +55,7 @@ struct Document {
            std::to_string(bytes.size()) + (uri == inChunk ? "" : R"(,"uri":")" + source + "\"") + "}" + moreBuffers +
            "]}";
   }
-  /// after  what follows the chunks
+  /// after  bytes that follow the chunks
   std::string glb(const std::string& rest, const std::string& after = "") const {
     std::string text = json(rest, inChunk), binary = bytes;
     text.resize((text.size() + 3) / 4 * 4, ' ');

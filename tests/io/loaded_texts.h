@@ -48,7 +48,7 @@ inline void expectTwoTets(const Result<TetMesh>& mesh) {
   EXPECT_EQ(mesh.value().tets, twoTets().tets);
 }
 
-/// What is read of a tet of second order: eight tets, whose node k is at the middle of an edge of these corners.
+/// The tets read from a tet of second order: eight tets, whose node k is at the middle of an edge of these corners.
 /// corners, middles  by edge 01, 02, 03, 12, 13, 23: indices of nodes
 inline void expectQuadraticTet(const Result<Cage>& cage, const std::array<int, 4>& corners,
                                const std::array<int, 6>& middles) {

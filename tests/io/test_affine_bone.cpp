@@ -27,7 +27,7 @@ TEST(AffineBone, HoldsAnyMap) {
     anew.set(map);
     expectHolds(anew, map);
   }
-  // Of rank 2, 1 and 0; mirrored; with factors of very different size.
+  // Matrices of rank 2, 1 and 0; mirrored; with factors of very different size.
   const Eigen::Vector3d a(1, 2, 3), b(-1, 0.5, 2), c(0.2, -1, 1), d(2, 1, -1);
   for (const double small : {0.0, 1e-12, 1e-6}) {
     for (const double size : {1e-8, 1.0, 1e8}) {

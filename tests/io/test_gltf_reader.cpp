@@ -75,7 +75,7 @@ TEST(LoadGltf, AMirroredMeshStaysTheRightWayOut) {
   EXPECT_LT((mesh.normals[0] - Eigen::Vector3f(0.6f, 0, -0.8f)).norm(), 1e-6f);
 }
 
-/// As glTF says: where the transforms of a node and those above it mirror an odd number of times, all together.
+/// As glTF says: if the transforms of a node and of those above it together mirror an odd number of times.
 TEST(LoadGltf, WindingIsTurnedAsOftenAsNodesMirror) {
   struct Case {
     const char* nodes;

@@ -92,7 +92,7 @@ TEST(HighOrderTets, CurvedEdgesOfACageAreStraightened) {
             std::string::npos)
       << report.describe();
   EXPECT_EQ(report.describe().find('\n'), std::string::npos);
-  // Tets alone keep them: a deformed mesh is what it is.
+  // A mesh of tets alone keeps them: it may be deformed.
   const Result<TetMesh> tets = loadTetMeshText("c.vtk", text, &report);
   ASSERT_TRUE(tets.ok()) << tets.status().message;
   EXPECT_EQ(tets.value().tets, expected.mesh.tets);

@@ -150,7 +150,7 @@ TEST(LoadObj, ConcavePolygonsAreNotFolded) {
   const TriangleMesh mesh = loadObj("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 1 0\nf 1 2 3 4 5\n").value();
   ASSERT_EQ(mesh.triangleCount(), 3u);
   EXPECT_DOUBLE_EQ(area(mesh), 5.5);
-  // A comb, of which no single corner sees everything.
+  // A comb, where no single corner sees everything.
   const TriangleMesh comb =
       loadObj(
           "v 0 0 0\nv 7 0 0\nv 7 0 3\nv 6 0 3\nv 6 0 1\nv 4 0 1\nv 4 0 3\nv 3 0 3\nv 3 0 1\nv 1 0 1\nv 1 0 3\nv 0 0 3\n"
@@ -230,7 +230,7 @@ TEST(LoadObj, FacesThatNameWhatTheFileLacksAreReadWithoutIt) {
     EXPECT_EQ(report.describe(),
               "2 faces read without texture coordinates or normals that do not exist (first in line 4)");
   }
-  // What comes later exists.
+  // Vertices defined later exist.
   MeshFileReport report;
   const TempFolder folder;
   const Result<TriangleMesh> mesh = loadMesh(folder.write("m.obj", three + "f 1//1 2//1 3//1\nvn 0 0 1\n"), &report);

@@ -11,7 +11,7 @@ namespace {
 const std::string kFacet =
     " facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 0\n  endloop\n endfacet\n";
 
-/// A binary file of one triangle that states so many.
+/// A binary file of one triangle that claims this many.
 std::string binaryStl(std::uint32_t triangles, const std::string& begin = "") {
   std::string bytes = begin + std::string(80 - begin.size(), '\0');
   io::appendLittleEndian(triangles, bytes);

@@ -50,7 +50,7 @@ std::string binaryVtk() {
          word(3) + "\nCELL_TYPES 1\n" + word(10) + "\n";
 }
 
-/// Sound files of every form, the last of them a cage with all that a cage may have.
+/// Sound files of every form; the last is a cage with all possible data.
 std::vector<std::pair<std::string, std::string>> validFiles() {
   const TempFolder folder;
   std::vector<std::pair<std::string, std::string>> files;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// With `deterministic`, states are those of a native program, to the bit: of live_native of tests/live, by the library's
-// C++ alone. Its path is in TETSKIN_LIVE_NATIVE.
+// With `deterministic`, states equal those of a native program to the bit: live_native of tests/live, which uses only
+// the library's C++. Its path is in TETSKIN_LIVE_NATIVE.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdtempSync, rmSync, writeFileSync} from "node:fs";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is in the npm package, and that it loads wherever it is put.
+// The contents of the npm package, and that it loads from any place.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from "node:fs";
@@ -34,7 +34,7 @@ test("licences of all that is inside are in the package", () => {
 const rulesOfBuild = join(folder, "../build.ninja");
 
 test("nothing else is linked", {skip: !existsSync(rulesOfBuild) && "the package is not where it was built"}, () => {
-  // Every source that was compiled is of the library, of Bullet, or of what has a licence in the package.
+  // Every compiled source belongs to the library, to Bullet, or to software with a licence in the package.
   const rules = readFileSync(rulesOfBuild, "utf8");
   const sources = [...rules.matchAll(/^build \S+[.]o: \S+ (\S+)/gm)].map(([, source]) => source);
   assert.ok(sources.length > 20);

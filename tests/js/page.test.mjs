@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The programs of the pages run as they are written, where the package is installed as npm installs it; and after the
-// program, all pieces of the page.
+// The programs of the pages run as written, with the package installed as by npm; and after the program, all pieces of
+// the page.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync} from "node:fs";
@@ -38,7 +38,7 @@ for (const page of ["plugin/docs/javascript.md", "plugin/js/README.md"]) {
   });
 }
 
-// What a browser's worker has, and what the page leaves to its reader.
+// Names of a browser's worker, and names that the page leaves to its reader.
 const around = `
 const posted = [], postMessage = message => posted.push(message);
 const text = readFileSync("node_modules/tetskin/tetskin.js", "utf8"), workersOwnScript = "tetskin.load()";

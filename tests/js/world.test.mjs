@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world: what falls, is held, thrown, picked, saved and deleted.
+// A world: objects that fall, are held, thrown, picked, saved and deleted.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 

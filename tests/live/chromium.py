@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Headless Chromium, driven over the DevTools protocol through two pipes: no port, no WebSocket, no package.
 
-Input goes in where the operating system's would, so that a page's own handlers of pointers are what is tested. What a
-page and its workers say in the console, throw, or ask of the network is recorded.
+Input enters where the operating system's would, so that a page's own pointer handlers are tested. What a page and its
+workers say in the console, throw, or ask of the network is recorded.
 """
 import base64
 import fcntl
@@ -19,7 +19,7 @@ import zlib
 from pathlib import Path
 
 PROGRAM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-# Drawn without a graphics card; no calls home; no prompts; timers of a page that nobody looks at run as ever.
+# Drawn without a graphics card; no calls home; no prompts; timers of an invisible page run normally.
 FLAGS = ["--headless", "--no-sandbox", "--remote-debugging-pipe", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
          "--disable-extensions", "--disable-background-timer-throttling", "--disable-backgrounding-occluded-windows",
@@ -34,7 +34,7 @@ class Fault(Exception):
 
 
 class Chromium:
-    """A browser of its own, with a profile that is thrown away.
+    """A separate browser, with a temporary profile.
 
     flags    besides FLAGS; a flag `-NAME` takes one of these away
     patience seconds that a single answer may take
@@ -156,15 +156,15 @@ class Chromium:
 
 
 class Page:
-    """A tab: its console, its workers, and what is done with mouse, finger and keys. Positions are in CSS pixels from
-    the upper left corner of what is visible."""
+    """A tab: its console, its workers, and actions with mouse, finger and keys. Positions are in CSS pixels from the
+    upper left corner of the visible part."""
 
     def __init__(self, browser, target, session):
         self.browser, self.target, self.session = browser, target, session
         self.phone = False
         self.workers = {}    # session -> address
         self.said = []       # (kind, text) of the console, of the page and its workers
-        self.faults = []     # what was thrown and not caught, and errors in the console
+        self.faults = []     # uncaught exceptions, and errors in the console
         self.requests = []   # addresses that the page or a worker has asked for
         self.loaded = 0
         self.finger = None
@@ -235,7 +235,7 @@ class Page:
         self.browser.wait(lambda: self.loaded > before, patience, f"{address} has not loaded")
 
     def evaluate(self, expression, patience=None, session=None):
-        """The value of a JavaScript expression; of a promise, what it resolves to."""
+        """The value of a JavaScript expression; for a promise, its result."""
         answer = self.browser.call("Runtime.evaluate", session or self.session, patience, expression=expression,
                                    returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
@@ -278,7 +278,7 @@ class Page:
             self.mouse("mousePressed", x, y)
 
     def move(self, x, y, steps=10, pause=0.02):
-        """Moves what is pressed, in steps, as a hand does."""
+        """Moves the pressed pointer in steps, as a hand does."""
         x0, y0 = self.finger
         for step in range(1, steps + 1):
             at = (x0 + (x - x0) * step / steps, y0 + (y - y0) * step / steps)
@@ -339,7 +339,7 @@ class Page:
             self.call("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
 
     def screenshot(self, path=None):
-        """What is visible, as PNG; written to a file if one is given."""
+        """The visible part, as PNG; written to a file if one is given."""
         data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
         if path is not None:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
@@ -349,7 +349,7 @@ class Page:
     def javascript_memory(self):
         """Bytes of JavaScript's heaps in use after a collection, with those of arrays, which are outside of them, in the page
         and in its workers together."""
-        self.browser.listen(0.2)  # workers that have ended are told
+        self.browser.listen(0.2)  # ended workers are reported
         total = 0
         for session in (self.session, *self.workers):
             self.browser.call("HeapProfiler.collectGarbage", session)

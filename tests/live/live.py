@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What tests of the live page share: the page, as a person or its hook `tetskinLive` has it; its files; its pictures."""
+"""Code shared by tests of the live page: the page, for a person or its hook `tetskinLive`; its files; its pictures."""
 import functools
 import http.server
 import json
@@ -62,7 +62,7 @@ class Live:
         return self.page.evaluate(f"document.querySelector({json.dumps(selector)}).textContent")
 
     def choose(self, identifier, value):
-        """Chooses from a list. A headless browser opens none: this is what it would send."""
+        """Chooses from a list. A headless browser opens none: this is the event that it would send."""
         self.page.evaluate(f"(() => {{ const list = document.getElementById({json.dumps(identifier)}); "
                            f"list.value = {json.dumps(value)}; list.dispatchEvent(new Event('input', {{bubbles: true}})); "
                            "list.dispatchEvent(new Event('change', {bubbles: true})); })()")
@@ -105,7 +105,7 @@ class WithBrowser(unittest.TestCase):
         return live
 
     def new_page(self, **more):
-        """A page of its own."""
+        """A separate page."""
         live = Live(self.browser, **more)
         self.addCleanup(live.close)
         self.addCleanup(self.check_console, live)
@@ -119,7 +119,7 @@ class WithBrowser(unittest.TestCase):
 
 
 def colours(png):
-    """Of a picture, how many pixels have each colour, of 16 shades a channel; every fourth row."""
+    """The number of a picture's pixels of each colour, with 16 shades per channel; every fourth row."""
     width, _, channels, rows = chromium.pixels(png)
     counts = {}
     for row in rows[::4]:
@@ -136,7 +136,7 @@ def script_of(page, name):
 
 
 class Server:
-    """The page's folder, served on this machine alone. Records what was asked for."""
+    """The page's folder, served on this machine alone. Records the request."""
 
     def __init__(self, folder):
         asked = self.asked = []

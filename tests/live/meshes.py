@@ -36,7 +36,7 @@ def obj(positions, triangles):
 
 
 def ply(positions, triangles, vertices=None, faces=None):
-    """A binary PLY; with other counts in its header than it has, if given."""
+    """A binary PLY; with wrong counts in its header, if given."""
     header = ("ply\nformat binary_little_endian 1.0\n"
               f"element vertex {len(positions) if vertices is None else vertices}\n"
               "property float x\nproperty float y\nproperty float z\n"
@@ -47,7 +47,7 @@ def ply(positions, triangles, vertices=None, faces=None):
 
 
 def glb(positions, triangles, count=None):
-    """A GLB with one mesh; with another count of positions than it has, if given."""
+    """A GLB with one mesh; with a wrong count of positions, if given."""
     indices = b"".join(struct.pack("<3I", *one) for one in triangles)
     points = b"".join(struct.pack("<3f", *one) for one in positions)
     low, high = ([pick(one[k] for one in positions) for k in range(3)] for pick in (min, max))
@@ -68,7 +68,7 @@ def glb(positions, triangles, count=None):
 
 
 def good():
-    """Name and bytes of files of which each becomes a body."""
+    """Name and bytes of files, each of which becomes a body."""
     shape = ball()
     return [("ball.obj", obj(*shape)), ("ball.ply", ply(*shape)), ("BALL.GLB", glb(*shape))]
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Plays a scene of the live page natively, to be compared with what JavaScript makes of it: the state's bits, with
-// `deterministic`, and the time.
+// Plays a scene of the live page natively, for comparison with JavaScript: the state's bits, with `deterministic`, and
+// the time.
 //   live_native SCENE FRAMES [--any] [--fast]   SCENE: what describe.js writes
-// Prints the hash of the state after each 30 frames of four substeps, and the median of what frames took, in
-// milliseconds, with the instructions that each processor of this architecture has.
+// Prints the hash of the state after each 30 frames of four substeps, and the median time of frames, in milliseconds,
+// with the instructions that each processor of this architecture has.
 //   --any   with those that this processor has
 //   --fast  without `deterministic`
 #include <btBulletDynamicsCommon.h>

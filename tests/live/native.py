@@ -23,7 +23,7 @@ COMPARED, FRAMES, EVERY = ("serpent", "heap", "stack"), 600, 30
 
 
 def stored_scene(live, scene, folder):
-    """The file of a scene, with its meshes beside it, as the page's worker has them."""
+    """The file of a scene, with its meshes beside it, the same as in the page's worker."""
     described = live.page.evaluate(f"{DESCRIBE}; describeScene({json.dumps(scene)}, simulation.settings)",
                                    session=live.worker())
     lines = []
@@ -38,7 +38,7 @@ def stored_scene(live, scene, folder):
 
 
 def native_hashes(live, scene, frames):
-    """Of the state after each 30 frames, of the scene that the page has."""
+    """Hashes of the state after each 30 frames of the page's scene."""
     with tempfile.TemporaryDirectory() as folder:
         said = subprocess.run([NATIVE, stored_scene(live, scene, Path(folder)), str(frames)], capture_output=True, text=True,
                               check=True).stdout

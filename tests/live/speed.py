@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a frame of the live page costs: four substeps of the serpent on ramp and dome, and then of all scenes. By hand, on
-a machine that does nothing else; prints two tables.
+"""The cost of a frame of the live page: four substeps of the serpent on ramp and dome, and then of all scenes. Run it
+by hand, on an idle machine; prints two tables.
 
 speed.py [FRAMES [ROUNDS]]   by default 240 frames, five rounds
 
 By turns, in each round: natively, with the instructions that each x86-64 processor has (SSE2), with and without
 `deterministic`, and with all that this one has; in Node; and in the page's worker in Chromium, where the bones and the
-hash of each frame are made, too. Medians over frames, then over rounds; ratios are medians of those within a round. Of
-all scenes in the worker: median, mean, and what 95 of 100 frames stay below.
-Needs the page (./demos/run --live), build/js/package, and live_native (see tests/live/run).
+hash of each frame are made, too. Medians over frames, then over rounds; ratios are medians of those within a round. For
+all scenes in the worker: median, mean, and the limit below which 95 of 100 frames stay. Needs the page (./demos/run
+--live), build/js/package, and live_native (see tests/live/run).
 """
 import os
 import re

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The driver itself, with a page that records what reaches it: what the driver would miss, no test of a page can find."""
+"""The driver itself, with a page that records its input: no test of a page could find an omission of the driver."""
 import tempfile
 import unittest
 from pathlib import Path

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Files dropped on the live page: good ones become bodies, damaged ones get a sentence, and the scene goes on."""
+"""Files dropped on the live page: good ones become bodies, damaged ones get a message, and the scene continues."""
 import base64
 import itertools
 import json

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a hand does on the live page: hold and drag by mouse and finger, push, throw, turn the view, and every control."""
+"""A hand's actions on the live page: hold and drag by mouse and finger, push, throw, turn the view, and every
+control."""
 import math
 import re
 import unittest
@@ -28,7 +29,7 @@ class Dragging(WithBrowser):
         self.addCleanup(lambda: live.page.finger and live.page.release())  # also if the test fails: others have this page
         live.page.until("live.hands.held !== null", 30)
         to = (x - 60, y - 90) if phone else (x - 90, y - 120)
-        for step in range(1, 7):  # time goes on while the hand moves, and then
+        for step in range(1, 7):  # time continues while the hand moves, and then
             live.page.move(*(a + (b - a) * step / 6 for a, b in zip((x, y), to)), steps=2)
             live.page.frame()
             live.step(10)

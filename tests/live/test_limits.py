@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Browsers that lack what the live page needs: it says so, in a sentence that names the cure."""
+"""Browsers that lack a feature which the live page needs: it says so, in a message that names the cure."""
 import base64
 import unittest
 
@@ -12,7 +12,7 @@ from live import PAGE, Live
 
 class Lacking(unittest.TestCase):
     def sentence(self, flags, words, early=""):
-        """What the page says in such a browser, which must have these words and be seen."""
+        """The page's message in such a browser, which must contain these words and be visible."""
         with chromium.Chromium(flags) as browser:
             live = Live(browser, early=early)
             self.assertIsNotNone(live.trouble, "the page thinks that all is well")

@@ -41,7 +41,7 @@ class File(unittest.TestCase):
 
 
 class OneScene(WithBrowser):
-    """What holds for each scene, of the serpent; what holds for the page as a whole."""
+    """Tests of each scene, for the serpent; tests of the page as a whole."""
     scene = "serpent"
 
     def test_runs_300_frames_and_is_seen(self):
@@ -203,8 +203,8 @@ class OtherScenes(WithBrowser):
 class Memory(WithBrowser):
     @staticmethod
     def used(live):
-        """Bytes of WebAssembly's memory, and of JavaScript's without the snapshots, whose number and memory are bounded, and
-        which grow with what touches."""
+        """Bytes of WebAssembly's memory, and of JavaScript's without the snapshots, whose number and memory are
+        bounded, and which grow with the contacts."""
         memory = live.call("memory")
         return memory["module"], live.page.javascript_memory() - memory["snapshots"]
 

@@ -23,7 +23,7 @@ NO_COMMAND_LINE = ["tetskin_hello"]
 LANGUAGES = ("sh", "cpp", "cmake", "json", "text", "python", "js", "")  # by tests/python, tests/js
 COMMAND = re.compile(r"\s*(\./|build/|tetskin_|cmake |ctest )")
 DROPS = "./demos/run"  # builds tetskin_drop, and runs it with its own arguments
-HISTORY = "plugin/CHANGES.md"  # names programs and options that have gone, too
+HISTORY = "plugin/CHANGES.md"  # also names programs and options that have been removed
 
 
 def programs_in(text, programs):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What the programs say about themselves."""
+"""The programs' own descriptions."""
 import functools
 import re
 import subprocess

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Runs the commands of a page as they are written: every command in its sh blocks, in a folder with the input files
-that pages mention.
+"""Runs the commands of a page as written: every command in its sh blocks, in a folder with the input files that pages
+mention.
 
 run_commands.py --build BUILD --folder FOLDER PAGE [PAGE ...]        pages of the repository
 run_commands.py --build BUILD --folder FOLDER --help-of PROGRAM [PROGRAM ...]     the examples in their --help

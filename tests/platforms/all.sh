@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the tests of this folder, or those named, one after the other, and prints a table of what came out. Exit status 1
-# if one failed; 2 if there is none of a name. It is no test itself: names of tests have no extension.
+# Runs the tests of this folder, or those named, one after the other, and prints a table of results. Exit status 1 if
+# one failed; 2 if a name does not exist. It is not a test itself: names of tests have no extension.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 repository=$(cd "$here/../.." && pwd)

@@ -1,4 +1,4 @@
-# What the scripts of this folder begin with. Sourced, not run.
+# The beginning of this folder's scripts. Sourced, not run.
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 name=$(basename "$0")
@@ -11,7 +11,7 @@ not_run() {
   exit 77
 }
 
-# needs COMMAND [PACKAGE]: ends the script unless the command exists; the package is the one of Debian that has it.
+# needs COMMAND [PACKAGE]: ends the script unless the command exists; PACKAGE is the Debian package that contains it.
 needs() {
   command -v "$1" >/dev/null || not_run "no $1${2:+ (apt-get install $2)}"
 }
@@ -22,8 +22,8 @@ fail() {
   exit 1
 }
 
-# same_hello COMMAND...: runs what was built from demos/examples/hello.cpp. Its heights must be those in hello.txt, on every
-# platform: they are printed with three decimals, of which rounding may change the last by one.
+# same_hello COMMAND...: runs the program built from demos/examples/hello.cpp. Its heights must be those in hello.txt, on every
+# platform: they are printed with three decimals, and rounding may change the last one by 1.
 same_hello() {
   "$@" >"$folder/hello_output.txt" || fail "$* ended with status $?"
   tr -d '\r' <"$folder/hello_output.txt" | awk '
@@ -87,8 +87,8 @@ pinned() {
 }
 
 # distribution_source PACKAGE FILE: fetches the file, which is part of the distribution's newest source package of this
-# name. apt has sources, lists and a cache of its own here, and runs no hooks: the machine's stay as they are, and any
-# user may run this.
+# name. apt uses separate sources, lists and cache here, and runs no hooks: the machine's stay unchanged, and any user
+# may run this.
 distribution_source() {
   local apt=$folder/apt list
   command -v apt-get >/dev/null || return 1
@@ -113,8 +113,8 @@ END
 }
 
 # bullet_source: sets `bullet` to a folder with the sources of Bullet: BULLET_SOURCE, if this is set, otherwise those of
-# version 3.24 in the distribution, which a machine with nothing but a mirror of packages can fetch, or else those of
-# version 3.25 on GitHub. Either is fetched and unpacked once; its hash is checked each time.
+# version 3.24 in the distribution, for which a mirror of packages is enough, or else those of version 3.25 on GitHub.
+# Either is fetched and unpacked once; its hash is checked each time.
 bullet_source() {
   local all=$repository/build/platforms
   local packaged=$all/bullet_3.24+dfsg.orig.tar.xz released=$all/bullet3-3.25.tar.gz archive
@@ -141,7 +141,7 @@ bullet_source() {
   [ -f "$bullet/src/btBulletCollisionCommon.h" ] || fail "no Bullet in $bullet"
   echo "Bullet $(cat "$bullet/VERSION") in $bullet"
 }
-# Bullet's own build asks for a version of CMake that recent ones do not know.
+# Bullet's own build asks for a version of CMake that recent ones do not support.
 bullet_options=(-DCMAKE_POLICY_VERSION_MINIMUM=3.5)
 if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
@@ -159,8 +159,8 @@ tetskin_prefix() {
   cmake --install "$built" >/dev/null
 }
 
-# drop_hashes COMMAND...: runs drop_hash, and prints a hash of the nodes' positions for each instruction set. Those that
-# are in hashes.txt must be the same.
+# drop_hashes COMMAND...: runs drop_hash, and prints a hash of the nodes' positions for each instruction set. Those
+# listed in hashes.txt must be equal.
 drop_hashes() {
   "$@" >"$folder/hashes.txt" || fail "$* ended with status $?"
   tr -d '\r' <"$folder/hashes.txt" >"$folder/found.txt"
@@ -172,8 +172,8 @@ drop_hashes() {
   done <"$repository/tests/platforms/hashes.txt"
 }
 
-# scene_hashes FRAMES COMMAND...: runs replay_hashes, the scenes of tests/replay, for this many frames, of which 60, 120
-# and 240 have hashes. They must be those in hashes.txt.
+# scene_hashes FRAMES COMMAND...: runs replay_hashes, the scenes of tests/replay, for this many frames; 60, 120 and 240
+# have hashes. They must be those in hashes.txt.
 scene_hashes() {
   "${@:2}" "$1" >"$folder/scenes.txt" || fail "${*:2} ended with status $?"
   tr -d '\r' <"$folder/scenes.txt" >"$folder/found_scenes.txt"

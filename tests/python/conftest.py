@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What the tests of the Python package share. They need the installed package, NumPy and pytest alone."""
+"""Code shared by the tests of the Python package. They need the installed package, NumPy and pytest alone."""
 
 import signal
 
@@ -9,7 +9,7 @@ import pytest
 
 import tetskin as ts
 
-# A shell has what it starts in the background ignore Ctrl-C, and so all that this starts: tests interrupt.
+# A shell makes background processes, and all that they start, ignore Ctrl-C; tests need it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What loose coupling costs: the figures of plugin/docs/pybullet.md.
+"""The cost of loose coupling: the figures of plugin/docs/pybullet.md.
 
 Needs pybullet beside tetskin. The same scenes twice: a rigid body of pybullet's that meets a soft one of tetskin's
 through `tetskin.pybullet.Mirror`, and both in one `tetskin.World`. Prints tables; takes some minutes.
@@ -106,7 +106,8 @@ class Scene:
         return float(p.getBaseVelocity(self.box, physicsClientId=self.client)[0][2])
 
     def soft_momentum(self) -> float:
-        """Of nodes with their masses, along z: all nodes of the slab weigh what the tets around them do."""
+        """For nodes with their masses, along z: each node of the slab has the mass of its share of the tets around
+        it."""
         return float(self.masses @ self.soft.velocities[:, 2])
 
     @property

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a call costs from Python, beside the same in C++, in microseconds: by hand, on a machine that does nothing else.
+"""The cost of a call from Python, compared with C++, in microseconds: run it by hand, on an idle machine.
 
 overhead.py MESH REFERENCE   MESH: a file; REFERENCE: the program tetskin_reference, which tests/python/run builds
 """

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The drop of test_drop.py, in C++ with the same Bullet: its positions must be the same to the bit. Also what the calls
-// of test_overhead.py cost here.
-//   tetskin_reference MESH TETS FRAMES POSITIONS   writes the surface after so many frames: floats; prints microseconds
+// The drop of test_drop.py, in C++ with the same Bullet: its positions must be the same to the bit. Also the cost of
+// test_overhead.py's calls here.
+//   tetskin_reference MESH TETS FRAMES POSITIONS   writes the surface after FRAMES as floats; prints microseconds
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/io/files.h>
 #include <tetskin/world/world.h>
@@ -16,7 +16,7 @@
 
 namespace {
 
-/// The median of what the call takes, in microseconds.
+/// The median time of the call, in microseconds.
 template <class Call>
 double microseconds(int count, Call&& call) {
   std::vector<double> times;

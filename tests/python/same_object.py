@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Checks of plugin/python/cmake/same_object.py that objects of another build are taken where they are the same, and
-only there. Needs CMake, Ninja and a compiler. The other build's object gets bytes of its own, by which it is known."""
+only there. Needs CMake, Ninja and a compiler. The other build's object gets special bytes, by which it is
+recognised."""
 import os
 import shutil
 import subprocess

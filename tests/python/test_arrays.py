@@ -12,7 +12,7 @@ import tetskin as ts
 
 
 class Foreign:
-    """What other packages hand out: an object that NumPy makes an array of."""
+    """An object like those of other packages, which NumPy turns into an array."""
 
     def __init__(self, numbers):
         self.numbers = numbers

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a machine lacks to build the package is named, with the cure. Only configures: nothing is compiled."""
+"""The build names what a machine lacks, with the cure. Only configures: nothing is compiled."""
 
 import shutil
 import subprocess
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture
 def configure(tmp_path):
-    """Configures; returns what CMake says. path: the programs that there are, if not all."""
+    """Configures; returns CMake's output. path: the available programs, if not all."""
 
     def run(*options, source=SOURCE, programs=None):
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(tmp_path)}

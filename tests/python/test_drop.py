@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The first program, and that it does what the same program in C++ does."""
+"""The first program, compared with the same program in C++."""
 
 import os
 import re

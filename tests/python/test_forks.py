@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Processes that are forked beside a pool of threads go on with the parent's bits, or say what to do."""
+"""Processes that are forked beside a pool of threads continue with the parent's bits, or say what to do."""
 
 import os
 import signal
@@ -17,11 +17,11 @@ pytestmark = [
     pytest.mark.skipif(not hasattr(os, "fork") or sys.platform == "darwin", reason="processes are not forked here"),
     pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning"),
 ]
-SECONDS = 20  # after which what waits for ever is ended
+SECONDS = 20  # after which a process that would wait forever is ended
 
 
 def in_child(work):
-    """What it returns in a process that is forked, as text; and after how many seconds."""
+    """Its result in a forked process, as text; and the seconds that it took."""
     read, write = os.pipe()
     start = time.monotonic()
     child = os.fork()
@@ -65,7 +65,7 @@ def test_a_forked_world_is_let_go(mesh, cage):
 
     def let_go():
         holder.clear()
-        other = threaded(mesh, cage)  # with threads of its own
+        other = threaded(mesh, cage)  # with its own threads
         return bits(*other)
 
     said, seconds = in_child(let_go)

@@ -18,8 +18,8 @@ def error(code):
     return ts.Error, getattr(ts.StatusCode, code)
 
 
-# What is called, with a world w, its body b, a rigid body r, a spring s, a skin k, an elastic body e, the cage c and
-# the mesh m; and what it raises: a type, or an Error of a code.
+# Calls, with a world w, its body b, a rigid body r, a spring s, a skin k, an elastic body e, the cage c and the mesh m;
+# and the exception: a type, or an Error with a code.
 CALLS = {
     # shapes
     "positions of two columns": (lambda t: ts.TriangleMesh(np.zeros((4, 2)), [[0, 1, 2]]), ValueError),
@@ -124,7 +124,7 @@ CALLS = {
 
 
 class Things:
-    """What the calls use."""
+    """The arguments of the calls."""
 
     def __init__(self, cage, mesh):
         self.c, self.m = cage, mesh
@@ -190,7 +190,7 @@ def test_errors_can_be_pickled_by_their_message():
     assert str(pickle.loads(pickle.dumps(raised.value))) == str(raised.value)
 
 
-# A call, and what it is told: the word that is wrong, and a word near to it or those that there are.
+# A call, and its message: the wrong word, and a similar word or the existing ones.
 NAMES = {
     "a word near to another": (
         lambda t: t.w.add_body(t.c, t.m, stiffnes_scale=3),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Meshes and cages: from files and arrays, to files and pickles; long work with progress; what needs no world."""
+"""Meshes and cages: from files and arrays, to files and pickles; long work with progress; classes that need no
+world."""
 
 import json
 import os

@@ -139,7 +139,7 @@ def test_reference_counts_stay_flat_over_many_steps():
         frame()
     gc.collect()
     after = [sys.getrefcount(one) for one in watched]
-    # Counts of what the interpreter itself uses move by a few.
+    # Counts of objects that the interpreter itself uses change by a few.
     assert all(abs(a - b) < 50 for a, b in zip(counts, after)), (counts, after)
     assert abs(sys.getallocatedblocks() - blocks) < 1000
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What is in the package: one symbol, few libraries, the licences, the types."""
+"""The contents of the package: one symbol, few libraries, the licences, the types."""
 
 import importlib.metadata
 import os
@@ -63,7 +63,7 @@ def test_licences_of_all_that_is_inside_are_in_the_package():
 
 
 def test_every_file_of_the_package_is_its_own():
-    """Files of others, which would need a licence here, would be seen by their kind."""
+    """Foreign files, which would need a licence here, would be noticed by their kind."""
     names = [str(file) for file in importlib.metadata.files("tetskin") if file.parts[0] == "tetskin"]
     assert names
     own = re.compile(r"tetskin/(_core[.\w-]*[.](so|pyd|pyi)|py[.]typed|\w+[.]py|__pycache__/.*)")

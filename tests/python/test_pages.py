@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Films and pages: what they hold is what the world has. How a browser draws them is tested in tests/demos."""
+"""Films and pages: they contain what the world contains. How a browser draws them is tested in tests/demos."""
 
 import base64
 import html

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/lab/peers, which compares tetskin with others: that it still runs, with tetskin alone, and that what fails is a
-cell."""
+"""demos/lab/peers, which compares tetskin with others: it still runs, with tetskin alone, and a failure becomes a cell."""
 import csv
 import re
 import subprocess

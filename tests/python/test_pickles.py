@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What travels to another process arrives as the same bits: meshes, cages, and worlds, by what builds them."""
+"""Objects sent to another process arrive with the same bits: meshes, cages, and worlds, by the function that builds
+them."""
 
 import copy
 import multiprocessing
@@ -52,7 +53,7 @@ MODELS = {
 @pytest.mark.parametrize("name", MODELS)
 def test_models_are_pickled_to_the_bit(name, mesh, cage, tmp_path):
     model = MODELS[name](mesh, cage, tmp_path)
-    state = model.__getstate__()  # all that a model has, as bytes
+    state = model.__getstate__()  # all data of a model, as bytes
     for protocol in PROTOCOLS:
         assert pickle.loads(pickle.dumps(model, protocol)).__getstate__() == state
     assert copy.deepcopy(model).__getstate__() == state
@@ -66,7 +67,7 @@ def test_the_state_has_what_a_model_has(mesh, cage, tmp_path):
 
 
 def build(mesh, cage):
-    """What travels in place of a world."""
+    """The data sent instead of a world."""
     world = ts.World()
     world.add_plane()
     soft = world.add_body(cage, mesh, position=(0, 0.5, 0), normals="transformed", soft_contact=True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What one world has: shapes, joints, bodies, contacts, touch, snapshots, runs, animations."""
+"""The features of one world: shapes, joints, bodies, contacts, touch, snapshots, runs, animations."""
 
 import json
 import struct
@@ -319,7 +319,7 @@ def test_no_time_passes_in_a_step_of_none(mesh, cage, tmp_path):
 
 
 def driven():
-    """An arm that a motor turns, by hardly more than it takes."""
+    """An arm that a motor turns, with hardly more torque than needed."""
     world = ts.World(gravity=(0, 0, 0))
     arm = world.add_box((0.5, 0.05, 0.05), mass=1, position=(0.5, 0, 0))
     hinge = world.add_hinge(arm, pivot=(0, 0, 0), axis=(0, 0, 1))
@@ -561,7 +561,7 @@ def four(mesh, cage):
 
 
 def test_one_body_of_several_goes_back_to_its_start(mesh, cage):
-    """As an environment does that ends, beside others that go on."""
+    """Like an environment that ends while others continue."""
     world, bodies = four(mesh, cage)
     plain, others = four(mesh, cage)
     fall = []

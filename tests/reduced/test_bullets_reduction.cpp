@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What Bullet's own reduced bodies do. The library's reduced bodies are made of these; see ReducedBodies,
+// The behaviour of Bullet's own reduced bodies. The library's reduced bodies are based on these; see ReducedBodies,
 // ReducedMotion.
 #include "reduced_test.h"
 

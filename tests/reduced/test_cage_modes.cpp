@@ -112,7 +112,7 @@ TEST(CageModes, HaveTheMassOfTheFineTets) {
 TEST(CageModes, PinTheNodesThatCarryMoreOfWhatIsPinnedThanOfWhatIsNot) {
   const VibrationModes& bar = barModes(true);
   const Cage cage = barCage();
-  std::vector<double> surplus(cage.mesh.nodeCount(), 0.0);  // of what is pinned
+  std::vector<double> surplus(cage.mesh.nodeCount(), 0.0);  // of pinned nodes
   std::vector<char> any(cage.mesh.nodeCount(), 0);
   const auto bindings = embed(cage.mesh, viewOf(bar.nodes)).value().bindings();
   for (std::size_t v = 0; v < bindings.size(); ++v) {

@@ -152,7 +152,7 @@ TEST(ReducedMotion, OfAFreeBarIsThatOfItsTetsWhereItIsSmall) {
   const auto body = added(world, modes, options);
   FineBar fine(options, modes);
   const double omega = modes.frequencies(*options.youngsModulus, options.density)[0];
-  // Four modes start at once; in Bullet's body this sets what it takes for the velocities before the step.
+  // Four modes start at once; in Bullet's body this sets the velocities that it uses as those before the step.
   for (std::size_t r = 0; r < 4; ++r) {
     const double speed = 0.6e-3 * omega / (1.0 + r);
     for (std::size_t n = 0; n < modes.nodeCount(); ++n) {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Plays the scenes with `deterministic`, and prints a line for each: its name, and hashes of its state after 60, 120
-// and 240 frames. Fails where a line is not in the file. With a number of frames in place of a file: stops after them,
-// and plays only the scenes that are named next. With --baseline before all that: with the kernels that each processor
-// of this architecture has.
+// and 240 frames. Fails where a line is not in the file. With a number of frames instead of a file: stops after them,
+// and plays only the scenes named next. With --baseline before all that: with the kernels that each processor of this
+// architecture has.
 #include "replay_scenes.h"
 
 #include <tetskin/core/src/base/kernels/instruction_set.h>

@@ -187,12 +187,12 @@ class CallScene {
   }
 };
 
-/// What comes of a call.
+/// The effect of a call.
 enum class Kind {
   Change,     ///< it is in the file
   Unseen,     ///< the same, but bodies move as without it
   Outside,    ///< the same, but a snapshot does not hold it: a program must make the call itself
-  Structure,  ///< objects, joints or shapes are others afterwards: a program must make the call itself
+  Structure,  ///< objects, joints or shapes change: a program must make the call itself
   Refused,    ///< neither saved nor recorded, and the status says so
 };
 

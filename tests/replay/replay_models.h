@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Cages and surfaces made of integers, quotients and square roots, which are the same on every machine.
+// Cages and surfaces computed from integers, quotients and square roots, which are the same on every machine.
 #pragma once
 
 #include <tetskin/bullet/soft_body_skin.h>

@@ -25,7 +25,7 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// A rigid body that is in a world as long as it exists; without mass: fixed.
+/// A rigid body that is in a world as long as it exists; fixed if it has no mass.
 class Rigid {
  public:
   Rigid(tetskin::DeformableWorld& world, btCollisionShape& shape, double mass, const btVector3& origin)
@@ -50,7 +50,7 @@ class Rigid {
   btRigidBody body_;
 };
 
-/// A soft body of a model, which meets rigid bodies at its surface.
+/// A soft body of a model, which touches rigid bodies at its surface.
 struct Soft {
   Soft(tetskin::DeformableWorld& world, const ReplayModel& model, const Eigen::Vector3d& offset,
        const SoftBodyOptions& options)

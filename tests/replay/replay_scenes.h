@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Scenes that are the same on every machine: without files, random numbers or functions of the C library, whose last
-// bits differ between platforms. What a scene does in a frame depends on the world and the frame's number alone, so
-// that a world restored from a snapshot goes on as the one that was saved.
+// bits differ between platforms. A scene's actions in a frame depend on the world and the frame's number alone, so that
+// a world restored from a snapshot continues like the one that was saved.
 #pragma once
 
 #include <tetskin/solver/deformable_world.h>
@@ -29,7 +29,7 @@ class ReplayScene {
   static std::unique_ptr<ReplayScene> create(const std::string& name, const DeformableWorldOptions& options = {});
 
   tetskin::DeformableWorld& world() { return world_; }
-  /// What the application does before a frame.
+  /// The application's actions before a frame.
   virtual void act(int /*frame*/) {}
   /// Makes one frame: `act`, then four substeps.
   void step(int frame);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Goes on, in a process of its own, where another one has saved: to the last bit, in every later frame.
+// Continues, in another process, from a saved snapshot: to the last bit, in every later frame.
 //   runs save SCENE FOLDER THREADS EVERY   steps a scene, and saves a snapshot every so many frames, and all hashes
 //   runs go_on SCENE FOLDER THREADS EVERY  makes the scene anew for each snapshot, restores it, and compares
 //   runs churn SCENE FOLDER THREADS EVERY  the same, after other bodies have come and gone

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Snapshots name Bullet's members one by one: those that are renamed do not compile. Where another version of Bullet
-// has more of them, sizes tell.
+// Snapshots name each of Bullet's members: renamed ones do not compile. If another version of Bullet has more of them,
+// sizes reveal it.
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyFixedConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBodyGearConstraint.h>

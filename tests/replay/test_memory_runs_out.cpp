@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Where memory runs out, or a callback throws: the world stays, and can be restored.
+// If memory runs out, or a callback throws: the world stays, and can be restored.
 #include <tetskin/replay/snapshot.h>
 
 #include <stdexcept>

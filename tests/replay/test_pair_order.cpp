@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The order of pairs, and all that follows from it, where memory is laid out in another way.
+// The order of pairs, and everything that follows from it, with another layout of memory.
 #include "solver/rigid_scene.h"
 
 #include <tetskin/replay/snapshot.h>
@@ -68,7 +68,7 @@ Ids pairsOf(btDbvtBroadphase& broadphase) {
   return ids;
 }
 
-/// What boxes that wander, come and go lead to.
+/// The effects of boxes that wander, come and go.
 struct Wandered {
   std::vector<Ids> pairs;                ///< after each frame
   std::vector<const btDbvtNode*> roots;  ///< of the tree, by frame: before the step, and after it
@@ -111,7 +111,7 @@ Wandered wander(bool elsewhere, bool deferred) {
 }
 
 /// Bullet compares addresses of tree nodes, and lets two nodes change places, so that the upper one has the lower
-/// address. The tree, and all that is found by it, stays the same.
+/// address. The tree, and all results of its queries, stay the same.
 TEST(PairOrder, DoesNotComeFromAddresses) {
   for (const bool deferred : {false, true}) {
     const Wandered here = wander(false, deferred), elsewhere = wander(true, deferred);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A table of what an application may call between steps to change a world, of this library's and of Bullet's. Each run
-// is recorded, and played again to the last bit. And a snapshot from before the call, restored, with the call once
-// more, and one from after it go on to the same bits.
+// A table of calls of this library and of Bullet by which an application may change a world between steps. Each run is
+// recorded, and played again to the last bit. And a snapshot from before the call, restored, with the call once more,
+// and one from after it go on to the same bits.
 #include "replay/recorded_calls.h"
 
 namespace tetskin::test {
@@ -280,7 +280,7 @@ TEST(RecordedCalls, OfTheWorld) {
           CALL(s.world.setGravity(btVector3(btScalar(k), -5, 0))),
           {"shiftOrigin",
            [](CallScene& s, int k) {
-             s.plateState.setWorldTransform(s.plate->getWorldTransform());  // a restored snapshot does not tell it
+             s.plateState.setWorldTransform(s.plate->getWorldTransform());  // a restored snapshot does not contain it
              EXPECT_TRUE(shiftOrigin(s.world, btVector3(btScalar(4 + k), 0, -8)).ok());
            },
            Kind::Outside},

@@ -33,7 +33,7 @@ std::unique_ptr<Recorder> started(ReplayScene& scene, const std::string& path, i
   return Recorder::start(scene.world(), path, options).value();
 }
 
-/// Records so many frames, and returns the hash of each.
+/// Records this many frames, and returns the hash of each.
 std::vector<std::uint64_t> record(const std::string& name, const std::string& path, int frames) {
   const auto scene = ReplayScene::create(name);
   const auto recorder = started(*scene, path);
@@ -213,7 +213,7 @@ TEST(Replay, NeitherAsksNorTellsMotionStatesAndARecorderAsksNoMoreThanBullet) {
   EXPECT_EQ(scene.plate.getMotionState(), &scene.path);
 }
 
-/// What Bullet calls in a step: it keeps the motion state that the plate has there, and may remove the plate.
+/// A callback of Bullet's in a step: it keeps the plate's current motion state, and may remove the plate.
 struct PlateWatch {
   OnPath& scene;
   std::vector<btMotionState*> seen;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a snapshot cannot hold, and bytes that are none: refused with the reason, and nothing is changed.
+// Objects that a snapshot cannot hold, and bytes that are not a snapshot: refused with the reason, and nothing is
+// changed.
 #include "solver/rigid_scene.h"
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
@@ -57,7 +58,7 @@ struct OwnHinge : btHingeConstraint {
   void getInfo2(btConstraintInfo2* info) override { btHingeConstraint::getInfo2(info); }
 };
 
-/// What an application changes, and what is said of it.
+/// Changes by an application, and their messages.
 struct Changed {
   const char* named;
   std::function<void(RigidScene&)> change;
@@ -110,7 +111,7 @@ TEST_F(RefusedSnapshots, NameADeterministicWorldAndOneThatIsNot) {
   EXPECT_TRUE(restored(scene.world, deterministic).ok());
 }
 
-/// Of a compound, a child that has moved; of joints, another class, although Bullet calls both hinges.
+/// A compound's child that has moved; a joint of another class, although Bullet calls both hinges.
 TEST(RefusedSnapshotsOfChangedWorlds, SeeChildrenOfShapesAndClassesOfJoints) {
   RigidScene compounds[2], hinges[2];
   for (std::size_t k = 0; k < 2; ++k) {
@@ -289,7 +290,7 @@ TEST(DamagedSnapshots, WithARightHashHarmNoMemory) {
     if (restoreSnapshot(scene.world, bytes.data(), bytes.size()).ok()) ++accepted;
     (void)saved(scene.world);
   }
-  EXPECT_GT(accepted, 100);  // most bytes are numbers, of which any is possible
+  EXPECT_GT(accepted, 100);  // most bytes are numbers, which may have any value
   EXPECT_LT(accepted, 400);
 }
 

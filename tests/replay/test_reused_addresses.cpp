@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Objects that are created where others were: what a world does must not depend on where memory is.
+// Objects that are created at the addresses of others: a world's behaviour must not depend on addresses.
 
 #include <new>
 
@@ -108,7 +108,7 @@ TEST(ReusedAddresses, AKinematicBoxDoesNotGoOnAsAnotherOneWentBefore) {
       0);
 }
 
-/// A body that is added asleep begins to look at its neighbours, whoever was at its address before.
+/// A body that is added asleep starts to observe its neighbours, whichever object was at its address before.
 TEST(ReusedAddresses, ASoftBodyThatIsAddedAsleepIsANewOne) {
   bool wasReused = false;
   std::vector<int> awakeAt;

@@ -12,7 +12,7 @@
 namespace tetskin::test {
 namespace {
 
-/// A bar along z, held at its lower end. Each of the worlds tells in its own way, or not at all, when it moves nodes.
+/// A bar along z, held at its lower end. Each of the worlds reports in its own way, or not at all, that it moves nodes.
 TetMesh bar() {
   return lifted(latticeCage(2, 2, 6, 0.25), 5.0);
 }
@@ -30,7 +30,7 @@ class HeldBar {
   virtual btSoftBody& body() = 0;
   /// Null where worlds cannot be saved.
   virtual btDeformableMultiBodyDynamicsWorld* saved() { return nullptr; }
-  /// True if steps count what they move, and single nodes that are moved by hand are seen after the next step.
+  /// True if steps record what they move, and single nodes moved by hand are noticed in the next step.
   virtual bool counts() const { return false; }
 
   void step(int frames) {
@@ -96,7 +96,7 @@ class ClassicBar : public HeldBar {
   RigidWorld world_{bar(), held()};
 };
 
-/// A body that is none of the library's, in Bullet's classic world.
+/// A body not made by the library, in Bullet's classic world.
 class PlainBar : public HeldBar {
  public:
   PlainBar() {
@@ -254,7 +254,7 @@ TEST_P(SleepingSkin, IsWhereItsBodyIsAfterAnyOrderOfEvents) {
     if (event == 'R' && !snapshots.empty()) {
       const auto& bytes = snapshots[static_cast<std::size_t>(upTo(static_cast<unsigned>(snapshots.size())))];
       const Status restored = restoreSnapshot(*scene->saved(), bytes.data(), bytes.size());
-      // Refused where Bullet searches contacts, and has made its trees anew since.
+      // Refused if Bullet searches contacts, and has rebuilt its trees since.
       ASSERT_TRUE(restored.ok() || !scene->counts()) << restored.message << " after " << events;
     }
     if (event == 'k') (void)skin.update(btScalar(0.5));
@@ -275,7 +275,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, SleepingSkin,
                          testing::Values(&make<CountingBar>, &make<BulletSolvedBar>, &make<DeformableBar>,
                                          &make<ClassicBar>, &make<PlainBar>));
 
-/// What a skin looks at of a body whose world counts the moves of its nodes.
+/// The data that a skin reads from a body whose world counts the moves of its nodes.
 class SkinOfACountedBody : public testing::Test {
  protected:
   SkinOfACountedBody() {

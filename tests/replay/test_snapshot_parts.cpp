@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Nothing in a snapshot is there in vain: with any part from another moment, a run goes on otherwise.
+// Every part of a snapshot matters: with any part from another moment, a run continues differently.
 #include "solver/rigid_scene.h"
 
 #include <tetskin/replay/snapshot.h>

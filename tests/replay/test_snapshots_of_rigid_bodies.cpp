@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Snapshots of worlds of rigid bodies, joints and multibodies: the restored world goes on to the last bit, and so do
-// the bytes of later snapshots.
+// Snapshots of worlds of rigid bodies, joints and multibodies: the restored world continues to the last bit, and the
+// bytes of later snapshots agree.
 #include "solver/rigid_scene.h"
 
 #include <tetskin/replay/snapshot.h>

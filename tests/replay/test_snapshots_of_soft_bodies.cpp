@@ -12,7 +12,7 @@
 namespace tetskin::test {
 namespace {
 
-/// A world, and what an application does in each of its frames.
+/// A world, and the application's actions in each frame.
 class Scene : public ReplayedScene {
  public:
   btDeformableMultiBodyDynamicsWorld& world() override { return worldOf.deformable(); }

@@ -16,7 +16,7 @@
 
 namespace tetskin::test {
 
-/// A deformable world without a body of its own.
+/// A deformable world without a body.
 class EmptyWorld : public DeformableWorldBase {
  public:
   explicit EmptyWorld(std::unique_ptr<btDeformableBodySolver> bodySolver = std::make_unique<btDeformableBodySolver>())
@@ -25,7 +25,7 @@ class EmptyWorld : public DeformableWorldBase {
   operator btDeformableMultiBodyDynamicsWorld&() { return *soft; }
 };
 
-/// A deformable world without a body of its own, with the library's solver.
+/// A deformable world without a body, with the library's solver.
 class TetskinWorld : public EmptyWorld {
  public:
   TetskinWorld() : EmptyWorld(std::make_unique<DeformableSolver>()) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A record of a world's forces, and what is expected of it.
+// A record of a world's forces, and the expectations on it.
 #pragma once
 
 #include "deformable_test.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world of rigid bodies of all kinds, for tests of rigid motion and of snapshots, and what is compared of it.
+// A world of rigid bodies of all kinds, for tests of rigid motion and of snapshots, and the state that they compare.
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -22,7 +22,7 @@ struct HasWorld {
   tetskin::DeformableWorld world;
 };
 
-/// Owns what is in its world.
+/// Owns the objects in its world.
 class RigidScene : public HasWorld, public Rigids {
  public:
   RigidScene() : Rigids(world) {}
@@ -55,7 +55,7 @@ class RigidScene : public HasWorld, public Rigids {
   btMultiBodyJointMotor* motor = nullptr;
 };
 
-/// Balls, capsules, cylinders, hulls, compounds that meet compounds, on a mesh; a kinematic plate; one that sleeps.
+/// Balls, capsules, cylinders, hulls, compounds that touch compounds, on a mesh; a kinematic plate; a sleeping body.
 inline void RigidScene::addKinds() {
   const btScalar s = btScalar(0.2);
   auto mesh = std::make_unique<btTriangleMesh>();

@@ -13,7 +13,7 @@ int forcesIn(EmptyWorld& world) {
   return static_cast<btDeformableBodySolver*>(world.softSolver.get())->getLagrangianForceArray()->size();
 }
 
-/// The nodes of a body after 30 frames, of which it is out of the world before the 15th, if it is taken out at all.
+/// The nodes of a body after 30 frames. If it is taken out of the world, this happens before the 15th.
 std::vector<btVector3> after(bool takenOut, const std::function<void(DeformableBody&)>& prepare,
                              const SoftBodyOptions& options = {}) {
   const auto world = worldFor(options.forceModel);

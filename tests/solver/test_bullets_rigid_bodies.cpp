@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What Bullet's deformable world does to rigid bodies that its plain world does not. The tables in
-// tests/BULLET_DEFECTS.md name these tests; `RigidBodies.MoveAsInBulletsPlainWorld` has the library beside them.
+// Effects of Bullet's deformable world on rigid bodies that its plain world does not have. The tables in
+// tests/BULLET_DEFECTS.md name these tests; `RigidBodies.MoveAsInBulletsPlainWorld` compares the library.
 #include "deformable_test.h"
 
 namespace tetskin {

@@ -189,7 +189,7 @@ SoftBodyOptions neoHookean() {
   return options;
 }
 
-/// What the world's solver was told in the last substep.
+/// The settings of the world's solver in the last substep.
 struct Told : btDeformableBodySolver {
   static bool implicit(const btSoftBodySolver& solver) {
     return static_cast<const btDeformableBodySolver&>(solver).*(&Told::m_implicit);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Which components have a rigid motion of their own as an unknown, and where it is. Its products with dense matrices
-// are in test_system_solve.cpp.
+// Which components have their rigid motion as an unknown, and its position. Its products with dense matrices are in
+// test_system_solve.cpp.
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/solver_bodies.h>
 #include <tetskin/solver/src/system/component_unknown.h>

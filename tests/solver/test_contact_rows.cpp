@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the rows of contacts between soft bodies begin a step with, made by hand.
+// The initial values of contact rows between soft bodies in a step, made by hand.
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/contact_rows.h>
 #include <tetskin/solver/src/rows/fixed_nodes.h>
@@ -83,7 +83,7 @@ TEST_F(WarmRows, BeginWithNothing) {
   expectRecalled(0, btVector3(0, 0, 0), 0);
 }
 
-/// Whatever their order is, in this step and in the one before.
+/// In any order, in this step and in the previous one.
 TEST_F(WarmRows, OfTwoSamplesOfAPointRecallEachItsOwn) {
   begin({contact(7, 3), contact(7, 9)});
   end({{kOneSlip, 1}, {kOtherSlip, 2}});

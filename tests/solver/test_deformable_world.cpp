@@ -15,7 +15,7 @@ void addPlane(Rigids& rigids) {
   rigids.add(rigids.shape<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0, btVector3(0, 0, 0));
 }
 
-/// Where a cage's nodes are one second after it falls on a floor of the world and pushes a ball aside.
+/// The positions of a cage's nodes after one second, in which it falls on the world's floor and pushes a ball aside.
 std::vector<btVector3> landed(btDeformableMultiBodyDynamicsWorld& world) {
   Rigids rigids(world);
   addPlane(rigids);

@@ -54,7 +54,7 @@ double farthest(const std::vector<btVector3>& a, const std::vector<btVector3>& b
   return maximum;
 }
 
-/// The distance covered after so many seconds by a motion that starts gently and rises to this speed.
+/// The distance covered after this many seconds by a motion that starts gently and rises to this speed.
 btScalar directionAfter(btScalar seconds, btScalar speed) {
   constexpr btScalar kRise = btScalar(0.5);
   return seconds < kRise ? speed * seconds * seconds / (2 * kRise) : speed * (seconds - kRise / 2);

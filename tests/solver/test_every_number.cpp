@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a beam does must follow from its numbers: stiffness, damping, step, size, and place. Its sag times its stiffness
-// is the same for all of them, and the same for linear tets as for quadratic ones, each by its own mesh.
+// A beam's behaviour must follow from its numbers: stiffness, damping, step, size, and place. Its sag times its
+// stiffness is the same for all of them, and the same for linear tets as for quadratic ones, each by its own mesh.
 #include <tetskin/core/cage.h>
 #include <tetskin/solver/deformable_world.h>
 
@@ -91,7 +91,7 @@ class Beam {
   Numbers numbers_;
   Cage cage_;
   btBoxShape shape_{btVector3(1, 1, 1)};
-  btRigidBody wall_{0, nullptr, &shape_};  // anchors alone meet it
+  btRigidBody wall_{0, nullptr, &shape_};  // only anchors are attached to it
   tetskin::DeformableWorld world_;
   std::unique_ptr<DeformableBody> body_;
 };
@@ -123,7 +123,7 @@ TEST(EveryNumber, SagTimesStiffnessIsOneNumber) {
             Beam other({stiffness, damping, seconds, length, 0.0}, quadratic);
             const double squaredRate = stiffness * kEarth / length / 62.0;  // of the first vibration of such a beam
             (void)other.settle(std::max({2.5, 12.0 * damping, 20.0 / (damping * squaredRate)}));
-            // What creeps is put to sleep before its end; what swings, while it still does; 3e3 bends visibly.
+            // A creeping beam is put to sleep before it ends; a swinging one, while it still swings; 3e3 bends visibly.
             const double left = 0.002 + std::exp(-2.0 / std::max(damping, 1e-3)) + 100.0 / stiffness;
             EXPECT_NEAR(other.scaledSag() / expected, 1.0, left)
                 << stiffness << ' ' << damping << ' ' << seconds << ' ' << length << ' ' << quadratic;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What bodies in contact by their nodes do to each other, as ForceRecord reports it.
+// Forces between bodies in contact at their nodes, as ForceRecord reports them.
 #include "recorded_forces.h"
 #include "rigid_bodies.h"
 
@@ -61,7 +61,8 @@ TEST(ForceRecord, TwoSupportsShareTheWeightByTheLeverRule) {
   Rigid left(world, support(), 0, btVector3(-0.75, 1.48, 0)), right(world, support(), 0, btVector3(0.85, 1.48, 0));
   const auto forces = forcesIn(world);
   step(world, 240);
-  // The position along the bar at which a support pushes, from its force and torque: they meet at the bar's underside.
+  // The position along the bar at which a support pushes, from its force and torque: the contact is at the bar's
+  // underside.
   const btVector3 centre = centroidOf(bar->body());
   const auto arm = [&](const Rigid& under) {
     const Wrench on = forces->forcesOn(*under.body).total();
@@ -148,7 +149,7 @@ TEST(ForceRecord, TakesStepsOfOneSubstepOfAnyLength) {
   expectNear(at.onFloor().total().force, btVector3(0, -kWeight, 0), 0.05 * kWeight);
 }
 
-// ---- what changes it, and what does not
+// ---- events that change it, and events that do not
 
 TEST(ForceRecord, IsNothingOnceAContactHasEnded) {
   RestingBlock at(60);
@@ -248,7 +249,7 @@ TEST(ForceRecord, NeedsTheLibrarysSolver) {
 
 // ---- drawing
 
-/// Keeps what is drawn.
+/// Keeps the drawn lines.
 struct Drawer : btIDebugDraw {
   explicit Drawer(int drawn) : mode(drawn) {}
   struct Point {

@@ -12,7 +12,7 @@ using namespace bullet_detail;
 
 namespace {
 
-/// What the application makes: a body with its own gravity and material, added through Bullet's interface.
+/// The application's own body, with its own gravity and material, added through Bullet's interface.
 class OwnBody {
  public:
   explicit OwnBody(btDeformableMultiBodyDynamicsWorld& world, double height = 20.0)

@@ -163,7 +163,7 @@ TEST(ManyRigidBodies, LieAsDeepAsOneAlone) {
   for (const double height : heights(true)) EXPECT_NEAR(height, alone, 0.02 * alone);
 }
 
-/// Boxes that touch each other, and a block that meets the first of them, unless it stands still.
+/// Boxes that touch each other, and a block that hits the first of them, unless it stands still.
 struct Row {
   explicit Row(btScalar speed) {
     constexpr int kBoxes = 40;
@@ -201,7 +201,7 @@ TEST(ManyRigidBodies, OfALongRowTakeTheMomentumThatTheFirstIsGiven) {
   EXPECT_LT(lost, 1e-4 * before.x());
 }
 
-/// Boxes that overlap push each other out, which the row without an impact tells.
+/// Boxes that overlap push each other out, which the row without an impact shows.
 TEST(ManyRigidBodies, OfALongRowMoveInTheStepInWhichTheFirstIsMet) {
   Row row(2), still(0);
   for (int k = 0; k < 10; ++k) {

@@ -18,7 +18,7 @@ namespace {
 constexpr btScalar kMargin = btScalar(0.05);
 constexpr int kNodes = 2000;
 
-/// A body of scattered nodes that move, and an object that moves, too.
+/// A body of scattered moving nodes, and an object that also moves.
 class NodeContacts : public testing::Test {
  protected:
   NodeContacts() : body_(worldInfo_, pointsWithin(2, kNodes)) {
@@ -95,7 +95,7 @@ TEST_F(NodeContacts, AreTheNodesWhosePathsComeWithinTheMarginOfAnExactShape) {
   }
 }
 
-/// As it is drawn, that is without its margin.
+/// As drawn, that is, without its margin.
 TEST_F(NodeContacts, MeetAHullAtItsFaces) {
   btConvexHullShape cube;
   for (int c = 0; c < 8; ++c) cube.addPoint(btVector3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1));
@@ -145,7 +145,7 @@ TEST_F(NodeContacts, AreNoneWhereTheApplicationWantsNoContactAtNodes) {
   EXPECT_TRUE(find(sphere).empty());
 }
 
-/// What was clear at one margin need not be so at another one.
+/// A point that is clear at one margin need not be so at another one.
 TEST_F(NodeContacts, FollowTheMarginThatTheApplicationSets) {
   btSphereShape sphere(1);
   const std::size_t before = find(sphere).size();

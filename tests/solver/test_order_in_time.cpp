@@ -158,7 +158,7 @@ double speedRange(const btSoftBody& body) {
 }
 
 TEST(OrderInTimeOfAWorld, AStepInWhichAContactBeginsIsBackwardEulersAsAreSomeAfterItHasEnded) {
-  constexpr double kDamping = 0.02;  // without, backward Euler's step is that of a body that has no step before
+  constexpr double kDamping = 0.02;  // without it, a backward Euler step is that of a body without previous step
   TetskinWorld world;
   const auto block = added(world, cageAbove(0.5), beamOptions(kDamping));
   const auto stepOnce = [&] {
@@ -192,7 +192,7 @@ std::unique_ptr<DeformableBody> trembling(EmptyWorld& world, double damping) {
   return beam;
 }
 
-/// Compares two bodies in the same state, of which one has come there by moving.
+/// Compares two bodies in the same state; one of them has reached it by moving.
 TEST(OrderInTimeOfAWorld, ABodyThatIsStoppedTurnedStiffenedOrPutToSleepGoesOnAsOneThatHasNeverMoved) {
   enum class Change { Stopped, Turned, Stiffened, Asleep };
   const btTransform turn(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI), btVector3(3, 0, 0));

@@ -138,7 +138,7 @@ TEST(Teleports, OfBulletsForcesTurnVelocities) {
 
 // ---- reset
 
-/// Four bars, which do not touch, of which the second one starts again.
+/// Four bars that do not touch; the second one starts again.
 template <class Create>
 void expectRepeats(const Create& create) {
   std::vector<std::vector<btScalar>> first;

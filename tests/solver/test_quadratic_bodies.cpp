@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies of quadratic tets in Bullet, which has the eight linear tets that each is made of.
+// Bodies of quadratic tets in Bullet, which has the eight linear tets of each.
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/solver/src/forces/forced_bodies.h>

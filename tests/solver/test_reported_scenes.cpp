@@ -174,8 +174,7 @@ TEST(ReportedScenes, ASoftWheelOnAMotorGrowsByElasticityAlone) {
   wheel.world.deformable().removeConstraint(&hinge);
 }
 
-/// With anchors all around, their impulses cancel out. Of tyres that are soft and stiff, in steps of a quarter and half
-/// a radian.
+/// With anchors all around, their impulses cancel out. Soft and stiff tyres, in steps of a quarter and half a radian.
 TEST(ReportedScenes, AWheelKeepsItsSpin) {
   struct Case {
     double modulus;
@@ -193,7 +192,7 @@ TEST(ReportedScenes, AWheelKeepsItsSpin) {
   }
 }
 
-/// The hub is a multibody's link, the points of which move on arcs as well.
+/// The hub is a multibody's link, whose points also move on arcs.
 TEST(ReportedScenes, AWheelAroundALinkOfAMultibodyDoesNotSwell) {
   Weightless world;
   btCylinderShapeZ shape(btVector3(btScalar(0.19), btScalar(0.19), btScalar(0.05)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What needs a DeformableSolver, and what a world without one is told.
+// Features that need a DeformableSolver, and the messages in a world without one.
 #include "deformable_test.h"
 
 namespace tetskin::test {

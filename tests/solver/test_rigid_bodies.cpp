@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Rigid bodies in a DeformableWorld move as in Bullet's plain world: a table of what an application may do to them.
+// Rigid bodies in a DeformableWorld move as in Bullet's plain world: a table of an application's actions on them.
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
@@ -491,7 +491,7 @@ TEST(RigidBodies, TakeForcesTwiceOnlyWhereBulletsDeformableWorldIsAskedFor) {
   EXPECT_NEAR(body.getLinearVelocity().x(), 10, 1e-3);
 }
 
-/// As the force record tells it: the plate's weight and what pushes it.
+/// As the force record reports: the plate's weight and the force that pushes it.
 TEST(RigidBodies, PressOnASoftBodyByTheForceThatPushesThem) {
   tetskin::DeformableWorld world;
   PlainScene scene(world, 4);

@@ -116,8 +116,8 @@ std::vector<btScalar> motionOf(bool deterministic, bool turns, int frames) {
   return seen(scene.world);
 }
 
-/// A deterministic world has steps of Bullet's in its own functions: what other versions of Bullet do in theirs would
-/// be missing there.
+/// A deterministic world has copies of Bullet's step functions: changes in other versions of Bullet would be missing
+/// there.
 TEST(RigidTurns, OfADeterministicWorldLeaveAllElseAsInBullets) {
   EXPECT_EQ(motionOf(true, false, 40), motionOf(false, false, 40));
   const std::vector<btScalar> own = motionOf(true, true, 6), bullets = motionOf(false, true, 6);

@@ -183,7 +183,7 @@ TEST(SchurComplement, SolvesForAChain) {
   groups.expectDenseSolution();
 }
 
-/// One body that all others touch: whether it is the first, the last or one between them.
+/// One body that all others touch: the first, the last or one between them.
 TEST(SchurComplement, SolvesForManyThatAreCoupledWithOne) {
   for (const std::size_t hub : {0U, 7U, 19U}) {
     SCOPED_TRACE(hub);

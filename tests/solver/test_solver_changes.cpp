@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What changes between steps and during them: bodies that sleep and wake, are added and removed, or get other nodes and
-// other sizes.
+// Changes between steps and during them: bodies that sleep and wake, are added and removed, or get other nodes and
+// sizes.
 #include "cloth.h"
 
 namespace tetskin::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The library's own solve: where it is used, with which settings, and what it reports about itself.
+// The library's own solve: where it is used, its settings, and its reports.
 #include "cloth.h"
 
 namespace tetskin::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What else may be in a world beside bodies that the library's solver solves for: it behaves as with Bullet's solver.
+// Other objects in a world of the library's solver: they behave as with Bullet's solver.
 #include "cloth.h"
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>

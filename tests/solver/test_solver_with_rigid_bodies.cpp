@@ -38,7 +38,7 @@ TEST(SolverWithRigidBodies, TwoBodiesPushOneFromBothSides) {
     maximum = std::max(maximum, static_cast<double>(all.length()));
     fastest = std::max(fastest, static_cast<double>(rigid.body->getLinearVelocity().length()));
   });
-  // Of 2 kg m/s nothing is left: the body has stopped or was thrown back.
+  // Nothing is left of 2 kg m/s: the body has stopped or was thrown back.
   EXPECT_GT(momentumOf(item.body()).y(), -0.1);
   EXPECT_LT(momentumOf(other->body()).y(), 0.1);
   EXPECT_LT(maximum, 1e-4 * 4.0);

@@ -40,7 +40,7 @@ struct Press {
   std::unique_ptr<ForceRecord> record;
 };
 
-/// Without the cure nodes go on by sixty sizes per second, for ever.
+/// Without the cure nodes keep moving at sixty sizes per second.
 TEST(SquashedBodies, ComeToRestAndCarryTheWholeWeight) {
   for (const double ratio : {100.0, 1000.0}) {
     Press press(ratio);

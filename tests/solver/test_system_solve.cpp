@@ -33,7 +33,7 @@ MatrixXd inEigen(const SmallMatrix<Rows, Columns>& of) {
 /// A body in the middle of a step, and a rigid box beside it.
 class System : public testing::Test {
  protected:
-  /// modulus  Young's: 1e4 is soft, and with 1e7 the rigid motion is an unknown of its own
+  /// modulus  Young's: 1e4 is soft, and with 1e7 the rigid motion is an unknown
   /// turns    the body turns and grows, too
   void begin(double modulus, bool turns = true) {
     SoftBodyOptions options;
@@ -168,7 +168,7 @@ class System : public testing::Test {
     return momentum;
   }
 
-  /// The equations hold: of the nodes, of the box, and of each row's law.
+  /// The equations of the nodes, of the box, and of each row's law hold.
   void expectSolved(const MatrixXd& a, const VectorXd& b, double tolerance) {
     const VectorXd y = dense(dynamics().matrix().solution());
     Eigen::Matrix<double, 6, 1> after;
@@ -228,8 +228,8 @@ TEST_F(System, OfAStiffBodyAndARigidOneOnJointsAgreesWithDenseMatrices) {
   expectSolved(a, b, 2e-3);
 }
 
-/// Sliding is where the law bends. The body does not turn: what a solve changes about its momentum afterwards would not
-/// be in the rows.
+/// Sliding is where the law bends. The body does not turn: the later correction of its momentum would not be in the
+/// rows.
 TEST_F(System, OfAStiffBodyThatSlidesOnARigidOneKeepsTheLawAtAllPoints) {
   begin(1e7, false);
   for (int tet = 0; tet < 24; tet += 2) {
@@ -305,7 +305,7 @@ TEST_F(System, EndsOfRowsThatAreApartAddNothing) {
   EXPECT_LT((denseMatrix() - before - w.transpose() * w).norm(), 1e-5 * before.norm());
 }
 
-/// What two nodes that no tet connects would have together, each of them has by itself.
+/// If no tet connects two nodes, they have no common block: their terms go into each node's own block.
 TEST_F(System, AnEndOnNodesThatNoTetConnectsResistsNoLess) {
   begin(1e4);
   CarriedPoint apart;

@@ -32,7 +32,7 @@ def options_of(entry, compiler):
 
 
 def kind_of(options):
-    """Of the options, those that a precompiled header has to have been made with: without the macros of single parts."""
+    """The options with which a precompiled header must have been made: without the macros of single parts."""
     return tuple(option for option in options if option.startswith(("-m", "-f")) or
                  (option.startswith("-D") and not option.startswith("-DTETSKIN")))
 
@@ -88,10 +88,11 @@ def main():
         library = file.relative_to(LIBRARY).parts[0]
         if not any(option.startswith("-m") for option in own):
             plain.setdefault(library, own)
-    # Headers, and sources that another configuration compiles (without Assimp): as the other sources of their library.
+    # Headers, and sources that another configuration compiles (without Assimp): like the other sources of their
+    # library.
     for file in [*sorted(LIBRARY.rglob("*.h")), *sorted(LIBRARY.rglob("*.cpp"))]:
         library = file.relative_to(LIBRARY).parts[0]
-        options.setdefault(file, plain.get(library, plain["bullet"]))  # tetskin.h, export.h: whatever a user has
+        options.setdefault(file, plain.get(library, plain["bullet"]))  # tetskin.h, export.h: with a user's options
     # Two kinds, as elastic's Eigen has another name. Kernels of other processors are few, and read Eigen themselves.
     eigen = {kind_of(plain[name]): precompile(plain[name], build / "alone" / name) for name in ("bullet", "elastic")}
     if not wanted and len(options) < 300:

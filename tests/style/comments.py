@@ -117,7 +117,7 @@ def faults_of_lines(lines):
 
 
 def torn(line, below):
-    """Whether a line of prose ends early, and the next one goes on with its sentence."""
+    """Whether a line of prose ends early, and the next one continues its sentence."""
     same = re.match(r"(\s*///? )(?=\S)", line)
     if not same or not below.startswith(same.group(1)):
         return False
@@ -132,7 +132,7 @@ def torn(line, below):
 
 def faults_of_constants(lines):
     """A comment stands above the constant, above others that stand directly above it, above the function that begins
-    with it, or behind it. What is computed from other names alone needs none."""
+    with it, or behind it. A constant computed only from other names needs none."""
     explained = False
     for number, line in enumerate(lines):
         constant = CONSTANT.match(line)

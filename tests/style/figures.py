@@ -40,7 +40,7 @@ def table_faults(table, tests):
 
 
 def source_in(picture):
-    """What the picture's text chunk says about its table."""
+    """The source in the picture's text chunk."""
     data = picture.read_bytes()
     position = 8
     while position < len(data):

@@ -47,7 +47,7 @@ foreach(file ${files})
     if(NOT include MATCHES "<tetskin/([a-z]+)/(src/)?(.*)>")
       continue()
     endif()
-    # Saves the groups of this match, as the next condition has groups of its own.
+    # Saves the groups of this match, as the next condition has other groups.
     set(other ${CMAKE_MATCH_1})
     set(of_source "${CMAKE_MATCH_2}")
     set(path "${CMAKE_MATCH_3}")

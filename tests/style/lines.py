@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """lines.py [--release NUMBER]: prints the lines of code of each library, of the packages, the demos and the tests,
-beside those of the last release, which lines.txt has. Lines that are empty or only a comment do not count.
+compared with the last release in lines.txt. Lines that are empty or only a comment do not count.
 
-A row there with several names, joined by +, was one folder, which has been parted since: its lines stand beside their sum.
-With --release, before a release, writes lines.txt anew. Fails only where lines.txt does not name what there is: how many
-lines a feature is worth is for people to say."""
+A row there with several names, joined by +, was one folder, which has been split since: its lines are compared with
+their sum. With --release, before a release, rewrites lines.txt. Fails only where lines.txt does not name what there is:
+how many lines a feature is worth is for people to say."""
 import re
 import subprocess
 import sys

@@ -15,7 +15,7 @@ OURS = re.compile(r"(\./)?(demos|plugin|tests)/[\w./-]+")
 
 
 def link_fault(source, target):
-    """What is wrong with a link; nothing if its target exists, or is outside of the repository."""
+    """The fault of a link; empty if its target exists, or is outside of the repository."""
     if re.match(r"\w+:", target):
         return ""
     path, _, anchor = target.partition("#")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Checks that pages stay short enough to be read, and that each page of plugin/docs is linked from the table of contents,
-has one program, and shows right after it what it prints."""
+"""Checks that pages stay short enough to be read, and that each page of plugin/docs is linked from the table of
+contents, has one program, and shows its output right after it."""
 import re
 import sys
 from pathlib import Path

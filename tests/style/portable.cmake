@@ -1,6 +1,6 @@
 cmake_policy(SET CMP0057 NEW)
-# What only some compilers and systems have is in the files named here; objects of the application are not asked for
-# their types; and the top level has what it is meant to have.
+# Code for particular compilers and systems is only in the files named here; objects of the application are not asked
+# for their types; and the top level contains only the intended files.
 set(extensions plugin/tetskin/export.h plugin/tetskin/core/src/base/compiler.h
   plugin/tetskin/core/src/base/kernels/lanes.h)
 set(faults)
@@ -15,14 +15,14 @@ foreach(file ${files})
   endif()
   file(STRINGS ${file} lines REGEX "#include <(unistd|fcntl|dlfcn|pthread|dirent|spawn|link|poll|sys/[a-z]+)[.]h>|M_PI")
   if(name STREQUAL "plugin/tetskin/threads/src/thread_pool.cpp")
-    list(FILTER lines EXCLUDE REGEX "pthread")  # where the system has it: what becomes of threads in `fork`
+    list(FILTER lines EXCLUDE REGEX "pthread")  # if the system has it: threads after `fork`
   endif()
   foreach(line ${lines})
     list(APPEND faults "${name}: only POSIX has this: ${line}")
   endforeach()
   if(name MATCHES "/(bullet|solver|replay|contact|touch|reduced|world)/" AND NOT name MATCHES "own_objects[.]h$")
     file(STRINGS ${file} lines REGEX "dynamic_cast<|typeid")
-    list(FILTER lines EXCLUDE REGEX "inactiveForce[(]")  # one of the library's own
+    list(FILTER lines EXCLUDE REGEX "inactiveForce[(]")  # the library's own
     foreach(line ${lines})
       list(APPEND faults "${name}: asks an object of the application for its type: ${line}")
     endforeach()

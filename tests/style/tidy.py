@@ -6,7 +6,7 @@ on what was compiled, that is on many files at once where the build joins them b
 named in LIST, one per line, with the commands of a build that does not join them. A header is checked as part of a
 source that includes it.
 
-The build folder's compile commands are GCC's: its default C++ is 17, clang's is not, and it has warnings of its own."""
+The build folder's compile commands are GCC's: its default C++ is 17, clang's is not, and it has other warnings."""
 import concurrent.futures
 import json
 import subprocess

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Replaces the global operator new: link it into the one test program that counts allocations. It has a file of its own
-// so that no caller is inlined into it.
+// Replaces the global operator new: link it into the one test program that counts allocations. It has a separate file
+// so that it is not inlined into callers.
 #include "support/allocation_count.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace {
 
-std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads allocate, too
+std::atomic<std::size_t> allocations{0}, bytes{0}, peak{0};  // threads also allocate
 std::atomic<long long> untilFailure{-1};                     // allocations; below 0: none fails
 
 /// The block's size is stored in front of the block, in as many bytes as the block's alignment needs.
@@ -75,7 +75,7 @@ std::size_t from(std::align_val_t alignment) {
 
 }  // namespace
 
-// These are what the standard library's other operators call, and those that a sanitizer's runtime defines itself.
+// The standard library's other operators call these, and a sanitizer's runtime defines the same ones.
 void* operator new(std::size_t size) {
   return allocateOrThrow(size, kOrdinary);
 }

@@ -14,7 +14,7 @@
 
 namespace tetskin::test {
 
-/// Bullet leaks what it has half made when memory ends: as long as this exists, leaks are not reported.
+/// Bullet leaks half-made objects when memory runs out: as long as this exists, leaks are not reported.
 #if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
 using LeaksOfBullet = __lsan::ScopedDisabler;
 #else
@@ -31,7 +31,7 @@ std::size_t allocatedBytes();
 std::size_t peakBytes();
 void resetPeak();
 
-/// As long as this exists, or until it has happened, the allocation that comes after so many others finds no memory.
+/// As long as this exists, the allocation after this many others fails once.
 class AllocationThatFails {
  public:
   explicit AllocationThatFails(std::size_t after);

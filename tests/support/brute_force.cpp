@@ -31,7 +31,7 @@ std::vector<Candidate> candidatesOf(const TetMesh& cage, const Eigen::Vector3d& 
   return all;
 }
 
-/// What the binding rules need to know about a cage.
+/// Data about a cage that the binding rules need.
 struct CageScale {
   double edge = 0.0;      ///< mean over the six edges of each tet
   double rounding = 0.0;  ///< distances up to this count as zero

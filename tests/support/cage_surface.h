@@ -11,12 +11,12 @@
 
 namespace tetskin::test {
 
-/// The cage's boundary with vertices of its own: each face is cut in four `cuts` times, then moved outwards along its
+/// The cage's boundary with separate vertices: each face is cut in four `cuts` times, then moved outwards along its
 /// vertex normals by `distance`. The tets must be positive.
 TriangleMesh surfaceBeside(const TetMesh& cage, double distance, int cuts = 2);
 
-/// What a surface beside a cage should do, whatever carries it: each vertex keeps its rest offset from the point of the
-/// boundary that was closest to it at rest.
+/// The expected motion of a surface near a cage: each vertex keeps its rest offset from the point of the boundary that
+/// was closest to it at rest.
 class BoundaryFollower {
  public:
   BoundaryFollower(const TetMesh& cage, const std::vector<Eigen::Vector3d>& vertices);

@@ -15,8 +15,8 @@ namespace tetskin::test {
 
 using Plane = Eigen::Hyperplane<double, 3>;
 
-/// Number of components, connected by nodes, of those tets whose centroids lie beyond the plane, on the side to which
-/// its normal points; without a plane, of all tets.
+/// Number of components, connected by nodes, among the tets whose centroids lie beyond the plane, on the side to which
+/// its normal points; without a plane, among all tets.
 int countComponentsBeyond(const TetMesh& cage, const std::optional<Plane>& plane = {});
 /// Number of components, connected by vertices, of those triangles whose centroids lie beyond the plane; without a
 /// plane, of all triangles.

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Runs tests of Bullet's own defects, tests/BULLET_DEFECTS.md, if Bullet is the version in which they were seen. With
-// another one the program has no tests: neither for ctest, which asks the program for them, nor when it runs by itself.
+// another one the program has no tests: neither for ctest, which asks the program for them, nor when run directly.
 #include <LinearMath/btScalar.h>
 #include <gtest/gtest.h>
 

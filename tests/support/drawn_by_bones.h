@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What an engine draws with a palette of bones: plain linear blend skinning, in double.
+// An engine's drawing with a palette of bones: plain linear blend skinning, in double.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Runs a scene, goes back to snapshots of it, and compares what follows, to the bit.
+// Runs a scene, goes back to snapshots of it, and compares the following frames, to the bit.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class ReplayedScene {
  public:
   virtual ~ReplayedScene() = default;
   virtual btDeformableMultiBodyDynamicsWorld& world() = 0;
-  /// What the application does in a frame, with the steps of it.
+  /// The application's actions in a frame, including its steps.
   virtual void frame(int number) = 0;
 };
 
@@ -90,10 +90,10 @@ inline void expectFollows(ReplayedScene& scene, const std::vector<Frame>& frames
   }
 }
 
-/// Runs a scene for so many frames, and goes back to some of them: in the same world, in one that was newly built, and
-/// in one that has run for other frames.
+/// Runs a scene for this many frames, and goes back to some of them: in the same world, in a newly built one, and in
+/// one that has run for other frames.
 /// make  -> std::unique_ptr<ReplayedScene>
-/// makeOther  the same for the new worlds, which may differ in what changes no bit
+/// makeOther  the same for the new worlds, which may differ in settings that change no bit
 template <class Make, class MakeOther>
 void expectReplays(Make&& make, MakeOther&& makeOther, int count, const std::vector<int>& from, int most = 1000) {
   const std::unique_ptr<ReplayedScene> first = make();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Rigid bodies that own what they are made of, for worlds of any kind.
+// Rigid bodies that own their parts, for worlds of any kind.
 #pragma once
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -109,7 +109,7 @@ class Rigids {
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
 };
 
-/// What one sees of a world: the bits of all nodes and transforms, and of their velocities.
+/// The visible state of a world: the bits of all nodes and transforms, and of their velocities.
 inline std::vector<btScalar> seen(const btCollisionWorld& world) {
   std::vector<btScalar> numbers;
   const auto add = [&](const btVector3& v) { numbers.insert(numbers.end(), {v.x(), v.y(), v.z()}); };

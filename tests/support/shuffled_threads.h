@@ -13,7 +13,7 @@
 
 namespace tetskin::test {
 
-/// Runs tasks on threads of its own, in a different order each time.
+/// Runs tasks on its own threads, in a different order each time.
 class ShuffledThreads : public ParallelFor {
  public:
   explicit ShuffledThreads(int threadCount) : threadCount_(threadCount) {}

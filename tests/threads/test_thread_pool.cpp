@@ -91,7 +91,7 @@ TEST(ThreadPool, ThreadsShareTheWork) {
     while (started < 2) std::this_thread::yield();
   });
   EXPECT_NE(ids[0], ids[1]);
-  EXPECT_EQ(std::count(ids.begin(), ids.end(), std::this_thread::get_id()), 1);  // the caller runs tasks, too
+  EXPECT_EQ(std::count(ids.begin(), ids.end(), std::this_thread::get_id()), 1);  // the caller also runs tasks
 }
 
 TEST(ThreadPool, OneThreadIsTheCaller) {
@@ -143,7 +143,7 @@ TEST(ThreadPool, WorksAloneInAProcessThatWasForked) {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));  // its threads sleep, as the destructor would wait for
   const pid_t child = fork();
   if (child == 0) {
-    alarm(10);  // ends what waits for ever
+    alarm(10);  // ends tasks that would wait forever
     std::vector<int> calls(100, 0);
     runTasks(pool.get(), calls.size(), [&](std::size_t k) { ++calls[k]; });
     bool right = std::count(calls.begin(), calls.end(), 1) == 100 && pool->threadCount() == 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What plugin/docs/many_bodies.md says may be done at the same time, tested under the thread sanitizer and for the same
+// The simultaneous actions that plugin/docs/many_bodies.md allows, tested under the thread sanitizer and for the same
 // bits as with one thread. Bullet itself is not instrumented: only the library is checked.
 #include "contact/contact_test.h"
 
@@ -15,7 +15,7 @@
 namespace tetskin::test {
 namespace {
 
-/// What bodies of one model share: all threads read it, none writes it.
+/// Data that bodies of one model share: all threads read it, none writes it.
 struct SharedModel {
   TetMesh cage = looseCage();
   TriangleMesh mesh = ballMesh(16, 0.35);
@@ -83,7 +83,7 @@ class Pair {
   std::vector<std::unique_ptr<SurfaceContact>> touching_;
 };
 
-/// Runs each task in a thread of its own.
+/// Runs each task in a separate thread.
 void inThreads(int count, const std::function<void(int)>& task) {
   std::vector<std::thread> threads;
   for (int k = 0; k < count; ++k) threads.emplace_back(task, k);

@@ -140,7 +140,7 @@ struct CrowdedWorld {
   }
 
   TetskinWorld world;
-  std::unique_ptr<RigidBox> shelf;  ///< what `lower` lies on
+  std::unique_ptr<RigidBox> shelf;  ///< the support of `lower`
   std::unique_ptr<ForceRecord> record;
   std::unique_ptr<Toy> bystander, lower, upper, bullets, under, held, carrier;
   std::unique_ptr<RigidBox> box, hung;

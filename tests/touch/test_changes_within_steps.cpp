@@ -85,7 +85,7 @@ struct Way {
   const char* name;
   void (*change)(CrowdedWorld&);
 };
-/// One after the other in one world: what one takes away, another brings back.
+/// One after the other in one world: another change restores what one has removed.
 const Way kWays[] = {
     {"soft body removed", [](CrowdedWorld& of) { of.upper.reset(); }},
     {"soft body added", [](CrowdedWorld& of) { of.addUpper(); }},
@@ -134,8 +134,8 @@ const Way kWays[] = {
      }},
 };
 
-/// What can be said of each body, whatever has been changed beside it: bodies that appear where others have sunk a
-/// little are pushed apart at most as fast as bodies fall.
+/// Conditions for each body, whatever has changed near it: bodies that appear where others have sunk a little are
+/// pushed apart at most as fast as bodies fall.
 void checkBodies(CrowdedWorld& of) {
   for (Toy* toy : {of.bystander.get(), of.lower.get(), of.upper.get(), of.bullets.get(), of.under.get(), of.held.get(),
                    of.carrier.get()}) {
@@ -147,7 +147,7 @@ void checkBodies(CrowdedWorld& of) {
   }
 }
 
-/// What the bystander did in each frame: a node, and the force on the body.
+/// The bystander's state in each frame: a node, and the force on the body.
 using Course = std::vector<std::array<btVector3, 2>>;
 
 /// changing  false: nothing is changed

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What springs, welds and impulses do to both sides, as ForceRecord reports it.
+// The effects of springs, welds and impulses on both sides, as ForceRecord reports them.
 #include "solver/recorded_forces.h"
 #include "touch_test.h"
 

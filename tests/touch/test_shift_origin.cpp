@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world of which the origin is moved goes on as one that was there from the beginning.
+// A world whose origin is moved continues like one that was there from the beginning.
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/contact/soft_contacts.h>
@@ -112,7 +112,7 @@ struct Crowd {
     lift().setWorldTransform(next);
     step(world, 1);
   }
-  /// Where everything is, from a place on.
+  /// All positions, relative to a place.
   std::vector<Vector3> positions(btScalar from) {
     std::vector<Vector3> all;
     const btCollisionObjectArray& objects = world.deformable().getCollisionObjectArray();

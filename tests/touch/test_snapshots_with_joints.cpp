@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A body that hangs on a spring, the target of which moves; a box is welded to it, and a load pulls it now and then.
+/// A body that hangs on a spring with a moving target; a box is welded to it, and a load pulls it now and then.
 class Hanging : public ReplayedScene {
  public:
   explicit Hanging(bool welded) {
@@ -70,7 +70,7 @@ TEST(SnapshotsWithJoints, ThatAreGoneAreRefusedAndChangeNothing) {
   expectRefused(scene.world(), withSpring, StatusCode::SnapshotMismatch, "other springs or welds");
 }
 
-/// Two bodies, on one of which something acts.
+/// Two bodies; something acts on one of them.
 struct Two {
   Two() = default;
   Bytes snapshot() { return saved(world->deformable()); }
@@ -81,7 +81,7 @@ struct Two {
   SurfacePoint points[2] = {bodies[0].vertex(7), bodies[1].vertex(7)};
 };
 
-/// What both worlds do in the next frames is the same.
+/// Both worlds behave the same in the next frames.
 void expectSameMotion(Two& first, Two& second) {
   for (int f = 0; f < 10; ++f) {
     for (Two* two : {&first, &second}) step(*two->world, 1);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Everything in a world may be destroyed in any order, the world and its solver included; what is left says so. Faults
-// here show under a sanitizer, or a memory checker.
+// Everything in a world may be destroyed in any order, including the world and its solver; remaining objects report it.
+// Faults here show under a sanitizer, or a memory checker.
 #include "crowded_world.h"
 
 namespace tetskin::test {
 namespace {
 
-/// What is asked of everything that still exists.
+/// The checks on everything that still exists.
 void askAll(CrowdedWorld& of, bool hasWorld) {
   const bool hasSolver = of.world.softSolver != nullptr;
   if (of.contacts) {
@@ -48,7 +48,7 @@ TEST(Teardown, GoesInAnyOrder) {
     step(of.world, 3);
     ASSERT_EQ(of.lower->skin.update(), StatusCode::Ok);
     const auto destroyWorld = [&] {
-      of.weld.reset();  // before what it is attached to
+      of.weld.reset();  // before the object that it is attached to
       of.hung.reset();
       of.shelf.reset();
       of.world.world.reset();

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What works in any world: reading points and casting rays.
+/// Functions that work in any world: reading points and casting rays.
 void readAndCast(TestWorld& world, const TouchModel& model) {
   SoftBodySkin skin;
   const auto binding = model.bind();

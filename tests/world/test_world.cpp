@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A world that owns what is in it does what its parts do by themselves, and lets go of them in any order.
+// A world that owns its objects behaves like its parts by themselves, and releases them in any order.
 #include <tetskin/replay/src/exported/state_hash.h>
 #include <tetskin/world/world.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is drawn beside the serpent: a hat, a ring, a pointer. Meshes about the origin, y up.
+// Objects drawn beside the serpent: a hat, a ring, a pointer. Meshes about the origin, y up.
 #pragma once
 
 #include <tetskin/core/mesh.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a running scene shows: bodies that the graphics card skins, by the bones of each frame; rigid bodies; and the
+// The objects of a running scene: bodies that the graphics card skins by the bones of each frame; rigid bodies; and the
 // stage with both.
 
 /** To the camera of the first view where the room is narrow: what is long is seen more from its end, and larger. */

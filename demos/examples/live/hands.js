@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What pointers do on the canvas: hold a body and drag it, push it, throw a ball at it. Beside bodies they turn the
-// view: the controls start with every pointer, and are stopped when the worker answers that a body was met.
+// The pointers' actions on the canvas: hold a body and drag it, push it, throw a ball at it. Away from bodies they turn
+// the view: the controls start with every pointer, and are stopped when the worker answers that a body was hit.
 
 const PUSH = 1.5;             // mass times velocity, of a body's mass and sizes per second
 const THROW_SPEED = 7;        // sizes per second

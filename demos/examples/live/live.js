@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The page: scenes, controls, time. What is simulated is in the worker; a picture asks for the frames that are due
-// since the last one, and draws what has come.
+// The page: scenes, controls, time. The worker simulates; a picture asks for the frames that are due since the last
+// one, and draws those that have come.
 
 const element = id => document.getElementById(id);
 const withCommas = number => number.toLocaleString('en');
@@ -42,7 +42,7 @@ function sentenceOf(error, what, cure = 'Choose fewer tets') {
     return 'This page needs WebAssembly with SIMD, which this browser does not offer: Chrome or Edge from 95, ' +
       'Firefox from 113, Safari from 16.4 have it.';
   }
-  // Readers have a file by the name "file": what follows it, a line, stays.
+  // Readers call every file "file": the line number after it stays.
   const [, place, message] = /^(?:file\.\w+(:\d+)?: )?([^]*)$/.exec(error.message);
   return `${what}${place || ''}: ${message}`;
 }
@@ -109,7 +109,7 @@ class Live {
       const words = [this.scene, ...changed.map(name => `${name}=${textOf(this.settings[name])}`)].join('&');
       try {
         history.replaceState(null, '', `#${words}`);
-      } catch {}  // where a browser forbids it, the page goes on without
+      } catch {}  // if a browser forbids it, the page continues without
     }, PAUSE_OF_ADDRESS);
   }
 
@@ -362,7 +362,7 @@ class Live {
     for (const what of ['pointerdown', 'wheel', 'keydown']) {
       window.addEventListener(what, () => element('hint').classList.add('gone'), {passive: true, once: true});
     }
-    // What the mouse has clicked leaves the space bar to the page.
+    // A clicked element leaves the space bar to the page.
     document.addEventListener('click', ({detail, target}) => {
       if (detail > 0 && target.tagName === 'BUTTON') target.blur();
     });

@@ -3,7 +3,7 @@
 //
 // Joins the page from its parts:
 //   node make_page.mjs OUTPUT MODULE SERPENT THREE ORBIT_CONTROLS PACKAGE
-// MODULE: the ES module of plugin/js; SERPENT: what serpent.cpp writes; PACKAGE: the folder with its licences, which
+// MODULE: the ES module of plugin/js; SERPENT: the output of serpent.cpp; PACKAGE: the folder with its licences, which
 // the page shows.
 import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';

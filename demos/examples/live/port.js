@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Workers of the page: made of text that the page has, so that it opens from a file, too.
+// Workers of the page: made from text in the page, so that it also opens from a file.
 
 class Port {
   /** onTrouble: called with a sentence if the worker itself fails, after which it answers nothing. */

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The scenes, in the worker. Each fills a world by a Builder. What its script does in a frame depends on the frame's
-// number alone, so that a world that was taken back goes on as it did.
+// The scenes, in the worker. Each fills a world by a Builder. The actions of its script in a frame depend only on the
+// frame's number, so that a restored world continues as before.
 
 const FRAME = 1 / 60;
 /** What the sliders say where nothing else is asked for. tets: 0, the scene's own number. */

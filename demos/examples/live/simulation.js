@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scene that runs in the worker: its world, what is held and thrown, and snapshots of the last ten seconds.
+// A scene that runs in the worker: its world, held and thrown objects, and snapshots of the last ten seconds.
 
 const SUBSTEPS = 4;
 /** Of the module's stages, those that the page shows; the others are with what is left of a frame. */
@@ -185,9 +185,9 @@ class Simulation {
     this.script = null;
     this.held = null;   // {hit, spring, target}
     this.frame = 0;
-    this.touched = !this.isUsual();  // by hands or settings: what follows is not what a native run has
+    this.touched = !this.isUsual();  // by hands or settings: from here on it differs from a native run
     this.compared = null;            // {frame, hash}, the last one to compare with a native run
-    this.spent = null;  // on frames of which `state` has not told yet: {frames, all, stages}, milliseconds
+    this.spent = null;  // on frames that `state` has not reported yet: {frames, all, stages}, milliseconds
     this.times = Object.fromEntries([...TIMED, 'bones', 'page'].map(stage => [stage, 0]));
     this.milliseconds = 0;
     this.kept = [];     // snapshots, the oldest first

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What a worker of the page does: one simulates, another makes the cages of meshes that are dropped on the page. After
-// the module's and the other scripts, in one file. Each message {id, type, data} is answered by {id, answer} or
-// {id, error}, in order.
+// The page's workers: one simulates, another makes the cages of meshes that are dropped on the page. After the module's
+// and the other scripts, in one file. Each message {id, type, data} is answered by {id, answer} or {id, error}, in
+// order.
 
 let simulation = null, api = null, shelf = null;
 

@@ -72,8 +72,8 @@ print(f"{mesh.vertex_count} vertices, {mesh.triangle_count} triangles, {(uses ==
 
 # %% [markdown]
 # ## The cage
-# `progress=True` prints a bar, and the interrupt button cancels. The report tells how well the cage fits; calibration
-# makes it as compliant as the body with its shape.
+# `progress=True` prints a bar, and the interrupt button cancels. The report says how well the cage fits; calibration
+# makes it as compliant as the real body.
 
 # %%
 begin = time.perf_counter()

@@ -4,9 +4,9 @@
 # %% [markdown]
 # # pybullet's arm lifts a soft ball
 #
-# The arm (Franka's Panda) and the ground are pybullet's, of its own data. The ball is a soft body of tetskin's. A
-# `Mirror` shows the hand and the ground to tetskin's world, and gives the forces of the ball back to the fingers, which
-# hold it by friction alone.
+# The arm (Franka's Panda) and the ground are from pybullet's data. The ball is a soft body of tetskin's. A `Mirror`
+# shows the hand and the ground to tetskin's world, and gives the forces of the ball back to the fingers, which hold it
+# by friction alone.
 
 # %%
 import argparse
@@ -58,7 +58,7 @@ def add_ball(world: ts.World, subdivisions: int) -> ts.Body:
 
 # %%
 class Control:
-    """What the arm shall do: the hand's height goes on evenly, and fingers are open, or close with a force."""
+    """The arm's plan: the hand's height changes evenly, and fingers are open, or close with a force."""
 
     def __init__(self, client: int, arm: int) -> None:
         self.client, self.arm = client, arm
@@ -79,7 +79,7 @@ class Control:
 
 
 def picture(client: int, ball: ts.Body, path: Path) -> None:
-    """What pybullet sees, with the ball as it is now."""
+    """pybullet's view, with the ball in its current shape."""
     assert ball.mesh
     shape = p.createVisualShape(p.GEOM_MESH, vertices=ball.positions.tolist(),
                                 indices=ball.mesh.triangles.ravel().tolist(), rgbaColor=(0.9, 0.3, 0.2, 1),
@@ -95,8 +95,8 @@ def picture(client: int, ball: ts.Body, path: Path) -> None:
 
 # %%
 def run(output: Path | None = None, force: float = 6.0, quick: bool = False) -> dict[str, Any]:
-    """Lowers the hand, grips, lifts, holds. Returns what it has measured. output: a folder for pictures, or None.
-    quick: a coarser ball, held for a shorter time."""
+    """Lowers the hand, grips, lifts, holds. Returns its measurements. output: a folder for pictures, or None. quick: a
+    coarser ball, held for a shorter time."""
     client = p.connect(p.DIRECT)
     try:
         ground, arm = make_arm(client)
@@ -145,7 +145,7 @@ def report(measured: dict[str, Any]) -> None:
 
 
 def faults(measured: dict[str, Any]) -> Iterator[str]:
-    """What is wrong with a lift."""
+    """The faults of a lift."""
     weight = MASS * 9.81
     lifted, held = measured["lifted"], measured["held"]
     if abs(measured["around"]["on_ground"] - weight) > 0.02 * weight:

@@ -21,7 +21,7 @@ import nbformat
 
 FOLDER = Path(__file__).parent
 SCRIPTS = ["drop", "gripper"]
-"""The demos that are notebooks, too."""
+"""The demos that are also notebooks."""
 LARGEST = 200_000
 """Bytes of a notebook that is kept."""
 _CELL = re.compile(r"^# %%(.*)\n", re.MULTILINE)
@@ -55,7 +55,7 @@ def run(notebook: nbformat.NotebookNode, folder: Path, timeout: int = 300) -> No
 
 
 def kept(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Without what differs from run to run for no reason, and without pages."""
+    """Without data that differs from run to run for no reason, and without pages."""
     for cell in notebook.cells:
         cell.metadata.clear()
         outputs = cell.get("outputs", [])

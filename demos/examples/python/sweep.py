@@ -6,10 +6,10 @@
 # %% [markdown]
 # # Thousands of runs on more than one machine
 #
-# `sweep.py` bends a bar for every stiffness and every number of steps per frame, and tells the error of each run and
-# what it took. `sweep.py rollouts` pushes a ball to a target: hundreds of tries from one snapshot, and from the best of
-# them the next generation. Both do it through Dask's `distributed`, on workers of this machine or, with
-# `--scheduler ADDRESS`, of a cluster; and both give the same bits as one process alone, which `--check` compares.
+# `sweep.py` bends a bar for every stiffness and every number of steps per frame, and reports the error and the cost of
+# each run. `sweep.py rollouts` pushes a ball to a target: hundreds of tries from one snapshot, and from the best of
+# them the next generation. Both do it through Dask's `distributed`, on workers of this machine or, with `--scheduler
+# ADDRESS`, of a cluster; and both give the same bits as one process alone, which `--check` compares.
 #
 # Needs `pip install distributed pandas matplotlib` beside `tetskin`, in the same versions on all machines.
 
@@ -49,12 +49,11 @@ INTERRUPTED = "not run: interrupted"
 # ## The models
 #
 # They are made once, here. Meshes, cages and snapshots can be pickled, so that every worker gets the same bits,
-# whatever machine it is on. A world cannot: what travels in its place is the function that builds it, and
-# `world.save()`.
+# whatever machine it is on. A world cannot: instead, send the function that builds it, and `world.save()`.
 
 # %%
 def box_mesh(size: Sequence[float], cells: Sequence[int]) -> ts.TriangleMesh:
-    """The surface of a box about the origin, of so many cells along each axis. size: rest units."""
+    """The surface of a box about the origin, with this many cells along each axis. size: rest units."""
     points, triangles, first = [], [], 0
     for axis, far in itertools.product(range(3), (False, True)):
         u, v = (axis + 1) % 3, (axis + 2) % 3
@@ -122,7 +121,7 @@ def bend(model: Model, stiffness: float, substeps: int, frames: int, **solver: A
 
 
 def bend_finely(plan: Row, model: Model) -> np.ndarray | Exception:
-    """The reference of all runs of one stiffness: positions as of `bend`, or why there are none."""
+    """The reference of all runs of one stiffness: positions like those of `bend`, or why there are none."""
     try:
         precise = {"solver_tolerance": 1e-6, "max_iterations": 1000}
         return bend(model, plan["stiffness"], plan["substeps"], plan["frames"], **precise)[0]
@@ -149,7 +148,7 @@ def hash_of(array: np.ndarray) -> str:
 # ## A rollout
 #
 # A ball lies on the ground, and a paddle beside it pushes it. All rollouts begin with one snapshot, in which the ball
-# has come to rest; what differs are the actions, the paddle's velocities.
+# has come to rest; they differ in the actions, the paddle's velocities.
 
 # %%
 KNOTS = 6  # of a rollout's actions
@@ -203,7 +202,7 @@ def roll_out(plan: Row, model: Model, snapshot: bytes) -> Row:
 # %% [markdown]
 # ## Many of them
 #
-# `attempted` is what a worker does: a run that fails is a row that says so, and the others go on. Dask makes a run
+# A worker runs `attempted`: a run that fails becomes a row that says so, and the others continue. Dask makes a run
 # again whose worker is lost; it gives up a run with which more than `distributed.scheduler.allowed-failures` (3) were
 # lost.
 
@@ -214,15 +213,15 @@ def attempted(plan: Row, *inputs: Any, function: Callable[..., Row], version: st
         return {**told, "status": f"not run: tetskin {ts.__version__} there, and {version} here"}
     try:
         return {**told, **function(plan, *inputs)}
-    except Exception as error:  # whatever it is, it is this run's
+    except Exception as error:  # any error belongs to this run
         return {**told, "status": f"{type(error).__name__}: {error}".splitlines()[0]}
 
 
 def begun(client: Client | None, function: Callable[..., Any], *inputs: Any) -> Any:
     """A future of the function's result; without a client, the result.
 
-    What many runs need is the result of such a task, and is sent once to each worker that makes some. It is not
-    scattered, as Dask makes again what was lost with its workers only if a task has made it.
+    Data that many runs need is the result of such a task, and is sent once to each worker that runs some of them. It is
+    not scattered, as Dask makes again what was lost with its workers only if a task has made it.
     """
     return client.submit(function, *inputs, pure=False) if client else function(*inputs)
 
@@ -239,7 +238,7 @@ def farm(
         yield from ((k, attempted(*arguments, **run)) for k, arguments in enumerate(zip(plans, *inputs)))
         return
     # With a lost worker, Dask counts a failure of all runs that it had been given, not only of the one that it was at.
-    # So workers are given few at a time; and those that Dask has given up are tried once more, each without others.
+    # So workers get few at a time; and those that Dask has given up are tried once more, each alone.
     waiting, given_up = enumerate(zip(plans, *inputs)), []
     threads, counted = 0, -math.inf
     index: dict[Future[Row], int] = {}
@@ -271,24 +270,24 @@ def farm(
             future = begin(k, (plans[k], *(of_all[k] for of_all in inputs)))
             wait(future)
             yield k, future.result() if future.status == "finished" else {"status": lost(future.exception())}
-    finally:  # also where whoever asked for rows was interrupted
+    finally:  # also if the caller was interrupted
         client.cancel(list(index))
 
 
 def lost(result: Any) -> str:
-    """What is told of a run that Dask has given up, whose result is an exception or `sys.exc_info` of one."""
+    """The row of a run that Dask has given up, whose result is an exception or `sys.exc_info` of one."""
     error = result[1] if isinstance(result, tuple) else result
     return f"lost: {type(error).__name__}: {error}".splitlines()[0]
 
 
 def table_of(plans: list[Row], rows: Iterator[tuple[int, Row]]) -> pd.DataFrame:
-    """All plans with their rows, in the plans' order, whatever the order in which they come. Tells how far they are."""
+    """All plans with their rows, in the plans' order, whatever the order in which they come. Prints the progress."""
     done: list[Row] = [{"status": INTERRUPTED} for _ in plans]
     terminal = sys.stderr.isatty()
     pause = 0.1 if terminal else 10.0  # seconds from one line to the next, which in a terminal replaces it
     started = told = time.monotonic()
     failed = 0
-    with contextlib.suppress(KeyboardInterrupt):  # what there is is kept
+    with contextlib.suppress(KeyboardInterrupt):  # the rows so far are kept
         for count, (k, row) in enumerate(rows, 1):
             done[k] = row
             failed += row["status"] != "ok"
@@ -338,8 +337,8 @@ def rollouts(client: Client | None, options: argparse.Namespace) -> pd.DataFrame
 # %% [markdown]
 # ## Workers
 #
-# Without `--scheduler`, they are processes of this machine. With it, whatever `dask worker` has been started for that
-# scheduler: with the same version of tetskin, since another one may have other bits.
+# Without `--scheduler`, they are processes on this machine. With it, they are all `dask worker`s that have been started
+# for that scheduler: with the same version of tetskin, since another one may have other bits.
 
 # %%
 class Refused(Exception):
@@ -354,7 +353,7 @@ def version_of(told: Any) -> str:
 
 
 def check_versions(client: Client) -> None:
-    """Of the workers, and of the scheduler, too, which opens the tasks before it passes them on."""
+    """Versions of the workers, and of the scheduler, which opens the tasks before it passes them on."""
     versions: Any = client.get_versions(packages=["tetskin"])
     here = version_of(versions["client"])
     there = {"the scheduler": versions["scheduler"], **versions["workers"]}
@@ -370,12 +369,12 @@ def check_versions(client: Client) -> None:
 @contextlib.contextmanager
 def connected(options: argparse.Namespace) -> Iterator[Client]:
     if options.scheduler is None:
-        # Processes of one thread each: runs are counted by one clock of their own, and a crash is that of one run.
+        # Processes with one thread each: each run has its own processor clock, and a crash affects one run.
         local = {"n_workers": options.workers, "threads_per_worker": 1, "processes": True, "dashboard_address": ":0"}
         with LocalCluster(**local, silence_logs=logging.ERROR) as cluster, Client(cluster) as client:
             yield client
         return
-    gc.collect()  # a client that could not be made, and is collected while another one starts, waits for it for ever
+    gc.collect()  # a client that could not be made, and is collected while another one starts, waits for it forever
     try:
         client = Client(options.scheduler, timeout=options.timeout)
     except (OSError, ValueError) as error:

@@ -4,8 +4,8 @@
 # %% [markdown]
 # # pybullet's torus with a fine surface
 #
-# The mesh is of pybullet's own data, with each triangle divided into 16. pybullet loads the cage that tetskin has made
-# of it, as a soft body of its own, and simulates it alone; tetskin's skin follows.
+# The mesh is from pybullet's data, with each triangle divided into 16. pybullet loads the cage that tetskin has made
+# from it as a soft body, and simulates it alone; tetskin's skin follows.
 
 # %%
 import argparse
@@ -53,8 +53,8 @@ def difference_of(skin: tetskin.pybullet.Skin, cage: ts.Cage, mesh: Any) -> floa
 
 # %%
 def run(output: Path | None = None, seconds: float = 3.0, quick: bool = False) -> dict[str, Any]:
-    """Drops the torus. Returns what it has measured. output: a folder for the surface at the end, or None. quick: a
-    coarser surface, and a shorter run."""
+    """Drops the torus. Returns its measurements. output: a folder for the surface at the end, or None. quick: a coarser
+    surface, and a shorter run."""
     mesh = fine_torus(1 if quick else 2)
     seconds = min(seconds, 1.5) if quick else seconds
     cage = ts.create_cage(mesh, target_tets=500)
@@ -112,7 +112,7 @@ def draw(measured: dict[str, Any], path: Path) -> None:
 
 
 def faults(measured: dict[str, Any]) -> Iterator[str]:
-    """What is wrong with a drop."""
+    """The faults of a drop."""
     if measured["vertices"] < 2000:
         yield "the surface is not fine"
     if not -0.02 < measured["lowest"][-1] < 0.05 or not measured["lowest"][0] > 0.5:

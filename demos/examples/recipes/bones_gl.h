@@ -57,7 +57,7 @@ GLuint addAttribute(GLuint program, const char* name, const std::vector<Value>& 
   return buffer;
 }
 
-/// Once per mesh: bones and weights, beside the attributes restPosition and restNormal. Returns their buffers.
+/// Once per mesh: bones and weights, in addition to the attributes restPosition and restNormal. Returns their buffers.
 inline std::vector<GLuint> addBones(GLuint program, const tetskin::SkinnedMesh& mesh, bool halfSize) {
   return {addAttribute(program, "bones", mesh.bones, 4, GL_UNSIGNED_SHORT, true),
           halfSize ? addAttribute(program, "weights", mesh.normalisedWeights(), 4, GL_UNSIGNED_SHORT)

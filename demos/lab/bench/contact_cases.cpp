@@ -34,7 +34,7 @@ constexpr double kRowSpacing = 2.5;
 /// Height above the obstacle's top: of bodies that fall, and of those that begin in contact.
 constexpr double kFall = 0.2, kTouching = 0.001 * scenes::kSize;
 
-/// What searches for contacts. `Bullet`: its own solver, by nodes. `Free`: there is nothing to meet, which gives the
+/// Which search finds contacts. `Bullet`: its own solver, by nodes. `Free`: nothing to collide with, which gives the
 /// cost of a step without contact.
 enum class Finder { Surface, Cage, Bullet, Free };
 constexpr std::pair<Finder, const char*> kFinders[] = {
@@ -49,7 +49,7 @@ void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher
   inPairs += std::clock() - begin;
 }
 
-/// What a body falls on, with its top at the origin, or what it hangs around.
+/// The obstacle on which a body falls, with its top at the origin, or around which it hangs.
 struct ContactObstacle {
   std::unique_ptr<btCollisionShape> shape;
   btVector3 centre{0, 0, 0};

@@ -28,7 +28,7 @@ constexpr int kFramesOfCrowd = 15;
 
 enum class Left { Nothing, Sleepers, Hidden, Updates };
 
-/// Which bodies have skins, what these have, and what a frame leaves out.
+/// Which bodies have skins, the features of these, and the parts that a frame leaves out.
 struct CrowdCase {
   std::string name;
   bool all = false;  ///< skins for all bodies, instead of for those alone that are always awake
@@ -134,7 +134,7 @@ const std::vector<CrowdCase>& crowdCases() {
 }  // namespace
 
 void registerCrowdCases(const scenes::ModelOptions& model, std::size_t bodies) {
-  constexpr std::size_t kTets = 200;  // of each body, whatever the other cases have
+  constexpr std::size_t kTets = 200;  // of each body, independent of the other cases
   const auto crowd = [model, bodies, made = std::make_shared<std::unique_ptr<Crowd>>()]() -> Crowd& {
     scenes::ModelOptions options = model;
     if (options.cage.empty()) options.tets = kTets;

@@ -65,7 +65,7 @@ void timePile(State& state, const PileCase& made) {
   const int frames = made.phase == Phase::Falling ? kFallingFrames : kRestFrames;
   for (auto _ : state) {
     Pile pile(options);
-    pile.keepAwake();  // what is measured must not depend on when the last body falls asleep
+    pile.keepAwake();  // measurements must not depend on when the last body falls asleep
     const bool settled = made.phase == Phase::Falling || settle(pile);
     const scenes::SolveTotals before = pile.world().solveTotals();
     const PileTimes times = timedFrames(pile, frames);

@@ -4,7 +4,7 @@
 
 namespace tetskin::bench {
 
-/// Registers what it costs to save and to restore a world: of one body on the floor, and of a heap of eight.
+/// Registers the cost of saving and restoring a world, with one body on the floor, and with a heap of eight.
 void registerSnapshotCases();
 
 }  // namespace tetskin::bench

@@ -118,7 +118,7 @@ void dropXpbd(State& state, std::size_t tets) {
       count * kXpbdSubsteps, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// 500 bodies of 200 tets in free fall, of which 450 sleep.
+/// 500 bodies of 200 tets in free fall; 450 of them sleep.
 void crowd(State& state, Force force) {
   constexpr std::size_t kBodies = 500, kAsleep = 450;
   scenes::SceneOptions options;
@@ -133,8 +133,8 @@ void crowd(State& state, Force force) {
   state.counters["asleep"] = static_cast<double>(asleep);
 }
 
-/// A cloth of Bullet's springs that hangs by two corners: what Bullet's own bodies cost in a world with either solver.
-/// Bullet projects contacts in both.
+/// A cloth of Bullet's springs that hangs by two corners: the cost of Bullet's own bodies in a world with either
+/// solver. Bullet projects contacts in both.
 void cloth(State& state, Force force) {
   constexpr int kSettled = 240;
   constexpr btScalar kFrame = btScalar(1.0 / 60.0);
@@ -158,7 +158,7 @@ void cloth(State& state, Force force) {
   world.removeSoftBody(body.get());
 }
 
-/// Where the node at the free end is after each step of a second.
+/// The position of the node at the free end after each step of a second.
 std::vector<btVector3> swing(const TetMesh& cage, const SoftBodyOptions& options) {
   constexpr int kSteps = 240;
   scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));
@@ -174,8 +174,7 @@ std::vector<btVector3> swing(const TetMesh& cage, const SoftBodyOptions& options
   return path;
 }
 
-/// RMS distance of the free end from where it is if each step is solved for closely, over the longest way that it
-/// swings.
+/// RMS distance of the free end from its position with an accurate solve of each step, divided by its longest swing.
 double swingError(const TetMesh& cage, SoftBodyOptions options) {
   const std::vector<btVector3> path = swing(cage, options);
   options.solverTolerance = 1e-5;
@@ -273,7 +272,7 @@ void softPair(State& state, std::size_t tets, double apart, bool touch) {
   timeSettled(state, world, model.cage);
 }
 
-/// A serpent on the floor that meets itself, or not: so soft that its coils sink onto each other, or stiff.
+/// A serpent on the floor, with self-contact or without: so soft that its coils sink onto each other, or stiff.
 void softSelf(State& state, std::size_t tets, bool sinks, bool itself) {
   const TouchingModel model(tets);
   scenes::World world(Force::Elastic, btVector3(0, btScalar(-scenes::kEarth), 0));

@@ -4,8 +4,8 @@
 
 namespace tetskin::bench {
 
-/// Registers what a frame of the body costs: each force and solver, compared with Bullet's and with a plain
-/// hand-written solver; and a crowd most of which sleeps.
+/// Registers the cost of a body's frame: each force and solver, compared with Bullet's and with a plain hand-written
+/// solver; and a mostly sleeping crowd.
 void registerStepCases();
 
 }  // namespace tetskin::bench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Boxes drawn with twelve triangles, on things that are smaller than these, and under such things. Everything, gravity
-// too, has the unit of the size.
+// Boxes drawn with twelve triangles, on objects smaller than these, and under such objects. Everything, including
+// gravity, is in units of the size.
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ Obstacle obstacleOf(const Support& support, double size) {
   return measure::obstacleOf(support.make(size), centres);
 }
 
-/// The least distance of the drawn triangles, corners and what is between them, less the margin, S.
+/// The smallest distance of the drawn triangles, corners and interior, minus the margin, S.
 double gapAsDrawn(SoftObject& body, double size, const Distance& distance) {
   constexpr int kParts = 48;
   double minimum = HUGE_VAL;
@@ -80,7 +80,7 @@ void lieOnSupports(Run& run, const Vector3d& half, const Support& support, doubl
   MeasuringWorld world(run, Vector3d(0, -scenes::kEarth * size, 0));
   const Obstacle obstacle = obstacleOf(support, size);
   obstacle.addTo(world);
-  // Gravity grows with the size, too.
+  // Gravity also grows with the size.
   SoftObject& body =
       world.addSoft(makeCoarseBox(half * size), BodyOptions{500.0 * size}, Vector3d(0, size * (half.y() + kFall), 0));
   double gap = HUGE_VAL;

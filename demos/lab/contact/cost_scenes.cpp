@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The cost of steps: with many springs, and with many bodies that meet nothing. Nothing is promised of these figures,
-// as they depend on the machine.
+// The cost of steps: with many springs, and with many bodies that touch nothing. There are no promises about these
+// figures, as they depend on the machine.
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 

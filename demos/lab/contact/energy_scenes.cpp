@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Landings, impacts, squeezing: no energy is gained, and no surface is deep in what it meets.
+// Landings, impacts, squeezing: no energy is gained, and no surface penetrates deeply.
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Geometry>

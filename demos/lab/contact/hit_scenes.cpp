@@ -20,7 +20,7 @@ const Vector3d kWeightless = Vector3d::Zero();
 const Vector3d kBallStart(-0.75, 0.3, 0.05), kBallVelocity(5, 0, 0);
 constexpr double kBallRadius = 0.15;
 
-/// Seconds until everything that met has parted.
+/// Seconds until all colliding bodies have separated.
 constexpr double kUntilParted = 0.5;
 
 /// A zone that surrounds the whole scene.
@@ -32,7 +32,7 @@ void addZone(MeasuringWorld& world, Zone zone) {
   if (zone == Zone::Ghost) world.addGhost(kHalf);
 }
 
-/// Nothing meets anything: the accuracy of the figures themselves.
+/// Nothing collides: the accuracy of the figures themselves.
 void miss(Run& run, double stiffness) {
   MeasuringWorld world(run, kWeightless);
   world.addSoft(makeBall(), BodyOptions{stiffness}, kWeightless).push(Vector3d(1, 2, 3), Vector3d(1, -2, 0.5));

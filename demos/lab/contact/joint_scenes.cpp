@@ -128,7 +128,7 @@ double turn(const SurfaceSpring&) {
   return 0.0;
 }
 
-/// Four seconds to settle, and one of measurement: a joint at a point holds a cube, which goes on swinging a little.
+/// Four seconds to settle, and one of measurement: a joint at a point holds a cube, which keeps swinging a little.
 template <class Join>
 void hang(Run& run, const Join& join) {
   MeasuringWorld world(run);

@@ -98,7 +98,7 @@ void forgetGravity(MeasuringWorld& world) {
 /// The box glides without any force that presses it onto the slab.
 void glide(Run& run, double friction) {
   constexpr double kSlow = 0.5;
-  constexpr double kTouching = 5e-5;  // less than what the default gravity would close in a step
+  constexpr double kTouching = 5e-5;  // less than the default gravity would close in a step
   SlabOptions slab;
   slab.friction = friction;
   slab.gap = kTouching;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Bodies that fall asleep, and those that must not; what wakes them, and what carries them from the first frame on.
+// Bodies that fall asleep, and bodies that must not; objects that wake them, and objects that carry them from the first
+// frame on.
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -29,7 +30,7 @@ BodyOptions sleepingBody() {
   return options;
 }
 
-/// Four steps, after the scene has moved what it moves once.
+/// Four steps, after the scene has made its one-time moves.
 void frame(MeasuringWorld& world) {
   world.bullet().stepSimulation(static_cast<btScalar>(kFrame), 4, static_cast<btScalar>(kStep));
 }
@@ -41,14 +42,15 @@ bool sleepAll(const std::vector<SoftObject*>& bodies) {
   return true;
 }
 
-/// Bodies that come to rest on each other, and all that carries them.
+/// Bodies that come to rest on each other, and everything that carries them.
 struct Pile {
   std::vector<SoftObject*> bodies;
   std::vector<const btRigidBody*> supports;
   double carried = 0.0;  ///< mass of the rigid bodies in it
 };
 
-/// The farthest that a body's force, or the supports' sum, is from what it has to carry, over the weight of a body.
+/// The largest deviation of a body's force, or of the supports' sum, from the carried weight, divided by the weight of
+/// a body.
 double forceError(const Pile& pile, const ForceRecord& forces) {
   double error = 0.0, all = pile.carried * scenes::kEarth, weight = 0.0, held = 0.0;
   for (const SoftObject* body : pile.bodies) {
@@ -198,7 +200,7 @@ void addSleepScenes(ContactScenes& scenes) {
   addPile("cube", [](MeasuringWorld& world) { return stackOf(world, 1); });
   addPile("four supports", onFourSupports);
   addPile("rigid between", rigidBetween);
-  // By nodes, soft bodies do not meet.
+  // With contact at nodes, soft bodies do not collide.
   const auto addSoftPile = [&](const std::string& name, const std::function<Pile(MeasuringWorld&)>& make) {
     scenes.push_back({"sleep/forces/" + name, [=](Run& run) { weigh(run, make); }, {Kind::Surface}});
   };

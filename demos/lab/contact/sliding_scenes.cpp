@@ -92,7 +92,7 @@ std::unique_ptr<btCollisionShape> flatTerrain(ShapeParts& parts, double side, in
   return terrain;
 }
 
-/// Calls for the centres of square tiles with their upper sides at y = 0, of which none begins where the box does.
+/// Calls for the centres of square tiles with their upper sides at y = 0; no tile begins where the box does.
 void forTiles(const std::function<void(const Vector3d&)>& add) {
   constexpr int kTiles = 10;
   for (int i = -kTiles; i <= kTiles; ++i) {

@@ -60,7 +60,7 @@ void collide(Run& run, const Collision& collision) {
   const ModelPtr model = makeBall();
   MeasuringWorld world(run, Vector3d::Zero());
   const double along = std::sqrt(kApart * kApart - collision.aside * collision.aside);
-  // Off the origin, so that head-on, too, there is angular momentum to lose.
+  // Off the origin, so that even a head-on collision has angular momentum to lose.
   const Vector3d at(0, 0, 0.5);
   SoftObject& moving =
       world.addSoft(model, BodyOptions{collision.stiffness}, at + Vector3d(-along, collision.aside, 0));
@@ -151,7 +151,7 @@ void part(Run& run, const Vector3d& gravity, const ModelPtr& model, const std::v
   MeasuringWorld world(run, gravity);
   if (!gravity.isZero()) world.addFloor();
   ContactShapeOptions shape;
-  shape.sampleCount = 300;  // as each of seven bodies meets six others
+  shape.sampleCount = 300;  // as each of seven bodies touches six others
   std::vector<SoftObject*> bodies;
   for (const Vector3d& centre : centres) {
     bodies.push_back(&world.addSoft(model, BodyOptions{50.0}, centre));

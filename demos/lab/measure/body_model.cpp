@@ -83,7 +83,7 @@ ModelPtr inBuiltCage(TriangleMesh mesh, std::size_t tets, Copies copies) {
   Cage cage = scenes::builtCage(mesh, tets);
   if (copies.count == 1) return makeModel(std::move(mesh), std::move(cage));
   appendCopies(mesh, copies);
-  // What is known of single vertices does not hold for the copies; a convex body has no duplicate tets.
+  // Data about single vertices does not hold for the copies; a convex body has no duplicate tets.
   cage.vertexTets.clear();
   cage.meshHash.reset();
   return makeModel(std::move(mesh), std::move(cage));

@@ -28,7 +28,7 @@ class btTypedConstraint;
 namespace tetskin::measure {
 
 constexpr double kStep = 1.0 / 240;
-/// The distance kept between a surface and what it touches, over the body's size: the exact gap at rest.
+/// The distance kept between a surface and a touched object, divided by the body's size: the exact gap at rest.
 constexpr double kMargin = 0.002;
 
 /// The transform of an object that is moved, not turned.
@@ -44,7 +44,7 @@ struct BodyOptions {
   double mass = 1.0;           ///< kg
   double damping = 0.02;       ///< seconds
   double tolerance = 5e-3;     ///< tolerance of the library's solver
-  bool byNodes = false;        ///< the cage's nodes meet rigid bodies, whatever kind the run has
+  bool byNodes = false;        ///< the cage's nodes touch rigid bodies, whatever the kind of the run
   bool sleeps = false;         ///< it may fall asleep
   double sampleSpacing = 0.0;  ///< of contact at the surface; 0: the default
   std::function<bool(const Eigen::Vector3d&)> pinned =
@@ -71,8 +71,8 @@ class SoftObject {
   double kineticEnergy() const { return measure::kineticEnergy(soft()); }
   double elasticEnergy() const;
   double energy() const { return kineticEnergy() + elasticEnergy(); }
-  /// The sum of the impulses of all contacts in the last step; nothing where nodes meet rigid bodies, as Bullet does
-  /// not report these.
+  /// The sum of the impulses of all contacts in the last step; 0 if nodes touch rigid bodies, as Bullet does not report
+  /// these.
   std::optional<Eigen::Vector3d> contactImpulse() const;
   /// The mesh's vertices at present, world space.
   const std::vector<Eigen::Vector3d>& surface();
@@ -85,7 +85,7 @@ class SoftObject {
   friend class MeasuringWorld;
 
   DeformableBody& deformable_;
-  const SurfaceContact* contact_ = nullptr;  ///< null if the body's nodes meet rigid bodies
+  const SurfaceContact* contact_ = nullptr;  ///< null if the body's nodes touch rigid bodies
   ModelPtr model_;
   std::vector<double> stiffnessScale_;
   SoftBodySkin skin_;
@@ -101,15 +101,15 @@ class MeasuringWorld {
 
   SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Isometry3d& at);
   SoftObject& addSoft(ModelPtr model, const BodyOptions& options, const Eigen::Vector3d& centre);
-  /// Adds a soft body of any other material at its model's position; its nodes meet rigid bodies.
+  /// Adds a soft body of any other material at its model's position; its nodes touch rigid bodies.
   SoftObject& addSoft(ModelPtr model, const SoftBodyOptions& material);
-  /// From now on rigid bodies meet the body's surface, if the run's kind is that.
+  /// From now on rigid bodies touch the body's surface, if the run's kind is that.
   void touchBySurface(SoftObject& body);
   /// Adds a soft body whose lowest point just touches a horizontal plane.
   SoftObject& addSoftOn(double height, const ModelPtr& model, const BodyOptions& options, double x = 0.0,
                         double z = 0.0);
 
-  /// A soft body meets all others for which this was called, at their visual surfaces.
+  /// A soft body touches all others for which this was called, at their visual surfaces.
   /// shape  counts for the first body of a model, as a model has one shape
   void touchOthers(SoftObject& body, const ContactShapeOptions& shape = {});
   /// Contacts between these bodies in the last step.

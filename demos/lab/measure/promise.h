@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What is promised for each figure; in scenes of contact, of contact by the surface.
+// The promise for each figure; in scenes of contact, for contact at the surface.
 #pragma once
 
 #include <limits>

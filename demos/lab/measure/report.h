@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What was measured, scene by scene, beside what is promised.
+// The measurements, scene by scene, compared with the promises.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

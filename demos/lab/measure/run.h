@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A scene in which something is measured, and its run: which solver it uses, and what was measured.
+// A scene with measurements, and its run: the solver that it uses, and the results.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace tetskin::measure {
 
-/// What solves soft bodies, and which points of them meet rigid bodies.
+/// The solver of soft bodies, and which of their points touch rigid bodies.
 enum class Kind {
   Surface,  ///< the library's solver, and the visual surface
   Nodes,    ///< the library's solver, and the cage's nodes
@@ -37,7 +37,7 @@ struct Run {
     figures.push_back({name, std::isnan(value) ? std::nan("") : value});
   }
 
-  /// In words; whatever is promised of figures.
+  /// In words, independent of the promises about figures.
   void expect(bool condition, const std::string& what) {
     if (!condition && std::count(broken.begin(), broken.end(), what) == 0) broken.push_back(what);
   }
@@ -48,7 +48,7 @@ struct Run {
   long steps = 0, iterations = 0;   ///< of all worlds; iterations are those of the library's solver
   std::string promised;             ///< the scene by whose name promises are found; empty: its own
   std::string status;               ///< how it ended, in a word, where expectations count rather than figures
-  std::uint64_t hash = 0;           ///< of nodes, where it has one
+  std::uint64_t hash = 0;           ///< of nodes, if it has one
 };
 
 enum class Often { Quick, Usual, Long };

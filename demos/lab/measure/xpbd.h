@@ -9,7 +9,7 @@
 
 namespace tetskin::measure {
 
-/// What XPBD simulates. All compliances are inverse stiffnesses; 0 is rigid.
+/// The body that XPBD simulates. All compliances are inverse stiffnesses; 0 is rigid.
 struct XpbdBody {
   struct Edge {
     int a, b;
@@ -24,13 +24,13 @@ struct XpbdBody {
   std::vector<double> inverseMasses;   ///< per node; 0: pinned
   std::vector<Edge> edges;
   std::vector<Volume> volumes;  ///< positive tets
-  double damping = 0.0;         ///< seconds: damping forces of what is not rigid, over the rate of its elastic ones
+  double damping = 0.0;         ///< seconds, for compliant constraints: damping force over rate of elastic force
   double gravity = 9.81;        ///< downwards
   bool floor = false;           ///< at y = 0
 };
 
-/// What the tutorials write by hand, measured beside Bullet's worlds: constraints on edge lengths and tet volumes, each
-/// solved once in a substep, in turn; a floor, and nothing else. Plain C++, one thread, float.
+/// The solver that the tutorials write by hand, for comparison with Bullet's worlds: constraints on edge lengths and
+/// tet volumes, each solved once per substep, in turn; a floor, and nothing else. Plain C++, one thread, float.
 ///
 /// This work is based on:
 ///   Miles Macklin et al., "XPBD: Position-Based Simulation of Compliant Constrained Dynamics", MIG 2016 (damping)

@@ -6,9 +6,9 @@ has them.
 
 compare.py [--quick] [--only SCENE]... [--peers LIST] [--out FOLDER] [--check]
 
-Each run is a process of its own: what crashes, hangs or explodes is a cell of the table. Cases take turns, in rounds,
-so that what else the machine does meets all alike; times are processor time, with medians, least and largest. Exit
-status: 0 done, 2 bad arguments.
+Each run is a separate process: a crash, a hang or an explosion becomes a cell of the table. Cases take turns, in
+rounds, so that other load of the machine affects all equally; times are processor time, with median, minimum and
+maximum. Exit status: 0 done, 2 bad arguments.
 """
 import argparse
 import csv
@@ -30,8 +30,8 @@ HERE = Path(__file__).resolve().parent
 SCENES = [path.stem for path in sorted((HERE / "scenes").glob("*.py")) if path.stem != "__init__"]
 PEERS = [path.stem for path in sorted((HERE / "adapters").glob("*.py")) if path.stem != "__init__"]
 QUICK = ["beam", "snake", "sag", "slide", "heap", "skin"]  # scenes of --quick, unless --only names others
-ROUNDS, ENOUGH = 3, 1.0  # at most so many runs of a case, and no further one after so many seconds in all
-LIMIT, QUICK_LIMIT = 60, 8  # seconds of processor time for one run; a scene may have a QUICK_LIMIT of its own
+ROUNDS, ENOUGH = 3, 1.0  # most runs of a case, and seconds in total after which there is no further one
+LIMIT, QUICK_LIMIT = 60, 8  # seconds of processor time for one run; a scene may have its own QUICK_LIMIT
 COLUMNS = [
     "scene", "peer", "version", "curve", "mesh", "setting", "example", "figure", "value", "ms_per_frame", "ms_least",
     "ms_most", "runs", "status", "why", "load", "date", "machine"
@@ -93,7 +93,7 @@ def run_one(scene, task, folder, limit):
 
 
 def overdue(process, began, limit):
-    """What to say of a process that has taken too long, or None.
+    """The message on a process that has taken too long, or None.
 
     The limit is not set in the process: under RLIMIT_CPU, Linux counts its processor time in ticks of some
     milliseconds.
@@ -194,7 +194,7 @@ def main():
         limit = getattr(scene, "QUICK_LIMIT", QUICK_LIMIT) if options.quick else LIMIT
         outcomes = measured(name, cases, folder, limit, 1 if options.quick else ROUNDS)
         rows += rows_of(name, cases, outcomes, {"load": f"{before} to {load()}", **where})
-        write(folder / "peers.csv", rows)  # after each scene: what is interrupted has its rows
+        write(folder / "peers.csv", rows)  # after each scene, so that an interrupted run keeps its rows
         print(f"  {time.time() - start:.0f} s")
     try:
         import draw

@@ -5,8 +5,8 @@
 
 draw.py peers.csv [FOLDER]
 
-In a plot every run is a point, each peer a colour, and a line joins those of its runs that none of its others beats in
-both. A star is the setting of the peer's own example. Needs matplotlib.
+In a plot every run is a point, each peer a colour, and a line joins those of its runs that none of its other runs beats
+in both. A star is the setting of the peer's own example. Needs matplotlib.
 """
 import csv
 import math
@@ -56,7 +56,7 @@ def numbers(rows):
 
 
 def front(points):
-    """Those (time, error) that none of the others beats in both, in the order of time."""
+    """Those (time, error) that no other beats in both, in the order of time."""
     best, kept = math.inf, []
     for time, error in sorted(points):
         if error < best:
@@ -156,7 +156,8 @@ def summary_cell(rows, figure, most):
 
 
 def losses(rows):
-    """Where a peer has less error in less time than any run of ours, or takes less time in its example's setting."""
+    """The cases in which a peer has less error in less time than any run of ours, or takes less time in its example's
+    setting."""
     found = []
     for scene, figure in dict.fromkeys((row["scene"], row["figure"]) for row in rows if "error" in row["figure"]):
         table = good(rows, scene, figure)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The materials of the peers, in NumPy: what each of them would simulate in steps small enough.
+"""The materials of the peers, in NumPy: the motion of each of them in sufficiently small steps.
 
 Their energies agree to second order in the strain, with the same Young's modulus and Poisson's ratio, and differ beyond
 it. A peer's error is measured against its own material.
@@ -17,7 +17,7 @@ def cofactor(f):
 
 
 def corotated(f, mu, lam):
-    """tetskin's and Rapier's: linear in the strain of what a rotation leaves."""
+    """tetskin's and Rapier's: linear in the strain that remains after removing the rotation."""
     u, _, v = np.linalg.svd(f)
     u[:, :, 2] *= np.sign(np.linalg.det(u @ v))[:, None]
     r = u @ v

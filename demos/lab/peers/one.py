@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""One run of one case in a process of its own: compare.py calls it.
+"""One run of one case in a separate process: compare.py calls it.
 
 one.py SCENE JSON FOLDER        runs a case, and prints its outcome as the last line, in JSON
 one.py SCENE --prepare FOLDER   computes what the scene's errors are measured against, into FOLDER/SCENE.npz
@@ -53,7 +53,7 @@ def finite(figures):
 
 
 def outcome_of(scene, case, folder):
-    """What compare.py writes down: status, why in words, figures, ms per frame."""
+    """The data that compare.py writes: status, reason in words, figures, ms per frame."""
     clock = Clock()
     try:
         adapter = importlib.import_module(f"adapters.{case.peer}")
@@ -68,7 +68,7 @@ def outcome_of(scene, case, folder):
         return {"status": "cannot", "why": str(reason), "version": adapter.VERSION}
     except Exploded as reason:
         return {"status": "explodes", "why": str(reason), "version": adapter.VERSION}
-    except Exception as fault:  # what a peer raises is a result, too
+    except Exception as fault:  # a peer's exception is also a result
         traceback.print_exc()
         return {"status": "fails", "why": f"{type(fault).__name__}: {fault}".split("\n")[0], "version": adapter.VERSION}
     frames = max(len(clock.parts), 1)

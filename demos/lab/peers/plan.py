@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What is run: cases. A scene's plan(quick) lists them."""
+"""The cases to run. A scene's plan(quick) lists them."""
 from dataclasses import asdict, dataclass, field
 
 

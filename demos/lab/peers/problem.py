@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a scene asks of a peer. Units are metres, kilograms and seconds; y points up.
+"""The interface between scenes and peers. Units are metres, kilograms and seconds; y points up.
 
 Each module in `adapters` has a class `Simulation` with these functions, which scenes call in this order:
 
@@ -28,14 +28,14 @@ FRAME = 1 / 60
 
 
 def advance(simulation, frames, clock=None):
-    """So many frames, by the clock."""
+    """Runs this many frames, timed."""
     for _ in range(frames):
         with clock or contextlib.nullcontext():
             simulation.step(FRAME)
 
 
 class Unsupported(Exception):
-    """A peer cannot do what the scene asks for. The text says why."""
+    """A peer does not support the scene. The text says why."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Body:
     """A soft body, placed: nodes (n, 3), tets (t, 4) that are oriented positively, pinned (n,) booleans.
 
     skin: positions (v, 3) and triangles (m, 3), counter-clockwise from outside, in the space of the nodes, or None:
-    then its surface is that of the tets. contact: with the ground and with others; self_contact: with itself, too.
+    then its surface is that of the tets. contact: with the ground and with others; self_contact: also with itself.
     """
     nodes: np.ndarray
     tets: np.ndarray

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def box_tets(cells, size, origin=(0, 0, 0)):
-    """Nodes and tets of a box of so many cells along x, y and z, six tets each, mirrored from cell to cell.
+    """Nodes and tets of a box with these numbers of cells along x, y and z, six tets each, mirrored from cell to cell.
 
     The size is that of the whole box. Node (i, j, k) is at row (i (ny + 1) + j) (nz + 1) + k.
     """

@@ -8,7 +8,7 @@
 namespace tetskin::scenes {
 namespace {
 
-/// What a row of the table is about: a moment, and the frames since the row before.
+/// The data of a table's row: a moment, and the frames since the previous row.
 struct Row {
   const Pile& pile;
   double seconds;

@@ -26,7 +26,7 @@ struct SlowestSecond {
   StageTimes stages;
 };
 
-/// What is measured during a run of the pile, and the table of it.
+/// Measurements during a run of the pile, and their table.
 class Measurements {
  public:
   /// pile, options  must outlive this object
@@ -37,7 +37,7 @@ class Measurements {
   void measure(int frame, const FrameTime& time);
   std::string table() const { return table_.text(); }
   FrameTime meanTime() const;
-  /// The slowest second in all of which kManyPairs bodies touch; nothing if there is none.
+  /// The slowest second during which kManyPairs pairs of bodies touch all the time; empty if there is none.
   std::optional<SlowestSecond> slowestSecond() const;
 
   double deepestContact = 0.0;        ///< over all frames, in the scene's unit; 0 or negative

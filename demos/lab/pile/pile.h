@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Soft bodies and rigid balls that fall on each other: what all scenes of tetskin_pile have in common. The benchmarks
-// run them, too.
+// Soft bodies and rigid balls that fall on each other: the common part of all scenes of tetskin_pile. The benchmarks
+// also run them.
 #pragma once
 
 #include <tetskin/bullet/soft_body_skin.h>
@@ -34,7 +34,7 @@ struct PileModel {
   Model model;
   SoftBodyOptions material;
   std::optional<SurfaceContactOptions> contact;  ///< nothing: that of `World::touchBySurface`
-  std::shared_ptr<const ContactShape> shape;     ///< null: its bodies meet no soft bodies
+  std::shared_ptr<const ContactShape> shape;     ///< null: its bodies touch no soft bodies
   std::shared_ptr<const SoftBodyBinding> binding;
 };
 
@@ -51,7 +51,7 @@ class Pile {
   /// Makes the scene that the options name.
   explicit Pile(const PileOptions& options);
 
-  // What a scene is made of.
+  // The parts of a scene.
 
   World& world() { return world_; }
   /// Returns the number of the model.
@@ -60,7 +60,7 @@ class Pile {
   void addBall(const PileBall& ball, const Eigen::Vector3d& at);
   /// Depressions are measured from this height, that of the upper side of something soft.
   void setTop(double height) { top_ = height; }
-  /// What a page shows at first.
+  /// The first view of a page.
   void setFocus(const Box3& focus) { focus_ = focus; }
 
   /// From now on nothing falls asleep.
@@ -72,7 +72,7 @@ class Pile {
 
   const PileScene& scene() const { return scene_; }
   const World& world() const { return world_; }
-  /// Soft bodies and balls, one after the other, as they are drawn.
+  /// Soft bodies and balls in the order of drawing.
   const TriangleMesh& mesh() const { return mesh_; }
   const TriangleMesh& obstacles() const { return world_.obstacles(); }
   std::vector<Eigen::Vector3d> surface() const;

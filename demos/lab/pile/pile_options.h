@@ -11,13 +11,13 @@ namespace tetskin::scenes {
 constexpr int kFramesPerSecond = 60;
 constexpr double kFrame = 1.0 / kFramesPerSecond;
 
-/// What the command line of tetskin_pile sets. The numbers of bodies, triangles and tets are those of the scene
+/// The settings of tetskin_pile's command line. The numbers of bodies, triangles and tets are those of the scene
 /// "column"; `presetOf` gives them for any scene.
 struct PileOptions {
   std::string scene = "column";       ///< see pile/pile_scenes.h
   int bodies = 10;                    ///< those that fall: soft ones, or the balls of the pit
   int depthEvery = kFramesPerSecond;  ///< frames between two measurements of the deepest vertex
-  int seed = 1;                       ///< of how the bodies are turned, or placed, before they fall
+  int seed = 1;                       ///< of the rotations or places of the bodies before they fall
   int threads = 1;                    ///< threads of the solver and of the skins, including the calling one
   ModelOptions model;                 ///< if it has no mesh: the options common to all built-in models
   Contact contact = Contact::Surface;

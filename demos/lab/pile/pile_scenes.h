@@ -23,8 +23,8 @@ enum class PileFigures {
 struct PileScene {
   const char* name;
   const char* title;  ///< of the page
-  const char* thing;  ///< what the scene has `PileOptions::bodies` of, in the singular
-  const char* rigid;  ///< what the soft bodies touch beside each other
+  const char* thing;  ///< the kind of object that `PileOptions::bodies` counts, in the singular
+  const char* rigid;  ///< the objects that soft bodies touch besides each other
   int mostBodies;
   bool ownMeshes;  ///< it makes its own meshes: there is no choice of model
   PileFigures figures;
@@ -40,7 +40,7 @@ const PileScene& pileSceneNamed(const std::string& name);
 /// The options of a scene if nothing but its name is given.
 PileOptions presetOf(const std::string& scene);
 
-/// Rotation of the k-th body before it falls. Piles are chaotic: what holds in one need not hold in another.
+/// Rotation of the k-th body before it falls. Piles are chaotic: an observation in one need not hold in another.
 /// seed  1: rotations that are the same in all versions; any other: random ones
 Eigen::Quaterniond turnOf(int seed, int k);
 

@@ -12,7 +12,7 @@
 namespace tetskin::scenes {
 namespace {
 
-/// What is told only of scenes that are judged by their rest.
+/// Values only for scenes that are judged by their rest.
 void tellRest(const PileOptions& options, const Pile& pile, const Measurements& measured,
               nlohmann::ordered_json& json) {
   json["simulation_us_per_thing_and_frame"] = 1e3 * json["simulation_ms_per_frame"].get<double>() / options.bodies;

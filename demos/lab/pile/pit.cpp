@@ -28,10 +28,10 @@ constexpr double kMatSpacing = 0.05;
 constexpr double kMatLift = 0.01;
 
 constexpr PileBall kLight{0.1, 1.0, "ball", 2};
-/// Of cast iron: one sees the mat give way beneath it.
+/// Cast iron, so that the mat visibly gives way beneath it.
 constexpr PileBall kHeavy{0.3, 800.0, "heavy_ball", 3};
 constexpr int kMostHeavy = 2;
-/// Where heavy balls start, beside the middle, and how far they fall.
+/// The start of heavy balls, beside the middle, and the height of their fall.
 constexpr double kHeavyX = 0.8, kHeavyZ = 0.5, kHeavyFall = 0.1;
 
 /// Light balls start above the heavy ones, in layers of at most this many in a row.

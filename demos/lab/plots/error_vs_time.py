@@ -10,9 +10,9 @@ For every scene: a table, the reference's own error, and the cheapest setting be
 SCENE_INTEGRATOR.png, error against time per frame; SCENE_INTEGRATOR_substeps.png, errors in space and in time over the
 substeps; SCENE_INTEGRATOR_amplitude.png, error of reduced bodies over the
 deformation; SCENE_INTEGRATOR_frames.png, error over the frames for the cage nearest to N tets (3,000); and, if f3d is
-installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is. Of a comparison of solvers (--solvers): one
-table, which is SCENE_solvers.csv, too, and SCENE_solvers.png.
-Needs python3-matplotlib; the surface f3d, xvfb and xauth as well.
+installed, SCENE_INTEGRATOR_surface.png: where on the surface the error is. For a comparison of solvers (--solvers): one
+table, also as SCENE_solvers.csv, and SCENE_solvers.png. Needs python3-matplotlib; the surface f3d, xvfb and xauth as
+well.
 """
 import argparse
 import json
@@ -37,7 +37,7 @@ STYLES = {"same": "-", "same_calibrated": (0, (4, 1, 1, 1, 1, 1)), "split": ":",
 # Kinds that only serve to separate causes of error, with one surface: distinguished by colour and marker as well.
 KIND_COLOURS = {"same_calibrated": SKY, "split": GREEN, "filled": PINK, "reduced": "#000000"}
 KIND_MARKERS = {"same_calibrated": "^", "split": "D", "filled": "v", "reduced": "*"}
-# What follows a surface's name.
+# The text after a surface's name.
 KINDS = {"same": "", "same_calibrated": ", bare, calibrated", "split": ", bare, split", "filled": ", filled",
          "calibrated": ", calibrated", "reduced": ", reduced"}
 

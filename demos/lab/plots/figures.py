@@ -110,7 +110,7 @@ def reduction(rows):
 
 
 def pairs(axes, labels, before, after, before_look, after_look):
-    """Draws a line for each row from one value to another; where one of them is missing, a point."""
+    """Draws a line for each row from one value to another, or a point if one of them is missing."""
     for k, (first, second) in enumerate(zip(before, after)):
         if first and second:
             axes.plot([first, second], [k, k], color="#bbbbbb", linewidth=2, zorder=1)
@@ -174,7 +174,7 @@ def step_time(rows):
 
 
 def landing(rows):
-    slowest, exploded = 0.0005, 20.0  # what is printed as 0.000, and where explosions are drawn
+    slowest, exploded = 0.0005, 20.0  # the value for a printed 0.000, and the one at which explosions are drawn
     looks = {"neo-Hookean": ("Bullet neo-Hookean", GREY, "x"), "linear": ("Bullet linear", ORANGE, "s"),
              "solver": ("tetskin", BLUE, "o")}
     figure, axes = plt.subplots(figsize=(8, 5.6), layout="constrained")

@@ -34,7 +34,7 @@ def volumes_of(row):
 
 
 def cells(row):
-    """A row of the table, in the order of COLUMNS. Where a solver has exploded, it has no errors."""
+    """A row of the table, in the order of COLUMNS. If a solver has exploded, it has no errors."""
     motion = (row["error_total_rms_by_frame"] and row["error_of_motion"]) or 0
     errors = ["explodes", "", ""]
     if row["finite"]:
@@ -58,7 +58,7 @@ def solvers_csv(scene):
 
 
 def solvers_text(scene):
-    """The same as Markdown, with the references and what the columns mean."""
+    """The same as Markdown, with the references and the meaning of the columns."""
     text = "| " + " | ".join(COLUMNS) + " |\n" + len(COLUMNS) * "|---" + "|\n"
     for row in rows_of(scene):
         text += "| " + " | ".join([NAMES[row["integrator"]], *cells(row)[1:]]) + " |\n"
@@ -84,7 +84,7 @@ def draw_solvers(scene, title):
 
 
 def is_drawn(row):
-    """Not what has exploded, nor what is farther off than a body that does not move at all."""
+    """Without rows that have exploded, or have a larger error than a body that does not move at all."""
     error = row["error (% of the motion)"]
     return error != "explodes" and float(error) < 100
 

@@ -11,7 +11,7 @@
 
 namespace tetskin::report {
 
-/// Marks the rows that no other choice beats in both time and error. The reference is left out.
+/// Marks rows that no other choice beats in both time and error. The reference is left out.
 void markPareto(std::vector<Row>& rows);
 
 /// A cage made as a reference is, but coarser: mean length of its edges, and its distance from the reference.
@@ -46,8 +46,8 @@ struct ReductionLimit {
 /// none of its frames is that good.
 ReductionLimit reductionLimit(const std::vector<Row>& rows);
 
-/// What to use in this scene, in a sentence: the reduced body that gains most over the cages that cost no more, or
-/// these cages. Empty without reduced rows.
+/// A sentence on what to use in this scene: the reduced body that gains most over the cages of the same cost, or these
+/// cages. Empty without reduced rows.
 std::string reductionAdvice(const std::vector<Row>& rows);
 
 }  // namespace tetskin::report

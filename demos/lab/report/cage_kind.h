@@ -8,8 +8,8 @@
 
 namespace tetskin::report {
 
-/// How much a cage knows of the mesh in it. Tets of bare cages are full of material; those of the others are as heavy
-/// as the material that they contain, and as stiff as their volume fraction says.
+/// How much a cage knows of the mesh in it. Tets of bare cages are full of material; those of the others have the mass
+/// of the material that they contain, and the stiffness of their volume fraction.
 enum class CageKind {
   Same,            ///< bare, without duplicate elements: tets of the reference's material
   SameCalibrated,  ///< as `Same`, and softened by calibration
@@ -17,7 +17,7 @@ enum class CageKind {
   Filled,          ///< with volume fractions, without duplicate elements
   Calibrated,      ///< with duplicate elements, volume fractions and calibration: the library's recommended cage
 };
-/// What a cage knows, and what it does not.
+/// The data that a cage has.
 constexpr std::array<CageKind, 5> kCageKinds = {CageKind::Same, CageKind::SameCalibrated, CageKind::Split,
                                                 CageKind::Filled, CageKind::Calibrated};
 /// "same", "same_calibrated", "split", "filled", "calibrated".

@@ -30,7 +30,7 @@ struct ShelvedCage {
 /// A cage with its stiffness corrected, or as it is. Throws InputError.
 ShelvedCage shelved(Cage cage, bool calibrated);
 
-/// About so many tets that fill the body of a mesh, in the space where cages are compared.
+/// About this many tets that fill the body of a mesh, in the space where cages are compared.
 using Filling = std::function<Cage(std::size_t tets)>;
 /// The filling of a built-in model that has one by formula; otherwise none.
 /// placement  from the model's space to where cages are compared

@@ -15,12 +15,12 @@ constexpr double kStiffness = 150.0, kLandingStiffness = 50.0;
 /// Damping in substeps. Half a substep is the least that is stable at any stiffness.
 constexpr double kDampingSubsteps = 0.6;
 constexpr int kMaxSubsteps = 64;
-/// What the solver may leave of the residual in the reference's substeps, and the limit of its iterations. With its
-/// defaults, what it leaves is more than what so many substeps gain where bodies touch.
+/// The residual that the solver may leave in the reference's substeps, and the limit of its iterations. With the
+/// defaults, the residual outweighs the gain of so many substeps if bodies touch.
 constexpr double kConvergedTolerance = 1e-6;
 constexpr int kConvergedIterations = 1000;
 
-/// kg per volume of the mesh, or per volume of the tets where the mesh's is not known.
+/// kg per volume of the mesh, or per volume of the tets if the mesh's is unknown.
 double densityOf(const Cage& reference) {
   const std::vector<double>& masses = reference.masses;
   return kReferenceMass /

@@ -74,7 +74,7 @@ int holderOf(const Cage& cage, int tet, const Eigen::Vector3d& point) {
 }  // namespace
 
 Cage quadraticCage(const Cage& coarse, const TriangleMesh& mesh) {
-  // Only the mesh: of a cage, duplicate elements are refused, and masses are less exact than these.
+  // Only the mesh: for a cage, duplicate elements are refused, and masses are less exact than these.
   Result<Cage> made = refineQuadratic(coarse.mesh);
   scenes::require(made.status());
   Cage cage = std::move(made).value();

@@ -7,7 +7,7 @@
 
 namespace tetskin::report {
 
-/// The same cage of quadratic tets, each of them eight tets, with all that the cage knows of its mesh.
+/// The same cage of quadratic tets, each of them eight tets, with all data of the cage about its mesh.
 /// cage  valid, its tets positive
 /// mesh  of which the cage knows `vertexTets`; not used if it knows none
 /// Throws InputError

@@ -18,9 +18,9 @@ namespace tetskin::report {
 
 constexpr const char *kBuilt = "built", *kFormula = "formula";
 
-/// Where the tets come from whose motion counts as exact. They must not fuse components of the mesh that are near each
-/// other: such a reference would find nothing wrong with cages that fuse them, too. Built ones have duplicate elements
-/// for this reason.
+/// The source of the tets whose motion counts as exact. They must not fuse components of the mesh that are near each
+/// other: such a reference would not detect this error in other cages. Built ones have duplicate elements for this
+/// reason.
 struct ReferenceSource {
   std::string from = kBuilt;  ///< kBuilt: as the other cages; kFormula: by formula; otherwise the file
   std::size_t tets = 0;       ///< requested number if built, otherwise the actual number; eight for each quadratic tet
@@ -40,7 +40,7 @@ ReferenceSource referenceFor(const TriangleMesh& mesh, const ReportOptions& opti
 /// A description in words, with the number of tets.
 std::string describe(const ReferenceSource& source);
 
-/// Tets of the references: quadratic ones, whose own error is small; linear ones for Bullet's forces, which know no
+/// Tets of the references: quadratic ones, whose own error is small; linear ones for Bullet's forces, which support no
 /// others, and for vibration modes. The latter are calibrated, as their excess stiffness would otherwise count as the
 /// cages' error.
 enum class ReferenceTets { Quadratic, Linear };

@@ -13,7 +13,7 @@
 
 namespace tetskin::report {
 
-/// What is to be measured, and where it goes.
+/// What to measure, and where to write it.
 struct ReportOptions {
   scenes::ModelOptions model;
   std::vector<std::string> scenes = {"sag", "twist", "drop", "exact"};
@@ -26,7 +26,7 @@ struct ReportOptions {
   std::string reference;  ///< file of tets that count as exact, in the mesh's space; empty: they are made
   std::vector<SurfaceKind> surfaces = {SurfaceKind::Linear, SurfaceKind::Quadratic};
   std::vector<CageKind> cages = {CageKind::Same, CageKind::Calibrated};
-  std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, beside the cages; empty: no reduced bodies
+  std::vector<std::size_t> modes = {5, 10, 20, 50};  ///< of reduced bodies, besides the cages; empty: no reduced bodies
   /// Not empty: these solvers in the recommended kind of cage, instead of kinds of cages. `substeps` are tetskin's.
   std::vector<Solver> solvers;
   std::vector<std::size_t> xpbdSubsteps = {4, 10, 20, 50};
@@ -37,7 +37,7 @@ struct ReportOptions {
   std::size_t shownTets = 3000;  ///< of the cage whose errors colour a mesh
   double targetError = 0.0;      ///< in diagonals of the mesh's box; 0: none
   std::string out = "out/error_vs_time", json;
-  std::string view;  ///< file of a page that plays the cage of `shownTets` beside the reference; empty: none
+  std::string view;  ///< file of a page that plays the cage of `shownTets` next to the reference; empty: none
   bool quiet = false;
 };
 
@@ -47,7 +47,7 @@ std::string shownScene(const ReportOptions& options);
 /// The one of the substeps that is nearest to what all demos take.
 int usualSubsteps(const ReportOptions& options);
 
-/// Throws InputError unless a reference of this many tets has more than every cage.
+/// Throws InputError unless a reference with this many tets is finer than every cage.
 void requireFiner(const ReportOptions& options, std::size_t referenceTets);
 
 /// The options of the command line, among them --quick and --full, which preset others. Call `finish` after parsing.

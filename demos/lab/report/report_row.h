@@ -31,8 +31,8 @@ struct Row {
   double errorSpaceRms = 0;                     ///< of this cage in the reference's substeps, against the reference
   /// Against this cage in the reference's substeps; the total is at most space plus time. 0 with Bullet's forces, where
   /// the reference has the row's own substeps.
-  /// In rows of solvers that are compared: against this cage by tetskin's solver in the reference's substeps, so that
-  /// it is all that the solver adds, by its steps, iterations and model.
+  /// In rows of compared solvers: against this cage with tetskin's solver in the reference's substeps, so that it
+  /// contains everything that the solver adds, by its steps, iterations and model.
   double errorTimeRms = 0;
   double errorEmbeddingRms = 0;   ///< if the nodes were where the reference would take them
   double errorSimulationRms = 0;  ///< of the nodes, against where the reference would take them: in space and in time
@@ -55,7 +55,7 @@ struct Row {
 
   std::vector<double> errorByFrame;      ///< total, RMS
   std::vector<double> amplitudeByFrame;  ///< how far the reference's surface is from rest, RMS
-  bool pareto = false;                   ///< nothing in the same scene is both faster and more accurate
+  bool pareto = false;                   ///< no other row of the scene is both faster and more accurate
 
   bool isReduced() const { return modes != 0; }
   bool isReference() const { return interpolation == "reference"; }

@@ -6,8 +6,8 @@
 
 namespace tetskin::report {
 
-/// Writes a page that plays a scene in the cage chosen by --show-tets, with the reference beside it. The cage is
-/// simulated again, as results hold errors only. Throws InputError.
+/// Writes a page that plays a scene in the cage chosen by --show-tets, next to the reference. The cage is simulated
+/// again, as results hold errors only. Throws InputError.
 void writeView(SceneRunner& runner, const ReportModel& model, const ReportOptions& options);
 
 }  // namespace tetskin::report

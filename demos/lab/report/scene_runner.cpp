@@ -19,8 +19,8 @@ std::vector<SurfaceKind> surfacesOf(CageKind kind, const ReportOptions& options)
   return {options.surfaces.front()};
 }
 
-/// True for scenes in which bodies move by vibration modes, too. In the others nodes are moved by hand, which a body
-/// that has only its modes cannot follow.
+/// True for scenes that reduced bodies can also do. In the others nodes are moved by hand, which a body that moves only
+/// in its modes cannot follow.
 bool isReducible(const std::string& scene) {
   return scene == "sag" || scene == "drop";
 }
@@ -50,7 +50,7 @@ std::vector<Job> jobsOf(bool exact, const ReportOptions& options) {
       jobs.push_back({tets, CageKind::Calibrated, options.surfaces, {usual}, false, false, 0, true});
     return jobs;
   }
-  // Where nothing is simulated, the material does not matter.
+  // If nothing is simulated, the material does not matter.
   const std::vector<CageKind> kinds = exact ? std::vector<CageKind>{CageKind::Same} : options.cages;
   for (const std::size_t tets : sizes) {
     for (const CageKind kind : kinds) {
@@ -148,7 +148,7 @@ const Job* SceneRunner::referenceJob(bool bullets) const {
 const scenes::SceneOptions& SceneRunner::material(bool bullets) {
   std::optional<scenes::SceneOptions>& made = right_[bullets].material;
   if (!made) {
-    // What lands is as stiff as Bullet's forces can be, in all references.
+    // A landing body is as stiff as Bullet's forces permit, in all references.
     made = materialOf(entry_, referenceCage(bullets || entry_.lands), options_.stiffness, bullets);
     made->frames = frames_;
     made->box = boundingBox(model_.mesh.positions);

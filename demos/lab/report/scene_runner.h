@@ -21,14 +21,14 @@
 
 namespace tetskin::report {
 
-/// What is done with one cage in one scene.
+/// The work on one cage in one scene.
 struct Job {
   std::size_t tets = 0;
   CageKind kind = CageKind::Same;
   std::vector<SurfaceKind> surfaces;  ///< none: a reference
   std::vector<int> substeps;          ///< per frame; all surfaces for the first, one for the others; 0: the material's
   bool coloured = false;              ///< also colour a mesh by the errors of the first
-  bool bullets = false;               ///< a reference with Bullet's forces, beside ours
+  bool bullets = false;               ///< a reference with Bullet's forces, in addition to ours
   int modes = 0;                      ///< not 0: a reduced body with this many of the reference's modes
   bool solvers = false;               ///< all solvers in all their substeps, instead of `substeps`
 };
@@ -79,7 +79,7 @@ class SceneRunner {
   const Points& rightSurface(int frame) { return reference().surfaceAt(frame).positions; }
 
  private:
-  /// The motion of a cage in some number of substeps, with what is known before surfaces are compared.
+  /// The motion of a cage with some number of substeps, with the data that is known before surfaces are compared.
   struct Motion {
     int substeps;  ///< as the job names them
     Row row;
@@ -123,8 +123,8 @@ class SceneRunner {
   Row referenceRow(const Job& job, const scenes::SceneOptions& options, const FrameDone& done, Trajectory& trajectory);
   /// The reference's own row, behind one of the same cage in the usual substeps if these are fewer.
   std::vector<Row> referenceRows(const Job& job, const std::function<void(double)>& progress);
-  /// Adds what the reference itself is wrong by, as far as coarser cages of its kind tell, all in few substeps: errors
-  /// in time are nearly the same in all of them.
+  /// Adds the reference's own error, estimated by coarser cages of its kind, all with few substeps: errors in time are
+  /// nearly the same in all of them.
   /// motion  of the reference with these options
   void estimateOwnErrors(const Job& job, const scenes::SceneOptions& options, const Trajectory& motion,
                          const FrameDone& done, Row& row);

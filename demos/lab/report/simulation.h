@@ -22,7 +22,7 @@ Interpolation interpolationOf(SurfaceKind kind);
 /// Node positions by frame; the first frame is at rest.
 using Trajectory = std::vector<std::vector<Eigen::Vector3f>>;
 
-/// What a surface costs. Times are processor times of one thread; medians over the frames.
+/// The cost of a surface. Times are processor times of one thread; medians over the frames.
 struct SurfaceCost {
   double attachMs = 0.0;  ///< once
   double updateUs = 0.0;  ///< per frame

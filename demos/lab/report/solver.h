@@ -10,7 +10,7 @@
 
 namespace tetskin::report {
 
-/// What simulates the same cage, of the same material, in the comparison of solvers.
+/// The solvers that are compared, with the same cage and material.
 enum class Solver {
   Tetskin,
   Xpbd,              ///< hand-written (see measure/xpbd.h), with the constants that fit this scene best
@@ -40,9 +40,9 @@ std::vector<Solver> solversOf(const std::vector<std::string>& names);
 /// The scene's options for a solver of soft bodies in Bullet's world, not for XPBD.
 scenes::SceneOptions withSolver(scenes::SceneOptions options, Solver solver, int substeps);
 
-/// Seconds of damping with which a solver is tried, of which the best counts: the material's, and what else serves it.
-/// XPBD may have none, as its steps damp by themselves. Bullet's steps, which treat damping implicitly, need that of
-/// half a substep at any stiffness; they may have less than the material has where their substeps are shorter.
+/// Seconds of damping with which a solver is tried; the best counts. They include the material's. XPBD may have none,
+/// as its steps add damping. Bullet's steps, which treat damping implicitly, need that of half a substep at any
+/// stiffness; with shorter substeps this may be less than the material's.
 std::vector<double> dampings(const scenes::SceneOptions& material, Solver solver, int substeps);
 
 }  // namespace tetskin::report

@@ -11,7 +11,7 @@
 namespace tetskin::report {
 namespace {
 
-/// Of SampledErrors, about.
+/// Approximate number of samples of SampledErrors.
 constexpr std::size_t kSamples = 1000;
 constexpr double kDegrees = 57.29577951308232;
 

@@ -24,8 +24,8 @@ struct SurfaceErrors {
 SurfaceErrors surfaceErrors(Reference& reference, const TriangleMesh& mesh, const Cage& cage, SurfaceKind kind,
                             const Trajectory& nodes);
 
-/// The errors of many motions of one cage, roughly and soon: of some of the mesh's vertices, each of which follows its
-/// tet linearly.
+/// The errors of many motions of one cage, approximate and fast: of some of the mesh's vertices, each of which follows
+/// its tet linearly.
 class SampledErrors {
  public:
   /// reference  read here only

@@ -15,10 +15,10 @@
 
 namespace tetskin::report {
 
-/// What XPBD has in place of a material.
+/// XPBD's constants instead of a material.
 struct XpbdConstants {
-  /// Of the springs along edges, over that with which a fine isotropic lattice of them has the material's Young's
-  /// modulus (and a Poisson ratio of 1/4).
+  /// Stiffness of the springs along edges, relative to the one with which a fine isotropic lattice of them has the
+  /// material's Young's modulus (and a Poisson ratio of 1/4).
   double stiffness = 1.0;
   /// Pressure per relative change of a tet's volume, over the material's first Lame parameter; 0: no constraint on
   /// volumes; infinite: rigid.
@@ -27,7 +27,7 @@ struct XpbdConstants {
 };
 
 /// The constants that follow from a material. Springs give a lattice the second Lame parameter of a Poisson ratio of
-/// 1/4, and as large a first one; volumes add what the material has more.
+/// 1/4, and an equal first one; volumes add the rest.
 XpbdConstants constantsOf(const scenes::SceneOptions& options);
 
 /// A scene's body, for XPBD. Masses, pins and gravity are those of the scene's body in Bullet. An edge's stiffness is

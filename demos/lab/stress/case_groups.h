@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the groups of cases have in common. Each group appends its own cases.
+// The common part of the groups of cases. Each group appends its own cases.
 #pragma once
 
 #include <initializer_list>
@@ -47,13 +47,11 @@ StressCase named(const std::string& group, const Method& method, std::initialize
 
 bool isOneOf(const std::string& scene, std::initializer_list<const char*> scenes);
 
-/// What the library's force and solver are expected to withstand. The exceptions are rows that show what is missing:
-/// - stiffness beyond 1e7 Pa;
-/// - 100 turns per second, 0.4 turns per substep: nodes move in a straight line so far that the body more than doubles
-/// in size;
-/// - a body flat, ten times as long, or inside out, beyond 1e6 Pa in steps longer than 1/240 s: it may grow to several
-/// times its size, and stay bent. The reason is the damping, which is as stiff as the body: without any damping, such
-/// bodies recover.
+/// The conditions that the library's force and solver are expected to withstand. The exceptions are rows that show what
+/// is missing: - stiffness beyond 1e7 Pa; - 100 turns per second, 0.4 turns per substep: nodes move in a straight line
+/// so far that the body more than doubles in size; - a body flat, ten times as long, or inside out, beyond 1e6 Pa in
+/// steps longer than 1/240 s: it may grow to several times its size, and stay bent. The reason is the damping, which is
+/// as stiff as the body: without any damping, such bodies recover.
 Simulation promised(const StressCase& ours);
 
 }  // namespace tetskin::stress

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What the README claims of bodies in tetskin's solver, tested at the limits: stable from 1 to 1e9 Pa, light or heavy,
+// The README's claims about bodies in tetskin's solver, tested at the limits: stable from 1 to 1e9 Pa, light or heavy,
 // spinning, in steps of any length. No energy beyond what is put in, momentum conserved in free flight, no growth.
 #pragma once
 
@@ -12,10 +12,10 @@
 
 namespace tetskin::stress {
 
-/// What happens to the body.
+/// The event.
 enum class ClaimEvent {
   Free,     ///< no contact: it drifts and spins without gravity
-  Landing,  ///< it falls onto a floor, which it meets at its surface
+  Landing,  ///< it falls onto a floor, which touches its surface
   Dragged,  ///< a default spring at a point of its surface jumps by the body's size
 };
 

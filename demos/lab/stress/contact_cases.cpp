@@ -76,7 +76,7 @@ void addContacts(Cases& cases) {
   }
 }
 
-/// Bodies that meet each other.
+/// Bodies that collide with each other.
 void addSoftContacts(Cases& cases) {
   for (const char* scene : {"soft_stack", "soft_removed", "soft_squeezed", "soft_pile"}) {
     StressCase made = named("soft_contact", {Force::Elastic, false}, {scene});
@@ -87,7 +87,7 @@ void addSoftContacts(Cases& cases) {
   }
 }
 
-/// A minute for each case; what moves is stopped after 50 seconds.
+/// A minute for each case; moving obstacles stop after 50 seconds.
 void addLongContacts(Cases& cases) {
   constexpr int kFrames = 3600;
   for (const char* scene : {"soft_pile", "squeeze", "mill"}) {

@@ -13,7 +13,7 @@ namespace tetskin::stress {
 /// The geometry of a case, all in rest space, near the origin.
 struct StressModel {
   tetskin::Cage cage;      ///< the cage that the skin is bound to, whatever is wrong with it
-  tetskin::Cage bodyCage;  ///< the same nodes, without flat tets: the cage that the body is made of
+  tetskin::Cage bodyCage;  ///< the same nodes, without flat tets: the cage from which the body is made
   TriangleMesh mesh;
   double size = scenes::kSize;                       ///< largest side of the cage
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< position of the body in the world

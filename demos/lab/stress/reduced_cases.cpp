@@ -14,8 +14,8 @@ StressCase reduced(std::initializer_list<std::string> words) {
 
 }  // namespace
 
-/// Reduced bodies, in Bullet's reduced solver. Modes that are too fast for the step are left out; where that leaves
-/// only a few, nothing is promised of a body that hits something.
+/// Reduced bodies, in Bullet's reduced solver. Modes that are too fast for the step are left out; if only a few remain,
+/// there is no promise about a body that hits something.
 void addReducedCases(Cases& cases) {
   for (const double stiffness : {1e2, 1e3, 1e4, 1e5}) {
     for (const int substeps : {1, 4, 16}) {

@@ -120,7 +120,7 @@ double referenceExtent(const Claim& claim, const SoftObject& body) {
   return extent;
 }
 
-/// What may change only by what is put in. Momentum is angular about the centroid.
+/// Quantities that only external work and impulses may change. Angular momentum is about the centroid.
 struct Motion {
   double kinetic = 0.0, elastic = 0.0, height = 0.0, extent = 0.0;
   Vector3d linear = Vector3d::Zero(), angular = Vector3d::Zero();
@@ -207,8 +207,8 @@ bool ClaimRun::look() {
   const double chord = 1.0 / std::pow(std::cos(std::min(1.0, 0.5 * claim_.spin * claim_.seconds)), 2);
   const double rounding = kRounding * claim_.youngsModulus * totalVolume(body_.model().cage.mesh) * (1.0 + size_);
   const double put = chord * (began_.kinetic + began_.elastic + std::max(0.0, work_ + fallen)) + rounding;
-  // Contact moves each node by itself to where it does not penetrate the floor. In a stiff body and a long step, this
-  // is strain, and work done by the contact. It must not return as motion.
+  // Contact moves each node separately to a position where it does not penetrate the floor. In a stiff body and a long
+  // step, this is strain, and work done by the contact. It must not return as motion.
   raise(energy_, (now.kinetic + (landing_ ? 0.0 : now.elastic)) / put);
   raise(stored_, now.elastic / put);
   if (claim_.event == ClaimEvent::Free) {

@@ -42,12 +42,12 @@ enum class Surface {
   NoVertices,    ///< no vertices: must be refused
 };
 
-/// What the body is expected to do. Where Bullet's behaviour is not documented to be stable, it may differ between
-/// versions and machines: there, only the skin is judged.
+/// The expected behaviour of the body. Bullet's behaviour may differ between versions and machines where it is not
+/// documented to be stable: there, only the skin is judged.
 enum class Simulation { Bounded, Unbounded, Either };
 
 /// One row of the table: what is simulated, the options of the skin, and the expected result of the body and of `bind`.
-/// What is expected of the skin follows from these: see `SkinJudge`.
+/// The expectations on the skin follow from these: see `SkinJudge`.
 struct StressCase {
   std::string group;
   std::string name;
@@ -68,7 +68,7 @@ struct StressCase {
   double harshness = 0.0;      ///< of the scene, in units of its own; 0: the scene's own
   Cage cage = Cage::Bar;
   Surface surface = Surface::Bar;
-  bool touchesBySurface = false;  ///< rigid bodies meet its surface, instead of the cage's nodes
+  bool touchesBySurface = false;  ///< rigid bodies touch its surface, instead of the cage's nodes
   Interpolation interpolation = Interpolation::Linear;
   Normals normals = Normals::None;
 

@@ -6,8 +6,8 @@
 
 namespace tetskin::stress {
 
-/// Stiff and extreme cases, in which it is judged whether the simulation stays bounded, and whether the skin does what
-/// it promises. Those of Bullet's forces are for Kind::Bullet alone, all others for Kind::Surface.
+/// Stiff and extreme cases, which check whether the simulation stays bounded, and whether the skin keeps its promises.
+/// Those of Bullet's forces are for Kind::Bullet alone, all others for Kind::Surface.
 measure::MeasuredScenes stressScenes();
 
 }  // namespace tetskin::stress

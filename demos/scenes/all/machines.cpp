@@ -10,7 +10,7 @@
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kApart = 0.05;        ///< between the body and what moves, in units of the body's size
+constexpr double kApart = 0.05;        ///< between the body and the moving obstacle, in units of the body's size
 constexpr double kThick = 0.1;         ///< half the thickness of plates, in units of the body's size
 constexpr double kMoving = 5.0 / 6.0;  ///< share of the run in which obstacles move; then everything stands still
 

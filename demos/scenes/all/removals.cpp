@@ -10,7 +10,7 @@
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kBelow = 0.05;  ///< from the body to what is below it, in units of the body's size
+constexpr double kBelow = 0.05;  ///< from the body to the object below it, in units of the body's size
 
 /// One event at a third of the run, within a step, and one at two thirds, between steps.
 void atThirds(Scene& scene, const std::function<void()>& within, const std::function<void()>& between) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Soft bodies that meet each other at the surfaces of their cages. In the classic world they pass through each other.
+// Soft bodies that touch each other at the surfaces of their cages. In the classic world they pass through each other.
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/contact/soft_contacts.h>
 

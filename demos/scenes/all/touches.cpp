@@ -8,7 +8,7 @@
 namespace tetskin::scenes {
 namespace {
 
-constexpr double kClose = 0.05;  ///< from the body to what is below it, in units of the body's size
+constexpr double kClose = 0.05;  ///< from the body to the object below it, in units of the body's size
 
 std::unique_ptr<Scene> onNothing(const Cage& cage, const SceneOptions& options) {
   auto scene = std::make_unique<Scene>(options, kEarth);

@@ -15,8 +15,8 @@ constexpr double kFullTurn = 6.28318530717958647692;
 /// Share of the length that is pinned at either end.
 constexpr double kPinnedFraction = 0.1;
 /// Seconds. Bullet measures the rate of deformation in a frame that does not turn with the body, so its damping resists
-/// rotation as well: with the default, five times this, all of the twist would gather at the moved end, where the body
-/// slips through itself and is untwisted again.
+/// rotation as well: with the default, five times this, all of the twist would collect at the moved end, where the body
+/// slips through itself and untwists.
 constexpr double kDamping = 0.004;
 
 double turnAt(int frame) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Arguments are checked before anything is done with them.
+// Checks arguments before they are used.
 
 function numberOf(value, name) {
   if (typeof value !== "number" || Number.isNaN(value)) throw invalid(`${name}: must be a number`);
@@ -18,7 +18,7 @@ function booleanOf(value, name) {
   return value;
 }
 
-/** Refuses a view whose memory has gone: its length is 0, and it would be taken for an array of nothing. */
+/** Refuses a detached view: its length is 0, and it would be taken for an empty array. */
 function checkAttached(buffer, name) {
   try {
     new Uint8Array(buffer);
@@ -56,8 +56,8 @@ function bytesOf(value, name) {
 }
 
 /**
- * The given options, and the others of `known`, whose values tell the types, too. NaN is that of a number without a
- * default, and an array that of a vector.
+ * The given options, and defaults from `known` for the others. The defaults also define the types: NaN is a number
+ * without default, and an array a vector.
  */
 function optionsOf(given, known) {
   if (given === undefined) given = {};

@@ -12,7 +12,7 @@ class TetskinError extends Error {
 const kOutOfMemory = "there is not enough memory for this: take a smaller mesh or fewer tets, or delete what is not " +
   "needed any more";
 
-/** Of what the library has thrown. Its messages name options as C++ and Python do. */
+/** The error for an exception of the library, whose messages name options as in C++ and Python. */
 function errorOf(code, message) {
   if (code === "OutOfMemory") return new TetskinError(code, kOutOfMemory);
   const inCamelCase = name => name.replace(/_([a-z])/g, (_, letter) => letter.toUpperCase());

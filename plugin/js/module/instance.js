@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What all things of one instance share: its memory.
+// The memory that all objects of one instance share.
 
 const kNothing = {at: 0, count: 0};
-const kMostBytes = 0x7fffffff;  // of an address space of 32 bits, whose numbers would wrap
+const kMostBytes = 0x7fffffff;  // of a 32-bit address space, where sizes would wrap
 
 const doubles = values => ({Type: Float64Array, values});
 const indices = values => ({Type: Int32Array, values: checkedIndices(values)});
 
-/** What C++ throws passes Guarded only where there is no memory for what goes in or comes out. */
+/** A C++ exception passes Guarded only if there is no memory for arguments or results. */
 function withoutExceptions(call) {
   return (...values) => {
     try {
@@ -34,14 +34,14 @@ class Instance {
     return this.core.HEAPU8.buffer;
   }
 
-  /** Another array buffer is what has become of a memory that has grown. */
+  /** A memory that has grown has another array buffer. */
   countGrowth() {
     if (this.seen === this.buffer) return;
     this.seen = this.buffer;
     ++this.memoryVersion;
   }
 
-  /** Calls `work` with the places in memory of copies of some arrays, which are freed afterwards. */
+  /** Calls `work` with the addresses of copies of some arrays, which are freed afterwards. */
   withMemory(arrays, work) {
     const taken = [], own = values => ArrayBuffer.isView(values) && values.buffer === this.buffer;
     const put = ({Type, values}) => {
@@ -53,7 +53,7 @@ class Instance {
       return {at, count: values.length};
     };
     try {
-      // Where memory grows for one array, views of it lose theirs: these are copied before.
+      // If the memory grows for one array, views of it are detached: these are copied before.
       const kept = arrays.map(({Type, values}) => ({Type, values: own(values) ? new Type(values) : values}));
       return work(...kept.map(put));
     } finally {
@@ -78,7 +78,7 @@ function checkedIndices(values) {
   return values;
 }
 
-/** Something of an instance's, which is freed by `delete()`. */
+/** An object of an instance, which is freed by `delete()`. */
 class Thing {
   constructor(instance, handle) {
     Object.defineProperty(this, "hidden", {value: {instance, handle}});
@@ -93,7 +93,7 @@ class Thing {
     this.hidden.handle = null;
     handle.delete();
   }
-  /** Before the handle goes; where this throws, nothing has gone. */
+  /** Called before the handle is freed; if this throws, nothing is freed. */
   leave() {}
 }
 Object.defineProperty(Thing.prototype, Symbol.dispose ?? Symbol.for("Symbol.dispose"), {
@@ -102,20 +102,20 @@ Object.defineProperty(Thing.prototype, Symbol.dispose ?? Symbol.for("Symbol.disp
   },
 });
 
-/** A thing's handle, for a call. */
+/** An object's handle, for a call. */
 function handleOf(thing, Type, name) {
   if (!(thing instanceof Type)) throw invalid(`${name}: must be a ${Type.name}`);
   if (thing.deleted) throw new TetskinError("Deleted", `${name}: it has been deleted`);
   return thing.hidden.handle;
 }
 
-/** The handle of the thing whose method was called. */
+/** The handle of the object whose method was called. */
 function own(thing) {
   if (thing.deleted) throw new TetskinError("Deleted", `the ${thing.constructor.name} has been deleted`);
   return thing.hidden.handle;
 }
 
-/** Handles of other instances are of other memory. */
+/** Handles of other instances refer to other memory. */
 function handleIn(instance, thing, Type, name) {
   const handle = handleOf(thing, Type, name);
   if (thing.hidden.instance !== instance) {
@@ -124,7 +124,7 @@ function handleIn(instance, thing, Type, name) {
   return handle;
 }
 
-/** Kinds of properties: what is made of the module's value, and how one that is given is checked. */
+/** Kinds of properties: how the module's value is converted, and how a given one is checked. */
 const kNumber = {made: value => value, checked: numberOf}, kBoolean = {made: value => value, checked: booleanOf};
 const kVector = {made: numbers => Float64Array.from(numbers), checked: vectorOf};
 const kQuaternion = {made: kVector.made, checked: (value, name) => vectorOf(value, name, 4)};
@@ -132,7 +132,7 @@ const kWords = {made: words => words};
 const viewOf = Type => ({made: (place, thing) => thing.view(Type, place)});
 const copyOf = Type => ({made: (place, thing) => thing.copy(Type, place)});
 
-/** Gives a class properties: by name, their kind, and the module's functions that read and set them. */
+/** Adds properties to a class: by name, their kind, and the module's functions that read and set them. */
 function properties(Type, all) {
   for (const [name, [kind, read, write]] of Object.entries(all)) {
     Object.defineProperty(Type.prototype, name, {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 
-/** Of kWebAssembly, which is deflated and in base64. */
+/** The bytes of kWebAssembly, which is deflated and in base64. */
 async function bytesOfModule() {
   const packed = Uint8Array.from(atob(kWebAssembly), letter => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));

@@ -79,7 +79,7 @@ const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefine
 const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false};
 const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
 
-/** What `load` returns. */
+/** The result of `load`. */
 class Tetskin {
   constructor(core) {
     Object.defineProperty(this, "hidden", {value: {instance: new Instance(core)}});
@@ -160,7 +160,7 @@ class Tetskin {
   handle(thing, Type, name) {
     return handleIn(this.hidden.instance, thing, Type, name);
   }
-  /** What a progress function throws cancels, and is thrown then. */
+  /** An exception of a progress function cancels, and is thrown afterwards. */
   withProgress(progress, work) {
     if (progress === undefined) return work(false);
     let thrown;

@@ -3,9 +3,9 @@
 
 const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
   angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
-/** Those of a body that are arrays; the module itself has the others. */
+/** A body's options that are arrays; the module itself has the others. */
 const kBodyArrays = {pinned: [], nodeMasses: [], stiffnessScale: []};
-/** Errors of a step that was made. */
+/** Errors after which the step has been made. */
 const kAfterStep = ["NonFinite", "TopologyChanged"];
 const kCauses = ["contact", "friction", "joints", "total"];
 const kStages = ["prediction", "rigidSearch", "softSearch", "rows", "system", "other", "surfaces", "total"];
@@ -126,7 +126,7 @@ class World extends Thing {
     this.core.shiftOrigin(own(this), vectorOf(origin, "origin"));
   }
 
-  /** The handle of a soft body, then that of a rigid one: the one that it is not is null. */
+  /** The handles of a soft and of a rigid body, one of which is null. */
   placesOf(thing, name, mayMiss = false) {
     if (mayMiss && thing === null) return [null, null];
     if (!(thing instanceof Body || thing instanceof RigidBody)) throw invalid(`${name}: must be a Body or a RigidBody`);
@@ -141,7 +141,7 @@ class World extends Thing {
   keepRigid(handle) {
     return this.keep("rigidBodies", new RigidBody(this.hidden.instance, handle, this, {}));
   }
-  /** The handle of a hit's body, once the hit is known to be one. */
+  /** The handle of a hit's body; checks the hit first. */
   bodyOf(hit) {
     own(this);
     if (hit === null || typeof hit !== "object") throw invalid("hit: must be what raycast returns, and not null");
@@ -158,7 +158,7 @@ properties(World, {
   hash: [kWords, "hash"],
 });
 
-/** Something that a world keeps in a list. */
+/** An object that a world keeps in a list. */
 class Member extends Thing {
   constructor(instance, handle, world, others) {
     super(instance, handle);

@@ -5,7 +5,7 @@
 namespace tetskin::js {
 namespace {
 
-/// An option as JavaScript has it, and back.
+/// An option's value for JavaScript, and back.
 template <class T>
 const T& shown(const T& option) {
   return option;
@@ -38,7 +38,7 @@ template <auto Member>
 void setOption(BodyWords& words, Shown<Member> value) {
   read(value, words.*Member);
 }
-/// Arrays come by themselves, as places in memory.
+/// Arrays are passed separately, as addresses.
 template <auto Member, class Fields>
 void addField(Fields& fields, const char* name) {
   if constexpr (!std::is_same_v<Shown<Member>, std::vector<int>> && !std::is_same_v<Shown<Member>, std::vector<double>>)
@@ -63,7 +63,7 @@ void remove(BodyHandle& body) {
   body.world->remove(*body.state);
 }
 
-/// Bullet keeps a node's numbers far apart.
+/// In Bullet, the numbers of different nodes are not contiguous.
 template <class Of>
 View gather(const btSoftBody& soft, std::vector<float>& numbers, Of&& vectorAt) {
   numbers.resize(3 * static_cast<std::size_t>(soft.m_nodes.size()));

@@ -10,7 +10,7 @@ namespace {
 constexpr char kMeshTag[] = "tsk-me01", kCageTag[] = "tsk-ca01";
 constexpr std::size_t kTagBytes = 8;
 
-/// An array as the number of its bytes, and these. WebAssembly is little-endian on every machine.
+/// An array as its size in bytes, followed by the bytes. WebAssembly is little-endian on every machine.
 class Writer {
  public:
   explicit Writer(const char* tag) : bytes_(tag, tag + kTagBytes) {}
@@ -78,7 +78,7 @@ class Reader {
   std::size_t left_;
 };
 
-/// The arrays in their order, for a Writer and for a Reader.
+/// Visits the arrays in their order, for a Writer or a Reader.
 template <class Stream, class Mesh>
 void visitMesh(Stream& stream, Mesh& mesh) {
   stream.array(mesh.positions);

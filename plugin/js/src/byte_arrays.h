@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Meshes and cages as bytes, which another worker reads.
+// Meshes and cages as bytes, for another worker.
 #pragma once
 
 #include "guarded.h"
@@ -12,7 +12,7 @@ namespace tetskin::js {
 
 std::vector<unsigned char> bytesOf(const TriangleMesh& mesh);
 std::vector<unsigned char> bytesOf(const CageModel& cage);
-/// These throw a Failure of the code Malformed for other bytes, and what `validate` says.
+/// These throw a Failure with the code Malformed for invalid bytes, or with the error of `validate`.
 MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count);
 CageModel cageOfBytes(const unsigned char* bytes, std::size_t count);
 

@@ -16,7 +16,7 @@ EM_JS(void, throwInJavaScript, (const char* code, const char* message),
 
 constexpr char kReport[] = ": this is a fault of tetskin's; please report it";
 
-/// What the exception that is being handled says. Throws where there is no memory for its words.
+/// The fault of the exception being handled. Throws if there is no memory for its message.
 Fault wordedFault() {
   try {
     throw;

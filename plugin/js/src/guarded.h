@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Functions as JavaScript calls them: with numbers, handles and places in memory. What they throw becomes an exception
-// of JavaScript's, which passes through nothing of C++.
+// Functions as JavaScript calls them: with numbers, handles and addresses. Their exceptions become JavaScript
+// exceptions, which unwind no C++.
 #pragma once
 
 #include <emscripten/bind.h>
@@ -16,15 +16,15 @@ namespace tetskin::js {
 
 using namespace facade;
 
-/// What has gone wrong, for `throwFault`.
+/// The error for `throwFault`.
 struct Fault {
   const char* code = nullptr;
   std::string message;
 };
 
-/// What the exception that is being handled says.
+/// The fault of the exception being handled.
 Fault currentFault();
-/// Throws an exception of JavaScript's; does not return.
+/// Throws a JavaScript exception; does not return.
 void throwFault(const Fault& fault);
 
 template <auto Function>
@@ -43,7 +43,7 @@ struct Guarded<Function> {
   }
 };
 
-/// Makes a function known to JavaScript.
+/// Exports a function to JavaScript.
 template <auto Function>
 void expose(const char* name) {
   emscripten::function(name, &Guarded<Function>::call, emscripten::allow_raw_pointers());

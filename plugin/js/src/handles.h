@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What JavaScript holds: shares of a world and of the things in it.
+// JavaScript's handles: shares of a world and of its objects.
 #pragma once
 
 #include "guarded.h"
@@ -19,7 +19,7 @@ struct WorldHandle {
 struct BodyHandle {
   std::shared_ptr<World> world;
   std::shared_ptr<World::Body> state;
-  std::vector<float> nodes, velocities;  ///< of the last call that asked for them, side by side
+  std::vector<float> nodes, velocities;  ///< of the last call that asked for them, contiguous
 };
 struct RigidHandle {
   std::shared_ptr<World> world;
@@ -34,7 +34,7 @@ struct SpringHandle {
 inline Vec3 vectorOf(const btVector3& v) {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
-/// An option that is not given is no number.
+/// An option that is not given is NaN.
 inline std::optional<double> given(double option) {
   return option == option ? std::optional(option) : std::nullopt;
 }

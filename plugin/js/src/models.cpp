@@ -44,7 +44,7 @@ std::vector<std::array<int, K>> indexRows(const Indices& indices) {
   return rows;
 }
 
-/// A file in the module's own file system, in memory, while it is read.
+/// A file in the module's in-memory file system, while it is read.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& extension, const unsigned char* bytes, std::size_t count)
@@ -109,7 +109,7 @@ View meshBounds(const MeshModel& model) {
       std::vector<double>{box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()});
 }
 
-/// By value, as calibrateCage: what tells the progress may delete the mesh that is being used.
+/// By value, like calibrateCage: the progress function may delete the mesh that is being used.
 CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, bool tells) {
   if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
     fail(StatusCode::InvalidOption, "targetTets: must be from 1 to " + std::to_string(Limits::kMaxTargetTets));

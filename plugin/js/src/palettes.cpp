@@ -7,7 +7,7 @@
 namespace tetskin::js {
 namespace {
 
-/// Bones with the memory that they are written to.
+/// Bones with their memory.
 struct PaletteHandle {
   std::shared_ptr<const SoftBodyBinding> binding;
   BonePalette<float> palette;
@@ -36,7 +36,7 @@ PaletteHandle* createPalette(const CageModel& cage, const MeshModel& mesh, std::
                              bool columns) {
   PaletteOptions options;
   options.layout = columns ? BoneLayout::Columns : BoneLayout::Rows;
-  // Gradients are for the linear surface of a binding that has them.
+  // Gradients are for the linear surface of a binding with gradients.
   options.gradients = gradients;
   BindingOptions binding = bindingOptions({interpolation}, {"none"}, {"nearest"}, {});
   options.disableQuadratic = gradients && binding.interpolation == Interpolation::Linear;

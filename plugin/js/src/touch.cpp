@@ -5,7 +5,7 @@
 namespace tetskin::js {
 namespace {
 
-/// Where a ray has met a surface.
+/// Where a ray has hit a surface.
 struct HitNumbers {
   int body = -1;  ///< of the world's bodies; -1: nowhere
   int triangle = -1;

@@ -13,7 +13,7 @@
 namespace tetskin::js {
 namespace {
 
-/// Bullet writes to what it asked for, whether it got it or not.
+/// Bullet writes to memory that it asked for without checking whether it got it.
 void* allocated(std::size_t bytes) {
   void* const memory = std::malloc(bytes);
   if (!memory) throw std::bad_alloc();
@@ -28,7 +28,7 @@ WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces) {
   return new WorldHandle{std::make_shared<World>(options), {}, {}};
 }
 
-/// Of a soft body or a rigid one, the other being null; null: neither.
+/// The object of a soft or a rigid body, the other being null; null if both are.
 const btCollisionObject* objectOf(const BodyHandle* soft, const RigidHandle* rigid) {
   if (soft) return &alive(*soft->state).body();
   return rigid ? &alive(*rigid->state) : nullptr;

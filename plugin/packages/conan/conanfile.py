@@ -59,6 +59,6 @@ class Tetskin(ConanFile):
         CMake(self).install()
 
     def package_info(self):
-        # The package has a CMake package of its own, which finds Bullet and Eigen as Conan gives them.
+        # The package has its own CMake package, which finds Bullet and Eigen as provided by Conan.
         self.cpp_info.set_property("cmake_find_mode", "none")
         self.cpp_info.builddirs.append(os.path.join("lib", "cmake", "tetskin"))

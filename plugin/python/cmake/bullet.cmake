@@ -1,5 +1,5 @@
-# Bullet for the wheel and for the module of JavaScript, from its sources: in float, static, position-independent, and
-# seen by nothing outside.
+# Bullet for the wheel and for the JavaScript module, from its sources: in float, static, position-independent, and with
+# hidden symbols.
 #   BULLET_SOURCE  a variable of CMake or of the environment: the folder of Bullet's sources. Empty: the folder
 #                  `bullet`, which a staged source package has, or else what fetch_bullet fetches, in a checkout
 set(BULLET_SOURCE "$ENV{BULLET_SOURCE}" CACHE PATH "Folder of the sources of Bullet 3.24; empty: they are fetched")
@@ -25,8 +25,8 @@ if(NOT bullet_version STREQUAL "3.24")
   message(FATAL_ERROR "The package is made with Bullet 3.24, but ${bullet} has ${bullet_version}. ${cure}")
 endif()
 
-# What neither the library nor the binding uses is not compiled: a third of the sources. Something that is missing after
-# all fails the build, at the stub, which is made by importing the module.
+# Leaves out a third of the sources, which neither the library nor the binding uses. If something is missing after all,
+# the build fails at the stub, which is made by importing the module.
 set(unused
   btAxisSweep3 btBatchedConstraints btBox2dBox2dCollisionAlgorithm btBox2dShape btBroadphaseProxy
   btCollisionDispatcherMt btCollisionWorldImporter btContactConstraint btContactProcessing btConvex2dConvex2dAlgorithm

@@ -1,6 +1,6 @@
-# What the package needs to show worlds: the writer of pages, which the demos have, too; the files that pages are made
-# from; and three.js, which every page contains, in the layouts of Debian and of three.js itself. Without it the package
-# is made all the same, and says at its first page what is missing.
+# What the package needs to show worlds: the writer of pages, shared with the demos; the files that pages are made from;
+# and three.js, which every page contains, in the layouts of Debian and of three.js itself. Without it the package is
+# still built, and its first page says what is missing.
 #   TETSKIN_THREE, TETSKIN_ORBIT_CONTROLS  three.min.js, and the OrbitControls.js of the same revision that is no module
 set(view "${library}/demos/view")
 target_sources(_core PRIVATE "${view}/view_data.cpp" "${view}/view_frames.cpp" "${view}/view_page.cpp")

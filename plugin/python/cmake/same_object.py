@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""same_object.py BUILD COMPILER ARGUMENTS...: a compiler launcher for builds that compile what another one, in the
-folder BUILD, has compiled already. Copies that build's object if the same compiler made it by the same options of the
-same text; otherwise compiles, by ccache if there is one.
+"""same_object.py BUILD COMPILER ARGUMENTS...: a compiler launcher that reuses objects of another build, in the folder
+BUILD. Copies that build's object if the same compiler made it with the same options from the same text; otherwise
+compiles, with ccache if available.
 
-The text is what the preprocessor makes of the source, without the names of the files that it comes from. A compiler
-cache counts these, and so takes the same text in another folder for a different one. Options that only the preprocessor
-reads are in the text. BUILD is made by Ninja, which has recorded what each object depends on, and has a
-compile_commands.json. With options for debugging, which put places into the object, everything is compiled."""
+The text is the preprocessed source without the names of its files. A compiler cache includes these names, and so treats
+the same text in another folder as different. Options that only the preprocessor reads are contained in the text. BUILD
+was made by Ninja, which has recorded what each object depends on, and has a compile_commands.json. With debug options,
+which put paths into the object, everything is compiled."""
 import json
 import os
 import shlex
@@ -22,7 +22,7 @@ NO_DIFFERENCE = ("-Werror", "-MD", "-MMD", "-Winvalid-pch")
 
 
 class Command:
-    """Of a compiler: its words, and what it makes of which source."""
+    """A compiler's command line: its words, and which object it makes from which source."""
 
     def __init__(self, words, folder):
         self.folder, self.values, self.compiles, self.words = Path(folder), {}, [], []
@@ -48,18 +48,18 @@ class Command:
                     self.compiles.append(word)
 
     def program(self):
-        """The compiler itself, which may have several names: c++, g++."""
+        """The compiler's real path; it may have several names, such as c++ and g++."""
         return os.path.realpath(shutil.which(self.compiler) or self.compiler)
 
     def output(self):
         return self.folder / self.values.get("-o", "")
 
     def name(self):
-        """What CMake calls the object in any build: <target>.dir/<source>.o."""
+        """CMake's name for the object in any build: <target>.dir/<source>.o."""
         return str(self.output()).rpartition("/CMakeFiles/")[2]
 
     def text(self, dependencies=None):
-        """What the preprocessor makes of the source; None if it fails. Writes the file of what it has read."""
+        """The preprocessed source; None if it fails. Writes the dependency file."""
         more = ["-MD", "-MF", dependencies, "-MT", self.values["-o"]] if dependencies else []
         done = subprocess.run([self.compiler, *self.words, *more, "-E", "-P", self.values["-c"]], cwd=self.folder,
                               capture_output=True, check=False)
@@ -67,8 +67,8 @@ class Command:
 
 
 def is_current(build, other):
-    """Whether Ninja would leave the other build's object as it is: its command, and all that it has read, are unchanged.
-    Ninja does not know the time of the compiler."""
+    """Whether Ninja would keep the other build's object: its command and all files that it has read are unchanged. Ninja
+    does not check the time of the compiler."""
     ninja = shutil.which("ninja")
     if not (ninja and other.output().exists() and os.path.exists(other.program())):
         return False
@@ -78,7 +78,7 @@ def is_current(build, other):
 
 
 def copied(build, own):
-    """Whether the other build's object has been put where this one is wanted."""
+    """Copies the other build's object to the place of this one; returns whether it did."""
     build = Path(build)
     listed = build / "compile_commands.json"
     if not ("-c" in own.values and "-MF" in own.values and listed.exists()) or any(
@@ -108,7 +108,7 @@ def main():
     build, words = sys.argv[1], sys.argv[2:]
     try:
         done = copied(build, Command(words, os.getcwd()))
-    except (OSError, ValueError, KeyError):  # of a build that is not as it should be, nothing is taken
+    except (OSError, ValueError, KeyError):  # takes nothing from a build in an unexpected state
         done = False
     if not done:
         cache = [shutil.which("ccache")] if shutil.which("ccache") else []

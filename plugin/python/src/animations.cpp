@@ -7,7 +7,7 @@
 namespace tetskin::python {
 namespace {
 
-/// A GLB with the bodies and rigid bodies of worlds, whose places each frame reads.
+/// A GLB with the soft and rigid bodies of worlds; each frame reads their current state.
 class GlbAnimation {
  public:
   GlbAnimation(const PathLike& path, double framesPerSecond)
@@ -57,7 +57,7 @@ class GlbAnimation {
 
  private:
   void checkOpen() const {
-    if (frames_ > 0 || finished_) fail(StatusCode::InvalidOption, "what is shown is added before the first frame");
+    if (frames_ > 0 || finished_) fail(StatusCode::InvalidOption, "add bodies and objects before the first frame");
   }
   static Eigen::Affine3d placeOf(const btTransform& pose) {
     Eigen::Affine3d place = Eigen::Affine3d::Identity();
@@ -79,15 +79,15 @@ class GlbAnimation {
 
 void bindAnimations(nb::module_& module) {
   Class<GlbAnimation>(module, "GlbWriter",
-                      "Writes a run as one animation, binary glTF 2.0, which engines and viewers play. A context "
-                      "manager that finishes it.")
+                      "Writes a run as one animation, binary glTF 2.0, which engines and viewers play. As a context "
+                      "manager it finishes the file.")
       .words([](const GlbAnimation& g) { return counted(g.frameCount(), "frame", "frames"); })
       .def(nb::init<const PathLike&, double>(), "path"_a, "frames_per_second"_a = 60.0)
       .def("add_body", &GlbAnimation::addBody, "body"_a, "name"_a = "body",
-           "Shows a soft body, by its surface. Before the first frame.")
+           "Shows a soft body by its surface. Call it before the first frame.")
       .def("add_object", &GlbAnimation::addObject, "mesh"_a, "rigid_body"_a = nb::none(), "name"_a = "object",
-           "Shows a mesh, which stays, or moves with a rigid body. Before the first frame.")
-      .def("add_frame", &GlbAnimation::addFrame, "Adds what is shown as it is now.")
+           "Shows a mesh that is fixed, or moves with a rigid body. Call it before the first frame.")
+      .def("add_frame", &GlbAnimation::addFrame, "Adds the current state.")
       .def("finish", &GlbAnimation::finish,
            "Writes the file, complete or not at all. Finishing it again changes nothing.")
       .def(

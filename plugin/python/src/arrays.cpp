@@ -15,14 +15,14 @@ char letterOf(const Py_buffer& buffer) {
   return std::strlen(format) == 1 ? *format : '\0';
 }
 
-/// Numbers that become these without loss, or only by rounding of what has more than 53 bits.
+/// Numbers that convert to these without loss, except rounding of those with more than 53 bits.
 template <class Number>
 bool isTaken(const Py_buffer& buffer) {
   const char letter = letterOf(buffer);
   return letter && std::strchr(std::is_floating_point_v<Number> ? "bhilqBHILQefd" : "bhilqBHILQ", letter);
 }
 
-/// Whether these are the numbers themselves, side by side.
+/// Whether the buffer holds these numbers themselves, contiguously.
 template <class Number>
 bool areThese(const Py_buffer& buffer) {
   const char letter = letterOf(buffer);
@@ -65,7 +65,7 @@ Numbers<Number>::Numbers(const ArrayLike& array, const char* name, int columns) 
     return std::string(name) + ": " + what;
   };
   if (buffer_.ndim != (columns ? 2 : 1) || (columns && buffer_.shape[1] != columns)) {
-    // What is empty has no columns to be wrong about.
+    // An empty array has no wrong number of columns.
     if (buffer_.ndim == 1 && buffer_.shape[0] == 0) return;
     const std::string wanted = columns ? "(n, " + std::to_string(columns) + ")" : "(n,)";
     throw nb::value_error(refused("the shape must be " + wanted + ", not " + shapeOf(buffer_)).c_str());
@@ -77,8 +77,8 @@ Numbers<Number>::Numbers(const ArrayLike& array, const char* name, int columns) 
   }
   rows_ = static_cast<std::size_t>(buffer_.shape[0]);
   if (!areThese<Number>(buffer_)) {
-    // Kept, as looking them up would take longer than what they do. Looking may let go of the GIL, and so of the lock
-    // of a constant, for which others would wait with the GIL.
+    // Cached, as looking them up would take longer than the call. No static constant: the look-up may release the GIL
+    // while the constant's lock is held, for which others would wait with the GIL.
     static PyObject *convert = nullptr, *type = nullptr;
     if (!type) convert = numpy("ascontiguousarray").release().ptr();
     if (!type) type = numpy(kReal ? "float64" : "int64").release().ptr();

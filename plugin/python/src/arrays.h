@@ -46,13 +46,13 @@ constexpr auto kWords<OutsideRule> = nb::detail::const_name("typing.Literal['nea
 struct Layouts {};
 template <>
 constexpr auto kWords<Layouts> = nb::detail::const_name("typing.Literal['rows', 'columns']");
-/// A file's name: text, bytes, or what has __fspath__.
+/// A file's name: text, bytes, or an object with __fspath__.
 struct PathLike {
   nb::object object;
-  /// In UTF-8, or, where that is how the system names files, as bytes of any kind.
+  /// In UTF-8, or arbitrary bytes if the system names files so.
   std::string text() const;
 };
-/// Text from a file or of a path. Bytes that are not UTF-8 are written as \\x and two digits.
+/// Text from a file or a path. Bytes that are not UTF-8 become \\x and two digits.
 nb::str textOf(const std::string& text);
 /// Called with the fraction done; True, which prints a bar; or None.
 struct Progress {
@@ -60,8 +60,8 @@ struct Progress {
   operator const nb::object&() const { return call; }
 };
 
-/// Numbers of an argument, side by side in memory: those of the array itself where that is possible, otherwise a copy
-/// by NumPy. Holds the array.
+/// Numbers of an argument, contiguous in memory: those of the array itself if possible, otherwise a copy by NumPy.
+/// Holds the array.
 template <class Number>
 class Numbers {
  public:
@@ -157,8 +157,8 @@ Vector3 vectorOf(const V& v) {
   return newVector({static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])});
 }
 
-/// A class of nanobind's whose properties may return arrays that own a share of something: by default, nanobind makes
-/// all that a property returns keep its object alive, and refuses those.
+/// A class of nanobind whose properties may return arrays that own a share of something. By default, nanobind makes
+/// everything that a property returns keep its object alive, and refuses such arrays.
 template <class T>
 class Class : public nb::class_<T> {
  public:
@@ -188,15 +188,15 @@ class Class : public nb::class_<T> {
     nb::class_<T>::def_prop_rw(std::forward<Args>(args)..., nb::rv_policy::automatic);
     return *this;
   }
-  /// What a thing is, in a few words, where Python would say where it is in memory.
+  /// Describes an object in a few words; Python's default shows its address.
   template <class Words>
   Class& words(Words words) {
     const std::string name = nb::cast<std::string>(this->attr("__name__"));
     return def("__repr__", [name, words](const T& self) { return "<tetskin." + name + ": " + words(self) + ">"; });
   }
-  /// How it is pickled, by the oldest protocols, too.
-  /// get  a thing's state, as a tuple
-  /// set  a thing of a state, which may throw
+  /// Pickling, also by the oldest protocols.
+  /// get  an object's state, as a tuple
+  /// set  makes an object from a state; may throw
   template <class Get, class Set>
   Class& pickled(Get get, Set set) {
     def("__getstate__", get, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"));
@@ -204,7 +204,7 @@ class Class : public nb::class_<T> {
       try {
         new (&self) T(set(state));
       } catch (const nb::cast_error&) {
-        fail(StatusCode::Malformed, "not what was pickled: something in it is of another type");
+        fail(StatusCode::Malformed, "not the pickled state: something in it has another type");
       }
     };
     def("__setstate__", make, nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
@@ -226,13 +226,13 @@ std::string wordsOf(const V& v) {
   return text;
 }
 
-/// An array that has been made, whose type in the stub is `Of`'s.
+/// A ready array, whose type in the stub is `Of`'s.
 template <class Of>
 struct Made {
   nb::object array;
 };
 /// A Python array that is made once; each call gets a view of it, at a fifth of the cost of a new array. Each call gets
-/// its own view, as arrays can be given another shape in place. Needs the GIL, also to end, if it has been made.
+/// its own view, as arrays can be reshaped in place. Needs the GIL, also to be destroyed once the array exists.
 template <class Of>
 class Kept {
  public:
@@ -279,15 +279,15 @@ auto released(Work&& work) {
   return work();
 }
 
-/// A function of Python's as `progress`: told the fraction, it cancels by returning False or raising. True: a bar that
-/// is printed; None or False: nothing. Ctrl-C cancels with any of them.
+/// A Python function as `progress`: called with the fraction, it cancels by returning False or raising. True prints a
+/// bar; None or False: nothing. Ctrl-C always cancels.
 class ProgressCall {
  public:
-  /// what  is done, before a bar
+  /// what  the task, printed before a bar
   ProgressCall(const nb::object& call, const char* what);
-  /// What the library calls, without the GIL.
+  /// The function for the library, which calls it without the GIL.
   std::function<bool(double)> function();
-  /// Throws what was raised.
+  /// Throws the exception that was raised.
   void rethrow();
 
  private:
@@ -322,7 +322,7 @@ struct type_caster<tetskin::python::Progress> {
     return source.is_none() || PyBool_Check(source.ptr()) || PyCallable_Check(source.ptr());
   }
 };
-/// Vectors and quaternions: any sequence of numbers. An array is one, too, but type checkers do not know that.
+/// Vectors and quaternions: any sequence of numbers. An array is one too, but type checkers do not know that.
 template <std::size_t N>
 struct type_caster<std::array<double, N>> : array_caster<std::array<double, N>, double, N> {
   static constexpr auto Name = const_name("Vector");

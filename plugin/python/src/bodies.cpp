@@ -7,7 +7,7 @@ namespace {
 
 using View = Made<Row3<float>>;
 
-/// The memory of a body's nodes, which the body's state keeps.
+/// The memory of a body's nodes, kept alive by the body's state.
 View nodesOf(const BodyHandle& body) {
   const btSoftBody& soft = alive(body).body();
   return body.arrays.nodes.view([&] { return view3<float>(nodePositions(soft), body.state); });
@@ -66,7 +66,7 @@ ImpulseResult radialImpulse(BodyHandle& body, const Vec3& centre, double radius,
       {toBullet(centre, "centre"), static_cast<btScalar>(radius), static_cast<btScalar>(strength)});
 }
 
-/// A number of the body's, with its lock.
+/// A property of the body that is a number, with the world's lock.
 template <class Get>
 auto number(Get get) {
   return [get](const BodyHandle& body) {
@@ -140,7 +140,7 @@ BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage,
 }  // namespace
 
 Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
-  Class<ImpulseResult>(module, "ImpulseResult", "Sums over all vertices that a radial impulse has pushed.")
+  Class<ImpulseResult>(module, "ImpulseResult", "Sums over all vertices pushed by a radial impulse.")
       .words([](const ImpulseResult& r) {
         return counted(static_cast<std::size_t>(r.vertices), "vertex", "vertices") + ", linear " + wordsOf(r.linear);
       })
@@ -168,7 +168,7 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
           "each step overwrites.")
       .def_prop_ro("nodes", nodesOf,
                    "(nodes, 3) float32, world space. A read-only view, which each step overwrites; its rows are not "
-                   "side by side.")
+                   "contiguous.")
       .def_prop_rw("velocities", velocitiesOf, setVelocities,
                    "(nodes, 3) float32, world length per second: at the middle of the last substep. A read-only view, "
                    "which each step overwrites; assign an array. Those of pinned nodes stay.")
@@ -189,7 +189,7 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
           locked([](BodyHandle& b, bool visible) { facade::surfaceOf(*b.state).setVisible(visible); }),
           "Whether steps update the surface. When shown again, it is updated at once.")
       .def_prop_ro("asleep", number([](DeformableBody& b) { return !b.body().isActive(); }),
-                   "Whether it is at rest, and costs next to nothing.")
+                   "Whether it sleeps, and costs next to nothing.")
       .def_prop_ro(
           "removed", [](const BodyHandle& b) { return b.state->removed; },
           "Whether it has been removed from its world.")
@@ -215,19 +215,19 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
                alive(b).followWorldGravity();
              }
            }),
-           "gravity"_a.none(), "Its own gravity, world length / s^2; None: that of the world.")
+           "gravity"_a.none(), "Its own gravity, world length / s^2; None: the world's.")
       .def_prop_ro("pinned", pinnedOf, "(nodes,) bool: which nodes are pinned. A new array.")
       .def("set_pinned", setPinned, "nodes"_a, "pinned"_a = true,
-           "Pins nodes where they are, or releases them: a mask of booleans, or indices.")
+           "Pins nodes at their current positions, or releases them: a mask of booleans, or indices.")
       .def("set_pinned_positions", setPinnedPositions, "nodes"_a, "positions"_a,
            "Moves pinned nodes, a mask or indices, to positions (n, 3), world space, in the following steps: call it "
            "once per frame. On an Error nothing is moved.")
       .def("transform", transform, "position"_a = Vec3{}, "rotation"_a = Quaternion{0, 0, 0, 1},
-           "Moves the whole body from where it is, at once, in its motion: rotated about the world's origin (x, y, z, "
-           "w), then by position. Velocities and pinned nodes go along; what it has touched is forgotten.")
+           "Moves the whole body at once, without stopping its motion: rotates it about the world's origin (x, y, z, "
+           "w), then translates it by position. Velocities and pinned nodes move along; its contacts are forgotten.")
       .def("reset", locked([](BodyHandle& b) { check(b.world->reset(*b.state)); }),
-           "Puts it back into the state in which it was added: where it was, at rest, with nothing remembered, so that "
-           "its steps are those of a new body. What has been set stays: pinned nodes, material, gravity, springs.")
+           "Puts it back into the state in which it was added: at its place, at rest, without history, so that its "
+           "steps are those of a new body. Settings stay: pinned nodes, material, gravity, springs.")
       .def("apply_radial_impulse", radialImpulse, "centre"_a, "radius"_a, "strength"_a,
            "Pushes all of the surface in a ball away from its centre: an explosion. strength: sum of the magnitudes at "
            "all vertices.")
@@ -246,12 +246,12 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "size, from 30 (wobbles, sags) to "
            "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
            "the body's size.\n\n"
-           "interpolation, normals, outside, max_distance: as of Skin. visible: whether steps update the surface. "
+           "interpolation, normals, outside, max_distance: as in Skin. visible: whether steps update the surface. "
            "surface_contact: with rigid bodies; "
            "contact_margin: the distance kept, None: 0.2 % "
            "of the body's size; sample_spacing: rest units, of points on large triangles. soft_contact: with other "
            "bodies that have it; self_contact: with "
-           "others and itself. Both make a distance grid of the surface once, which takes a second for 20,000 "
+           "others and itself. Both need a distance grid of the surface, made once, which takes a second for 20,000 "
            "triangles.")
       .def_prop_ro("bodies", locked([](const std::shared_ptr<World>& w) {
                      std::vector<BodyHandle> all;

@@ -90,8 +90,8 @@ auto arrayOf() {
 
 void bindCages(nb::module_& module) {
   Class<CageModel>(module, "Cage",
-                   "Tets at rest, and what is known about the mesh in them. Immutable; can be pickled. An array that "
-                   "is empty tells of nothing.")
+                   "Tets at rest, and data about the mesh in them. Immutable; can be pickled. An empty array means "
+                   "that the data is unknown.")
       .words([](const CageModel& m) {
         const Cage& c = *m.cage;
         return counted(c.mesh.tetCount(), "tet", "tets") + ", " + counted(c.mesh.nodeCount(), "node", "nodes") +
@@ -136,7 +136,7 @@ void bindCages(nb::module_& module) {
           "tet_count", [](const CageModel& m) { return m.cage->mesh.tetCount(); }, "Number of tets.")
       .def_prop_ro(
           "report", [](const CageModel& m) { return m.cage->report; },
-          "How it was made, and how well it fits, in words. Empty for a cage from a file or arrays.")
+          "A text on how it was made, and how well it fits. Empty for a cage from a file or arrays.")
       .def(
           "save",
           [](const CageModel& m, const PathLike& path) {
@@ -153,31 +153,31 @@ void bindCages(nb::module_& module) {
             check(validate(cage));
             return cageModel(std::move(cage), m.cage->report);
           },
-          "scale"_a, "A copy of another size, with its masses.");
+          "scale"_a, "A copy of another size, with masses to match.");
 
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
       "fit"_a = true, "progress"_a.none() = nb::none(),
       "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same input "
-      "gives the same cage. Some half a second for 60,000 triangles; the GIL is released.\n\n"
-      "duplicate_elements: where regions of the mesh are nearer to each other than the size of a tet, each gets its "
-      "own copy of the tet. fit: move boundary nodes towards the surface. progress: called with the fraction done, "
-      "from 0 to 1; returns False to cancel, which is an Error of the code CANCELLED; what it raises is raised. True: "
-      "prints a bar. Ctrl-C, or a notebook's interrupt button, cancels with any.");
+      "gives the same cage. Takes about half a second for 60,000 triangles; the GIL is released.\n\n"
+      "duplicate_elements: if regions of the mesh are less than a tet apart, each gets its own copy of the tet. fit: "
+      "move boundary nodes towards the surface. progress: called with the fraction done, from 0 to 1; returns False to "
+      "cancel, which raises an Error with the code CANCELLED; an exception in it is raised. True: prints a bar. "
+      "Ctrl-C, or a notebook's interrupt button, always cancels.");
   module.def(
       "calibrate", calibrated, "cage"_a, nb::kw_only(), "poisson_ratio"_a = 0.3, "mode_count"_a = 6,
       "progress"_a.none() = nb::none(),
-      "A copy of the cage with the stiffness factors that make it as compliant as the body with its shape: coarse tets "
-      "are too stiff. Some two seconds for 3,000 tets; the GIL is released.\n\n"
-      "poisson_ratio: 0 to below 0.5, of the material that will be simulated. mode_count: number of vibrations that "
-      "are compared. progress: as of create_cage.");
+      "A copy of the cage with stiffness factors that make it as compliant as the real body: coarse tets are too "
+      "stiff. Takes about two seconds for 3,000 tets; the GIL is released.\n\n"
+      "poisson_ratio: 0 to below 0.5, of the material that will be simulated. mode_count: number of vibrations to "
+      "compare. progress: as in create_cage.");
   module.def("refine_quadratic", quadratic, "cage"_a,
-             "A cage of quadratic tets: each tet of the cage becomes one, held as eight. For meshes that are filled by "
-             "their body.");
+             "A cage of quadratic tets: each tet of the cage becomes one, stored as eight. For meshes that fill their "
+             "body.");
   module.def(
       "load_cage",
       [](const PathLike& path) { return cageModel(released([name = path.text()] { return take(loadCage(name)); })); },
-      "path"_a, "Reads what Cage.save writes; tets of .vtk, and .node and .ele files.");
+      "path"_a, "Reads files of Cage.save, and tets from .vtk, .node and .ele files.");
 }
 
 }  // namespace tetskin::python

@@ -76,7 +76,7 @@ const btCollisionObject& objectOf(const Either& either) {
 }  // namespace
 
 void bindContacts(nb::module_& module, Class<World>& world) {
-  Class<ContactArrays>(module, "Contacts", "Contact points of the last substep, as arrays with a row for each.")
+  Class<ContactArrays>(module, "Contacts", "Contact points of the last substep, as arrays with one row per point.")
       .words([](const ContactArrays& c) { return counted(c.distances.size(), "point", "points"); })
       .def_prop_ro(
           "points", [](const ContactArrays& c) { return newRows3(std::vector<float>(c.points)); },
@@ -91,10 +91,11 @@ void bindContacts(nb::module_& module, Class<World>& world) {
           "impulses", [](const ContactArrays& c) { return newRows3(std::vector<float>(c.impulses)); },
           "(n, 3) float32 on the soft body whose point it is: force times seconds.")
       .def_ro("bodies", &ContactArrays::bodies, nb::sig("def bodies(self) -> list[typing.Any]"),
-              "By point: the RigidBody; of World.soft_contacts, the body whose point it is and the other one.")
+              "Per point: the RigidBody; in World.soft_contacts, the body whose point it is and the other one.")
       .def("__len__", [](const ContactArrays& c) { return c.distances.size(); });
 
-  Class<Wrench>(module, "Wrench", "A force, and its torque about the centre of mass of what it acts on, world space.")
+  Class<Wrench>(module, "Wrench",
+                "A force, and its torque about the centre of mass of the object that it acts on, world space.")
       .words([](const Wrench& w) { return "force " + wordsOf(w.force) + ", torque " + wordsOf(w.torque); })
       .def_prop_ro(
           "force", [](const Wrench& w) { return vectorOf(w.force); }, "(3,) float64, mass length / s^2.")
@@ -107,7 +108,7 @@ void bindContacts(nb::module_& module, Class<World>& world) {
       .def_ro("joints", &AppliedForces::joints, "Springs, welds and forces applied to points.")
       .def_prop_ro("total", &AppliedForces::total, "The sum of all.");
 
-  world.def_prop_ro("soft_contacts", softContactsOf, "Contacts between soft bodies, and of bodies with themselves.")
+  world.def_prop_ro("soft_contacts", softContactsOf, "Contacts between soft bodies, including self-contact.")
       .def(
           "contacts",
           [](const std::shared_ptr<World>& w, const BodyHandle& b) {
@@ -123,8 +124,8 @@ void bindContacts(nb::module_& module, Class<World>& world) {
              return forcesOf(*w).forcesBetween(object, objectOf(*other));
            }),
            "body"_a, "other"_a = nb::none(),
-           "Forces on a soft body from all that it touches or is attached to, or on a rigid body from all soft bodies; "
-           "with other, from this alone.");
+           "Forces on a soft body from all objects that it touches or is attached to, or on a rigid body from all soft "
+           "bodies; with other, from that one alone.");
 }
 
 }  // namespace tetskin::python

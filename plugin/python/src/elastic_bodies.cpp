@@ -43,7 +43,7 @@ void assign(PointView<double> target, const ArrayLike& array, const char* name) 
 
 void bindElasticBodies(nb::module_& module) {
   Class<ElasticModel>(module, "ElasticBody",
-                      "A body of elastic tets by itself, without contact, in an engine of any kind.")
+                      "A body of elastic tets by itself, without contact, for use in any engine.")
       .words([](const ElasticModel& m) { return counted(m.body->nodeCount(), "node", "nodes"); })
       .def("__init__", make, "cage"_a, nb::kw_only(), "youngs_modulus"_a = 1e5, "poisson_ratio"_a = 0.3,
            "stiffness_damping"_a = 0.0, "density"_a = 1.0, "tolerance"_a = 5e-3, "max_iterations"_a = 200,
@@ -77,8 +77,8 @@ void bindElasticBodies(nb::module_& module) {
             return m.body->step(dt, acceleration);
           },
           "dt"_a, "acceleration"_a = Vec3{},
-          "Advances by dt seconds; returns the number of iterations: none for 0 seconds. acceleration: of all nodes "
-          "that are not pinned, such as gravity.")
+          "Advances by dt seconds; returns the number of iterations: 0 for 0 seconds. acceleration: of all nodes that "
+          "are not pinned, such as gravity.")
       .def(
           "forces",
           [](ElasticModel& m) {

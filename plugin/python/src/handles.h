@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What Python holds of a world and of the things in it, and how calls wait for each other.
+// Python's handles of a world and its objects, and how calls wait for each other.
 #pragma once
 
 #include "models.h"
@@ -12,8 +12,8 @@
 
 namespace tetskin::python {
 
-/// A world's lock, for a call with the GIL: waits without it. Calls from within the world's own calls pass. Throws if
-/// it was held by a thread of the process that this one was forked from, which does not let go of it here.
+/// A world's lock, for a call with the GIL: releases the GIL while waiting. Calls from within the world's own calls
+/// pass. Throws if a thread of the process from which this one was forked held it, because it is never released here.
 class Locked {
  public:
   explicit Locked(World& world);
@@ -36,7 +36,7 @@ template <class Of>
 World& worldOf(const Of& handle) {
   return *handle.world;
 }
-/// Calls with the lock of the world that their first argument is of.
+/// Wraps calls with the lock of their first argument's world.
 template <class Return, class Of, class... Arguments>
 auto locked(Return (*call)(Of&, Arguments...)) {
   return [call](Of& of, Arguments... arguments) -> Return {
@@ -56,7 +56,7 @@ auto locked(Call call) {
   return lockedAs(call, &Call::operator());
 }
 
-/// Arrays that a handle keeps: only those of soft bodies.
+/// Arrays that a handle keeps: only for soft bodies.
 template <class State>
 struct Arrays {};
 template <>
@@ -64,7 +64,7 @@ struct Arrays<World::Body> {
   Kept<Row3<float>> positions, normals, nodes, velocities;
 };
 
-/// What Python holds: the same thing as another handle of the same state.
+/// Python's handle: equal to any other handle of the same state.
 template <class State>
 struct Handle {
   std::shared_ptr<World> world;
@@ -77,7 +77,7 @@ using BodyHandle = Handle<World::Body>;
 struct SpringHandle : Handle<World::Touch> {};
 struct WeldHandle : Handle<World::Touch> {};
 
-/// Throw if the thing has been removed from its world.
+/// Throw if the object has been removed from its world.
 using facade::alive;
 using facade::checkSurface;
 inline btRigidBody& alive(const RigidHandle& rigid) {

@@ -5,7 +5,7 @@
 namespace tetskin::python {
 namespace {
 
-/// The joint, and the one of a type that it must have for a call.
+/// The joint; and the joint as the type that a call needs.
 btTypedConstraint& alive(const JointHandle& joint) {
   if (!joint.state->joint) fail(StatusCode::Released, "the joint has been removed");
   return *joint.state->joint;
@@ -85,7 +85,7 @@ btTransform frameAt(const Vec3& pivot, const Vec3& axis, int k) {
   return btTransform(basis, toBullet(pivot, "pivot"));
 }
 
-/// What a joint connects: a rigid body, and another one or the world.
+/// The ends of a joint: a rigid body, and another one or the world.
 struct Ends {
   Ends(const std::shared_ptr<World>& world, const RigidHandle& a, const std::optional<RigidHandle>& b) {
     first = rigidOf(world, a);
@@ -128,7 +128,7 @@ JointHandle addHinge(const std::shared_ptr<World>& world, const RigidHandle& a, 
   const Locked lock(*world);
   const Ends ends(world, a, b);
   const btTransform at = frameAt(pivot, axis, 2);
-  // The angle is that of the first body against the second one, about the axis: Bullet measures its second one.
+  // The angle is that of the first body relative to the second one, about the axis: Bullet measures its second body's.
   auto joint = std::make_unique<btHingeConstraint>(ends.bodyB(), ends.bodyA(), ends.inB(at), ends.inA(at), true);
   JointHandle handle = added(world, ends, std::move(joint), collide);
   if (limits) setLimits(handle, *limits);
@@ -139,7 +139,7 @@ JointHandle addSlider(const std::shared_ptr<World>& world, const RigidHandle& a,
   const Locked lock(*world);
   const Ends ends(world, a, b);
   const btTransform at = frameAt(pivot, axis, 0);
-  // The coordinate is the way of the first body from the second one: Bullet measures that of its second one.
+  // The coordinate is the travel of the first body relative to the second one: Bullet measures its second body's.
   auto joint = std::make_unique<btSliderConstraint>(ends.bodyB(), ends.bodyA(), ends.inB(at), ends.inA(at), true);
   joint->setLowerAngLimit(0);
   joint->setUpperAngLimit(0);
@@ -162,7 +162,7 @@ JointHandle addFixed(const std::shared_ptr<World>& world, const RigidHandle& a, 
 void bindJoints(nb::module_& module, Class<World>& world) {
   Class<JointHandle> joint(
       module, "Joint",
-      "A joint between a rigid body and another one, or the world. Made by World.add_hinge and its like.");
+      "A joint between a rigid body and another one, or the world. Made by World.add_hinge and similar functions.");
   bindIdentity(joint);
   joint
       .words([](const JointHandle& j) {
@@ -173,7 +173,7 @@ void bindJoints(nb::module_& module, Class<World>& world) {
                                                                                     : "fixed";
       })
       .def_prop_ro("coordinate", locked([](const JointHandle& j) { return coordinateOf(j); }),
-                   "The angle of a hinge, in radians, or the way of a slider, in world length, since it was made.")
+                   "The angle of a hinge, in radians, or the travel of a slider, in world length, since it was made.")
       .def(
           "set_motor", locked([](JointHandle& j, std::optional<double> velocity, double maxForce) {
             setMotor(j, velocity, maxForce);
@@ -181,21 +181,21 @@ void bindJoints(nb::module_& module, Class<World>& world) {
           "velocity"_a.none(), "max_force"_a,
           "Drives a hinge or slider: radians or world length per second, with at most this torque or force. None: off.")
       .def("set_limits", locked([](JointHandle& j, const std::array<double, 2>& limits) { setLimits(j, limits); }),
-           "limits"_a, "Of the coordinate: the lower and the upper one.")
+           "limits"_a, "The lower and the upper limit of the coordinate.")
       .def("remove", locked([](JointHandle& j) { j.world->remove(*j.state); }));
 
   world
       .def("add_point_joint", addPoint, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a, "collide"_a = false,
-           "Holds a point, in world space now, of body a to body b, or to the world.")
+           "Holds a point of body a, given in current world space, to body b or to the world.")
       .def("add_hinge", addHinge, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a, "axis"_a,
            "limits"_a = nb::none(), "collide"_a = false,
-           "Body a turns about an axis of body b, or of the world. pivot, axis: world space, now; limits: radians.")
+           "Body a turns about an axis of body b, or of the world. pivot, axis: current world space; limits: radians.")
       .def("add_slider", addSlider, "a"_a, "b"_a = nb::none(), nb::kw_only(), "pivot"_a = Vec3{}, "axis"_a,
            "limits"_a = nb::none(), "collide"_a = false,
-           "Body a slides along an axis of body b, or of the world. pivot, axis: world space, now; limits: world "
+           "Body a slides along an axis of body b, or of the world. pivot, axis: current world space; limits: world "
            "length.")
       .def("add_fixed_joint", addFixed, "a"_a, "b"_a = nb::none(), nb::kw_only(), "collide"_a = false,
-           "Holds body a to body b, or to the world, as they are now.");
+           "Holds body a to body b, or to the world, in their current poses.");
 }
 
 }  // namespace tetskin::python

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A call whose arguments fit no signature is answered by nanobind with all signatures, and no word about what is wrong.
-// Here, all functions of the module get one in front: where names are unknown, missing or given twice, tetskin.keywords
-// says which. A call that is right pays for one jump.
+// If arguments fit no signature, nanobind lists all signatures and does not say what is wrong. Here, all functions of
+// the module get a wrapper: if names are unknown, missing or given twice, tetskin.keywords says which. A correct call
+// costs one more jump.
 #include "models.h"
 
 #include <nb_internals.h>
@@ -16,11 +16,11 @@ namespace {
 
 using Call = PyObject* (*)(PyObject*, PyObject* const*, std::size_t, PyObject*);
 
-/// Those of nanobind's, which has one by kind of signature.
+/// nanobind's own functions, one per kind of signature.
 constexpr std::size_t kMostCalls = 12;
 Call callsOfNanobind[kMostCalls];
 
-/// In place of the TypeError that has been raised, if names are what is wrong.
+/// Replaces the TypeError that has been raised, if names are wrong.
 void explain(nb::handle function, std::size_t positional, nb::handle names) {
   nb::python_error raised;
   try {
@@ -30,7 +30,7 @@ void explain(nb::handle function, std::size_t positional, nb::handle names) {
                            names.is_valid() ? nb::borrow<nb::tuple>(names) : nb::tuple());
     if (!fault.is_none()) return PyErr_SetObject(PyExc_TypeError, fault.ptr());
   } catch (const std::exception&) {
-    // The package is not complete: the module has been imported by itself.
+    // The package is incomplete: the module has been imported by itself.
   }
   raised.restore();
 }
@@ -38,7 +38,7 @@ void explain(nb::handle function, std::size_t positional, nb::handle names) {
 template <std::size_t K>
 PyObject* explained(PyObject* function, PyObject* const* arguments, std::size_t count, PyObject* names) {
   PyObject* result = callsOfNanobind[K](function, arguments, count, names);
-  // Beside the number, `count` has flags.
+  // `count` also contains flags.
   if (!result && PyErr_ExceptionMatches(PyExc_TypeError)) explain(function, count & 0xFFFF, names);
   return result;
 }
@@ -49,7 +49,7 @@ void putInFront(PyObject* function, std::index_sequence<K...>) {
   Call& now = reinterpret_cast<nb::detail::nb_func*>(function)->vectorcall;
   Call* const end = callsOfNanobind + kMostCalls;
   Call* const found = std::find_if(callsOfNanobind, end, [&](Call call) { return !call || call == now; });
-  if (found == end) return;  // its own answers remain
+  if (found == end) return;  // nanobind's own messages remain
   *found = now;
   now = kExplained[found - callsOfNanobind];
 }

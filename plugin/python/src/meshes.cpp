@@ -27,7 +27,7 @@ void checkLength(std::size_t length, std::size_t vertices, const char* name) {
        std::string(name) + ": " + std::to_string(length) + " for " + std::to_string(vertices) + " vertices");
 }
 
-/// names  of positions and triangles, as whoever gives them knows them
+/// names  of positions and triangles, as the caller knows them
 MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const std::optional<ArrayLike>& normals,
                const std::optional<ArrayLike>& texcoords,
                const std::array<const char*, 2>& names = {"positions", "triangles"}) {
@@ -92,7 +92,7 @@ MeshModel meshOfState(const nb::tuple& state) {
   return {std::move(mesh)};
 }
 
-/// The texture coordinates of a mesh of trimesh, if it has a pair of them for each vertex.
+/// The texture coordinates of a trimesh mesh, if it has a pair for each vertex.
 std::optional<ArrayLike> texcoordsOf(const nb::object& mesh) {
   const nb::object visual = nb::getattr(mesh, "visual", nb::none());
   const nb::object uv = nb::getattr(visual, "uv", nb::none());

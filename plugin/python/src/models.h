@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// What binds the library to Python, subject by subject.
+// The functions that bind the library to Python, one per subject.
 #pragma once
 
 #include "arrays.h"
@@ -49,7 +49,7 @@ void bindContacts(nb::module_& module, Class<World>& world);
 void bindTouch(nb::module_& module, Class<World>& world);
 Class<World> bindWorlds(nb::module_& module);
 void bindRuns(nb::module_& module, Class<World>& world);
-/// Once all functions are there: what raises a TypeError for its arguments' names says which is wrong. keywords.cpp
+/// After all functions are defined: makes a TypeError on argument names say which is wrong. keywords.cpp
 void nameFaults(nb::module_& module);
 
 }  // namespace tetskin::python

@@ -11,7 +11,7 @@
 namespace tetskin::python {
 namespace {
 
-/// As Python writes constants.
+/// The name in Python's style for constants.
 std::string constantOf(StatusCode code) {
   std::string constant;
   for (const char* letter = nameOf(code); *letter; ++letter) {
@@ -35,12 +35,13 @@ void translate(const std::exception_ptr& thrown, void*) {
 }
 
 void bindErrors(nb::module_& module) {
-  nb::enum_<StatusCode> codes(module, "StatusCode", "What has failed, for programs: the code of an Error.");
+  nb::enum_<StatusCode> codes(module, "StatusCode", "The code of an Error, which says what has failed.");
   for (int i = 0; i <= static_cast<int>(StatusCode::Cancelled); ++i) {
     const auto code = static_cast<StatusCode>(i);
     codes.value(constantOf(code).c_str(), code, toString(code));
   }
-  errorType = PyErr_NewExceptionWithDoc("tetskin.Error", "What the library refuses, and why. code: a StatusCode.",
+  errorType = PyErr_NewExceptionWithDoc("tetskin.Error",
+                                        "Raised when the library refuses a call; says why. code: a StatusCode.",
                                         PyExc_RuntimeError, nullptr);
   nb::setattr(nb::handle(errorType), "code", nb::none());
   module.attr("Error") = nb::handle(errorType);

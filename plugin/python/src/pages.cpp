@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Pages that show worlds: the writer of demos/view, told what a world has. The files that pages are made from, and
-// notebooks, are the business of tetskin/page.py.
+// Pages that show worlds, by the writer of demos/view. tetskin/page.py provides the files that pages are made from, and
+// handles notebooks.
 #include "handles.h"
 #include "shape_meshes.h"
 
@@ -18,7 +18,7 @@ using view::ViewMaterial;
 using view::ViewMoment;
 using view::ViewPage;
 
-/// Of bodies and moving objects, in turn; of what is fixed; of a ground.
+/// Colours of bodies and moving objects, in turn; of fixed objects; of a ground.
 const std::vector<ViewMaterial> kMaterials = {
     {"soft 0", {0.10, 0.44, 0.27}, 0.25},    {"soft 1", {0.86, 0.50, 0.22}, 0.25},
     {"soft 2", {0.24, 0.41, 0.66}, 0.25},    {"soft 3", {0.80, 0.33, 0.38}, 0.25},
@@ -27,8 +27,8 @@ const std::vector<ViewMaterial> kMaterials = {
     {"wall", {0.66, 0.72, 0.78}, 0.0, 0.22}, {"floor", {0.957, 0.949, 0.933}, 0.0},
 };
 constexpr std::size_t kSoftColours = 6;
-/// Distance from the middle of the scene at which planes end, in sizes of the scene: a ground where it has faded, other
-/// planes sooner.
+/// Distance from the middle of the scene at which planes end, in sizes of the scene: a ground where it has faded out,
+/// other planes sooner.
 constexpr double kGroundReach = 12.0, kWallReach = 1.0;
 /// Cosine of the steepest ground.
 constexpr double kLevel = 0.9999;
@@ -62,7 +62,7 @@ std::string fact(std::size_t count, const char* one, const char* many) {
   return view::withCommas(count) + " " + (count == 1 ? one : many);
 }
 
-/// A run of a world, or what it has now, for one page. What is shown is settled by the first frame.
+/// A run of a world, or its current state, for one page. The first frame decides what is shown.
 class PageWriter {
  public:
   PageWriter(std::shared_ptr<World> world, const std::optional<BodyHandle>& only, double rate, std::string title)
@@ -95,7 +95,7 @@ class PageWriter {
   std::string html(const std::string& folder) {
     if (frameCount_ == 0) fail(StatusCode::Empty, "no frame has been added: call add_frame() first");
     const Locked lock(*world_);
-    // Not empty, and not flat: a camera looks at it.
+    // Neither empty nor flat, because of the camera.
     Box3 focus = box_;
     if (focus.isEmpty()) focus = fixedBox_;
     if (focus.isEmpty()) focus.extend(Eigen::Vector3d::Zero());
@@ -139,7 +139,7 @@ class PageWriter {
     return nodes;
   }
 
-  /// Settles what is shown. On an error, nothing is.
+  /// Decides what is shown; on an error, nothing.
   void begin() {
     setUp();
     if (whole_) bodies_.clear();
@@ -183,7 +183,7 @@ class PageWriter {
     page_.emplace(title_, facts(), bodies_.empty() ? Interpolation::Linear : interpolationOf(bodies_.front()),
                   kMaterials);
     page_->setRate(rate_);
-    std::map<const void*, std::size_t> models;  // bodies of one binding share what is drawn, but for the colour
+    std::map<const void*, std::size_t> models;  // bodies of one binding share everything drawn except the colour
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const World::Body& state = *bodies_[i].state;
       const auto [model, isNew] = models.try_emplace(state.binding ? static_cast<const void*>(state.binding.get())
@@ -202,7 +202,7 @@ class PageWriter {
   static Interpolation interpolationOf(const BodyHandle& body) {
     return body.state->binding ? body.state->binding->options().interpolation : Interpolation::Linear;
   }
-  /// A body without a surface is shown by the boundary of its cage.
+  /// Shows a body without a surface by its cage's boundary.
   std::size_t addModel(const World::Body& state) {
     const Cage& cage = *state.cage;
     if (!state.binding) {
@@ -230,7 +230,7 @@ class PageWriter {
     return facts;
   }
 
-  /// A square of the plane, below the middle of what is shown: a floor if it is level.
+  /// A square of the plane, below the middle of the scene: a floor if it is level.
   static TriangleMesh planeMesh(const Eigen::Hyperplane<double, 3>& plane, const Eigen::Vector3d& middle, double size) {
     const Eigen::Vector3d normal = plane.normal(), centre = plane.projection(middle);
     const bool level = normal.y() > kLevel;
@@ -258,21 +258,21 @@ class PageWriter {
   std::optional<ViewPage> page_;
 };
 
-/// What tetskin/page.py does.
+/// The module tetskin/page.py.
 nb::object page() {
   return nb::module_::import_("tetskin.page");
 }
 
 constexpr const char* kShowWords =
-    "Draws it in a notebook, as it is now: drag to turn, wheel to zoom. height: pixels. Needs IPython; the page that "
-    "it draws, about 1 MB and more, is kept in the notebook. Elsewhere: save_page.";
+    "Draws the current state in a notebook: drag to turn, use the wheel to zoom. height: pixels. Needs IPython; the "
+    "notebook keeps the page, about 1 MB and more. Elsewhere: save_page.";
 constexpr const char* kSaveWords =
-    "Writes what show draws as one HTML file, which any browser opens without a network.";
+    "Writes the page of `show` as one HTML file, which any browser opens without a network.";
 
 }  // namespace
 
 void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body) {
-  Class<PageWriter>(module, "PageWriter", "What a Film is made with.")
+  Class<PageWriter>(module, "PageWriter", "The writer of a Film.")
       .def(
           "__init__",
           [](PageWriter* self, const std::shared_ptr<World>& w, const std::optional<BodyHandle>& only, double rate,
@@ -281,9 +281,9 @@ void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body
             new (self) PageWriter(w, only, rate, title);
           },
           "world"_a, "body"_a = nb::none(), nb::kw_only(), "frames_per_second"_a = 60.0, "title"_a = "",
-          "body: shown alone, with what is fixed.")
-      .def("add_frame", &PageWriter::addFrame, "Adds what is shown as it is now.")
-      .def("html", &PageWriter::html, "folder"_a, "The page. folder: of the files that it is made from.")
+          "body: shown alone, with the fixed objects.")
+      .def("add_frame", &PageWriter::addFrame, "Adds the current state.")
+      .def("html", &PageWriter::html, "folder"_a, "The page. folder: contains the files that it is made from.")
       .def_prop_ro("frame_count", &PageWriter::frameCount, "Number of frames added.");
   world
       .def(

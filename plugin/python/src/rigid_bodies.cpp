@@ -52,7 +52,7 @@ void setMass(RigidHandle& rigid, double mass) {
   body.activate(true);
 }
 
-/// Adds a rigid body with the shape that is made of the first argument.
+/// Adds a rigid body with the shape made from the first argument.
 template <class Of, class Make>
 auto adding(Make make) {
   return locked([make](const std::shared_ptr<World>& world, const Of& of, double mass, const Vec3& position,
@@ -73,22 +73,24 @@ std::shared_ptr<World::RigidBody> rigidOf(const std::shared_ptr<World>& world,
 
 void bindRigidBodies(nb::module_& module, Class<World>& world) {
   Class<ShapeModel>(module, "Shape",
-                    "A collision shape, which any number of rigid bodies share. Lengths are world lengths.")
+                    "A collision shape, which any number of rigid bodies may share. Lengths are world lengths.")
       .words([](const ShapeModel& s) { return std::string(s.shape->getName()); })
       .def_static("plane", plane, "normal"_a = Vec3{0, 1, 0}, "offset"_a = 0.0,
-                  "All below a plane: what has normal . x < offset.")
+                  "Everything below a plane: normal . x < offset.")
       .def_static("box", box, "half_extents"_a)
       .def_static("sphere", sphere, "radius"_a)
-      .def_static("capsule", capsule, "radius"_a, "height"_a, "Along y; height is that of the part between the caps.")
+      .def_static("capsule", capsule, "radius"_a, "height"_a, "Along y; height: of the part between the caps.")
       .def_static("cylinder", cylinder, "radius"_a, "height"_a, "Along y.")
-      .def_static("convex_hull", convexHull, "points"_a, "The hull of points, (n, 3).")
+      .def_static("convex_hull", convexHull, "points"_a, "The convex hull of points, (n, 3).")
       .def_static(
           "mesh", meshShape, "mesh"_a,
-          "A surface, for bodies without a mass: met from the side from which triangles look counter-clockwise.")
-      .def_static("compound", compound, "children"_a, "Of (shape, position, rotation) each: rotation x, y, z, w.");
+          "A surface, for bodies without mass: collides on the side from which triangles look counter-clockwise.")
+      .def_static("compound", compound, "children"_a,
+                  "children: (shape, position, rotation) each; rotation: x, y, z, w.");
 
-  Class<RigidHandle> rigid(module, "RigidBody",
-                           "A rigid body of a world, which keeps it. Made by World.add_rigid_body and its like.");
+  Class<RigidHandle> rigid(
+      module, "RigidBody",
+      "A rigid body of a world, which keeps it. Made by World.add_rigid_body and similar functions.");
   bindIdentity(rigid);
   const auto read = [](auto get) {
     return [get](const RigidHandle& r) {
@@ -104,7 +106,7 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
       })
       .def_prop_rw("position", read([](btRigidBody& b) { return vectorOf(b.getWorldTransform().getOrigin()); }),
                    locked([](RigidHandle& r, const Vec3& at) { setPosition(*r.world, *r.state, at); }),
-                   "(3,) float64, world space. Assigned to a kinematic body, it moves there in the next step.")
+                   "(3,) float64, world space. A kinematic body moves to an assigned position in the next step.")
       .def_prop_rw("rotation", read([](btRigidBody& b) { return newQuaternion(rotationOf(b.getWorldTransform())); }),
                    locked([](RigidHandle& r, const Quaternion& q) { setRotation(*r.world, *r.state, q); }),
                    "(4,) float64: a quaternion x, y, z, w.")
@@ -124,7 +126,7 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
                    locked([](RigidHandle& r, double mass) { setMass(r, mass); }), "0: static or kinematic.")
       .def_prop_rw("friction", read([](btRigidBody& b) { return static_cast<double>(b.getFriction()); }),
                    locked([](RigidHandle& r, double friction) { setFriction(*r.state, friction); }),
-                   "Coulomb's coefficient, which is multiplied by that of what is touched.")
+                   "Coulomb's coefficient, which is multiplied by that of the touched object.")
       .def_prop_ro("kinematic", read([](btRigidBody& b) { return b.isKinematicObject(); }))
       .def_prop_ro(
           "removed", [](const RigidHandle& r) { return r.state->removed; },
@@ -146,10 +148,10 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
               "rotation"_a = Quaternion{0, 0, 0, 1}, "friction"_a = 0.5, "kinematic"_a = false, text);
   };
   add("add_rigid_body", adding<ShapeModel>([](const ShapeModel& shape) { return shape; }), "shape",
-      "Adds a rigid body. mass: 0 for one that does not move by itself; rotation: x, y, z, w; kinematic: moved by its "
+      "Adds a rigid body. mass: 0 if it does not move by itself; rotation: x, y, z, w; kinematic: moved by its "
       "position and rotation.");
-  add("add_box", adding<Vec3>(box), "half_extents", "As add_rigid_body of Shape.box.");
-  add("add_sphere", adding<double>(sphere), "radius", "As add_rigid_body of Shape.sphere.");
+  add("add_box", adding<Vec3>(box), "half_extents", "Like add_rigid_body with Shape.box.");
+  add("add_sphere", adding<double>(sphere), "radius", "Like add_rigid_body with Shape.sphere.");
   world
       .def("add_plane", locked([](const std::shared_ptr<World>& w, const Vec3& normal, double offset, double friction) {
              return RigidHandle{w,

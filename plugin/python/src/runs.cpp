@@ -5,7 +5,7 @@
 namespace tetskin::python {
 namespace {
 
-/// With the world's lock, unless it cannot be had in a process that was forked: then the memory stays.
+/// With the world's lock. If a forked process cannot get it, the memory leaks.
 template <class T>
 void letGo(World& world, std::unique_ptr<T>& thing) noexcept {
   if (!thing) return;
@@ -17,7 +17,7 @@ void letGo(World& world, std::unique_ptr<T>& thing) noexcept {
   }
 }
 
-/// A recording, or, once it is closed, none. The world outlives it.
+/// A recording; null once it is closed. The world outlives it.
 struct RecorderHandle {
   ~RecorderHandle() { letGo(*world, recorder); }
   void close() {
@@ -56,7 +56,7 @@ struct ReplayHandle {
   std::exception_ptr raised;
 };
 
-/// What `change` refers to may refer to the replay: Python's collector finds such circles, and opens them.
+/// Objects that `change` refers to may refer to the replay: Python's collector finds and breaks such cycles.
 int traverse(PyObject* self, visitproc visit, void* arg) {
 #if PY_VERSION_HEX >= 0x03090000
   Py_VISIT(Py_TYPE(self));
@@ -93,8 +93,8 @@ bool replayedStep(ReplayHandle& r) {
 
 void bindRuns(nb::module_& module, Class<World>&) {
   Class<RecorderHandle>(module, "Recorder",
-                        "Writes a run to a file, from which Replay plays it again to the last bit. Step by it in "
-                        "place of the world; a context manager.")
+                        "Writes a run to a file, from which Replay plays it again to the last bit. Call its step "
+                        "instead of the world's; a context manager.")
       .words([](const RecorderHandle& r) {
         return r.recorder ? counted(r.recorder->steps(), "step", "steps") : std::string("closed");
       })
@@ -110,9 +110,10 @@ void bindRuns(nb::module_& module, Class<World>&) {
             new (self) RecorderHandle{world, std::move(recorder)};
           },
           "world"_a, "path"_a, nb::kw_only(), "description"_a = "", "snapshot_every"_a = 240,
-          "description: for whoever plays the file: how the world is built. snapshot_every: steps from one snapshot in "
-          "the file to the next.")
-      .def("step", recordedStep, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4, "As World.step, and records it.")
+          "description: how to build the world, for whoever plays the file. snapshot_every: steps between two "
+          "snapshots in the file.")
+      .def("step", recordedStep, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
+           "Like World.step, and records it.")
       .def_prop_ro(
           "steps", [](const RecorderHandle& r) { return r.open().steps(); }, "Number of steps recorded.")
       .def("close", &RecorderHandle::close)
@@ -132,10 +133,10 @@ void bindRuns(nb::module_& module, Class<World>&) {
             const Locked lock(*world);
             new (self) ReplayHandle(world, take(world->replay(path.text())));
           },
-          "world"_a, "path"_a, "Puts the world into the state in which recording began.")
+          "world"_a, "path"_a, "Puts the world into the state at the start of the recording.")
       .def("step", replayedStep,
-           "Makes the next step of the file. False, and none is made, at its end, or after a step that has ended in "
-           "another state than the recorded one.")
+           "Makes the next step of the file. Returns False, without a step, at the end of the file or after a step "
+           "whose state differs from the recorded one.")
       .def(
           "on_change",
           [](ReplayHandle& r, const nb::typed<nb::callable, nb::object(std::size_t)>& change) { r.change = change; },
@@ -146,16 +147,16 @@ void bindRuns(nb::module_& module, Class<World>&) {
           "steps", [](const ReplayHandle& r) { return r.replay->report().steps; }, "Steps played.")
       .def_prop_ro(
           "differs", [](const ReplayHandle& r) { return r.replay->report().differs; },
-          "The last step has ended in another state than the recorded one.")
+          "Whether the last step has ended in another state than the recorded one.")
       .def_prop_ro(
           "differing_object", [](const ReplayHandle& r) { return r.replay->report().object; },
-          "If so, the first object whose motion differs.")
+          "If it differs, the first object whose motion differs.")
       .def_prop_ro(
           "cut_short", [](const ReplayHandle& r) { return r.replay->report().cutShort; },
-          "The file ends within a step.")
+          "Whether the file ends within a step.")
       .def_static(
           "description_of", [](const PathLike& path) { return textOf(take(Replay::descriptionOf(path.text()))); },
-          "path"_a, "The description that a file was recorded with.");
+          "path"_a, "The description given at the recording of a file.");
 }
 
 }  // namespace tetskin::python

@@ -12,16 +12,16 @@
 namespace tetskin::python {
 namespace {
 
-constexpr int kSides = 48;         // of what is round
+constexpr int kSides = 48;         // of round shapes
 constexpr int kQuarterRings = 12;  // from a pole to the equator
 constexpr double kPi = 3.14159265358979323846;
 
-/// A point of a profile: its distance from the axis y, and where along it.
+/// A point of a profile: its distance from the axis y, and its position along the axis.
 struct ProfilePoint {
   double radius, y;
 };
 
-/// Turns a profile, from the bottom to the top, about y.
+/// Revolves a profile, from the bottom to the top, about y.
 TriangleMesh turned(const std::vector<ProfilePoint>& profile) {
   TriangleMesh mesh;
   for (const ProfilePoint& point : profile) {
@@ -41,14 +41,14 @@ TriangleMesh turned(const std::vector<ProfilePoint>& profile) {
   return mesh;
 }
 
-/// Half balls at the ends of a line of this half length: a ball, if it is 0.
+/// Hemispheres at the ends of a line of this half length: a ball if it is 0.
 std::vector<ProfilePoint> roundedProfile(double radius, double half) {
   std::vector<ProfilePoint> profile;
   for (int end = -1; end <= 1; end += 2) {
     for (int k = 0; k <= kQuarterRings; ++k) {
       const int fromPole = end < 0 ? k : kQuarterRings - k;
       const double angle = 0.5 * kPi * fromPole / kQuarterRings;
-      if (end > 0 && k == 0 && half == 0.0) continue;  // the equator, which is there
+      if (end > 0 && k == 0 && half == 0.0) continue;  // the equator exists already
       profile.push_back({fromPole == 0 ? 0.0 : radius * std::sin(angle), end * (half + radius * std::cos(angle))});
     }
   }

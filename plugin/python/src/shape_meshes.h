@@ -7,8 +7,8 @@
 
 namespace tetskin::python {
 
-/// The surface of a collision shape, in its own space, without groups; round ones as drawn, with some 50 sides. Of any
-/// shape that `Shape` makes, except a plane, which has no end.
+/// The surface of a collision shape, in its own space, without groups; round ones with about 50 sides. For any shape
+/// that `Shape` makes, except a plane, which is infinite.
 TriangleMesh meshOf(const btCollisionShape& shape);
 
 }  // namespace tetskin::python

@@ -7,7 +7,7 @@
 namespace tetskin::python {
 namespace {
 
-/// A surface that follows nodes given as an array. Used by one thread at a time: the GIL is kept.
+/// A surface that follows nodes given as an array. One thread at a time uses it: the GIL is kept.
 class Skin {
  public:
   Skin(const CageModel& cage, const MeshModel& mesh, const BindingOptions& options) : cage_(cage), mesh_(mesh) {
@@ -62,14 +62,14 @@ BoneLayout layoutOf(const std::string& name) {
   throw nb::value_error("layout: 'rows' or 'columns'");
 }
 
-/// Bones with the memory that they are written to.
+/// Bones with their memory.
 class Palette {
  public:
   Palette(const CageModel& cage, const MeshModel& mesh, const std::string& interpolation, bool gradients,
           const std::string& layout) {
     PaletteOptions options;
     options.layout = layoutOf(layout);
-    // Gradients are for the linear surface of a binding that has them.
+    // Gradients are for the linear surface of a binding with gradients.
     options.gradients = gradients;
     options.disableQuadratic = gradients && interpolationOf(interpolation) == Interpolation::Linear;
     BindingOptions binding;
@@ -112,7 +112,7 @@ Row4<Number> rows4(const std::vector<std::array<Number, 4>>& rows) {
 }  // namespace
 
 void bindSkins(nb::module_& module) {
-  Class<Skin>(module, "Skin", "A render mesh carried by the nodes of a cage, however they are moved. Needs no world.")
+  Class<Skin>(module, "Skin", "A render mesh that follows the nodes of a cage, however they move. Needs no world.")
       .words([](const Skin& s) { return counted(s.positions->size() / 3, "vertex", "vertices"); })
       .def(
           "__init__",
@@ -123,8 +123,8 @@ void bindSkins(nb::module_& module) {
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
           "outside"_a = "nearest", "max_distance"_a = nb::none(),
           "Embeds the mesh in the cage at rest. interpolation: 'linear' or 'quadratic'; normals: 'none', 'transformed' "
-          "or 'recomputed'; outside: 'nearest' or 'barycentric', which tet carries a vertex outside the cage; "
-          "max_distance: rest units; a vertex farther than this from every tet is an Error.")
+          "or 'recomputed'; outside: 'nearest' or 'barycentric': which tet carries a vertex outside the cage; "
+          "max_distance: rest units; a vertex farther than this from every tet raises an Error.")
       .def(
           "update",
           [](Skin& skin, const ArrayLike& nodes) {
@@ -144,12 +144,11 @@ void bindSkins(nb::module_& module) {
           "bounds",
           [](const Skin& skin) { return nb::make_tuple(vectorOf(skin.bounds().min()), vectorOf(skin.bounds().max())); },
           kBoundsType, "The box of the positions: two corners, world space.")
-      .def_prop_ro("node_count", &Skin::nodeCount, "Number of nodes that an update takes.")
-      .def_prop_ro("report", &Skin::report, "How well the mesh fits the cage, in words.");
+      .def_prop_ro("node_count", &Skin::nodeCount, "Number of nodes that an update needs.")
+      .def_prop_ro("report", &Skin::report, "A text on how well the mesh fits the cage.");
 
-  Class<Palette>(
-      module, "BonePalette",
-      "Affine bones, one per node, with which an engine's own linear blend skinning draws the surface. Needs no world.")
+  Class<Palette>(module, "BonePalette",
+                 "Affine bones, one per node, for an engine's own linear blend skinning. Needs no world.")
       .words([](const Palette& p) { return counted(p.count(), "bone", "bones"); })
       .def(
           "__init__",
@@ -170,7 +169,7 @@ void bindSkins(nb::module_& module) {
           "nodes"_a, "Computes the bones for these nodes, (n, 3) numbers, world space. Returns bones.")
       .def_prop_ro("bones", &Palette::array,
                    "(n, 3, 4) or (n, 4, 4) float32. A read-only view, which each update overwrites.")
-      .def_prop_ro("bone_count", &Palette::count, "Number of nodes: each has a bone.")
+      .def_prop_ro("bone_count", &Palette::count, "Number of bones, one per node.")
       .def_prop_ro(
           "vertex_bones", [](const Palette& palette) { return rows4(palette.skinned().bones); },
           "(vertices, 4) uint16: the bones of each vertex. A new array.")

@@ -10,7 +10,7 @@ struct PointHandle {
   BodyHandle body;
   SurfacePoint point;
 };
-/// Where a ray has met a surface.
+/// Where a ray has hit a surface.
 struct HitHandle {
   BodyHandle body;
   SurfaceHit hit;
@@ -81,18 +81,19 @@ WeldHandle addWeld(const std::shared_ptr<World>& world, const PointHandle& point
 
 SurfaceSpring& spring(const SpringHandle& handle) {
   if (!handle.state->spring)
-    fail(StatusCode::Released, "the spring has been released, or what it was attached to removed");
+    fail(StatusCode::Released, "the spring has been released, or its body or rigid body removed");
   return *handle.state->spring;
 }
 SurfaceWeld& weld(const WeldHandle& handle) {
-  if (!handle.state->weld) fail(StatusCode::Released, "the weld has been released, or what it was attached to removed");
+  if (!handle.state->weld) fail(StatusCode::Released, "the weld has been released, or its body or rigid body removed");
   return *handle.state->weld;
 }
 
 }  // namespace
 
 void bindTouch(nb::module_& module, Class<World>& world) {
-  Class<PointHandle>(module, "SurfacePoint", "A point of a body's surface. Made by World.point_at_vertex and its like.")
+  Class<PointHandle>(module, "SurfacePoint",
+                     "A point of a body's surface. Made by World.point_at_vertex and similar functions.")
       .words([](const PointHandle& p) {
         if (p.body.state->removed) return std::string("of a body that has been removed");
         const Locked lock(*p.body.world);
@@ -108,17 +109,17 @@ void bindTouch(nb::module_& module, Class<World>& world) {
       .def_prop_ro("effective_mass", locked([](const PointHandle& p) {
                      return static_cast<double>(alivePoint(p).point.effectiveMass());
                    }),
-                   "Against an impulse at the point; infinite if all nodes around it are pinned.")
+                   "Mass felt by an impulse at the point; infinite if all nodes around it are pinned.")
       .def("apply_impulse", locked([](PointHandle& p, const Vec3& impulse) {
              alivePoint(p);
              check(p.point.applyImpulse(toBullet(impulse, "impulse")), "apply_impulse");
            }),
-           "impulse"_a, "Mass times velocity, world space: at once.")
+           "impulse"_a, "Mass times velocity, world space: acts at once.")
       .def("apply_force", locked([](PointHandle& p, const Vec3& force, int substeps) {
              alivePoint(p);
              check(p.point.applyForce(toBullet(force, "force"), substeps), "apply_force");
            }),
-           "force"_a, "substeps"_a = 1, "Mass times length / s^2, world space, through the next substeps.");
+           "force"_a, "substeps"_a = 1, "Mass times length / s^2, world space, during the next substeps.");
 
   Class<HitHandle>(module, "Hit", "The first intersection of a ray with a surface.")
       .words([](const HitHandle& h) {
@@ -140,14 +141,13 @@ void bindTouch(nb::module_& module, Class<World>& world) {
           "From the start of the ray, world length.");
 
   Class<SpringHandle> springs(
-      module, "Spring",
-      "Pulls a point of a surface to a point in space, or of a rigid body. Made by World.add_spring.");
+      module, "Spring", "Pulls a point of a surface to a point in space or of a rigid body. Made by World.add_spring.");
   bindIdentity(springs);
   springs.words([](const SpringHandle& s) { return s.state->spring ? "holds" : "released"; })
       .def("set_target", locked([](SpringHandle& s, const Vec3& target) {
              check(spring(s).setTarget(toBullet(target, "target")), "set_target");
            }),
-           "target"_a, "World space; of a spring to a rigid body, in that body's local space.")
+           "target"_a, "World space; for a spring to a rigid body, in that body's local space.")
       .def("set_stiffness",
            locked([](SpringHandle& s, double stiffness) { check(spring(s).setStiffness(stiffness), "set_stiffness"); }),
            "stiffness"_a)
@@ -179,14 +179,14 @@ void bindTouch(nb::module_& module, Class<World>& world) {
 
   world
       .def("raycast", raycastAll, "start"_a, "end"_a,
-           "The first intersection of the segment with the surfaces of soft bodies, from either side, or None.")
+           "The first intersection of the segment with any soft body's surface, from either side, or None.")
       .def(
           "raycast_body",
           [](const std::shared_ptr<World>& w, const BodyHandle& b, const Vec3& from, const Vec3& to) {
             if (b.world != w) fail(StatusCode::NotInWorld, "the body is in another world");
             return raycast(b, from, to);
           },
-          "body"_a, "start"_a, "end"_a, "The same with one body alone.")
+          "body"_a, "start"_a, "end"_a, "The same for one body alone.")
       .def(
           "point_at",
           [](const std::shared_ptr<World>&, const HitHandle& hit) {
@@ -213,12 +213,11 @@ void bindTouch(nb::module_& module, Class<World>& world) {
       .def("add_spring", addSpring, "point"_a, "rigid_body"_a = nb::none(), nb::kw_only(), "pivot"_a = Vec3{},
            "stiffness"_a = nb::none(), "damping_ratio"_a = 0.0, "max_force"_a = nb::none(),
            "collide_connected"_a = false,
-           "Pulls a point of a surface to where it is now, which set_target moves, or to a pivot in a rigid body's "
-           "local space. stiffness: over a point's mass, "
-           "in 1 / (1/240 s)^2; None: 10 to a point in space, 1000 to a body. max_force: None: some times the body's "
-           "weight, to a body unbounded.")
+           "Pulls a point of a surface to its current position, which set_target moves, or to a pivot in a rigid "
+           "body's local space. stiffness: divided by a point's mass, in 1 / (1/240 s)^2; None: 10 to a point in "
+           "space, 1000 to a body. max_force: None: a few times the body's weight; unbounded to a body.")
       .def("add_weld", addWeld, "point"_a, "rigid_body"_a, nb::kw_only(), "collide"_a = false,
-           "Fixes a rigid body to a point of a surface as they are now; the surface around it goes on deforming.");
+           "Fixes a rigid body to a point of a surface in their current poses; the surface around it still deforms.");
 }
 
 }  // namespace tetskin::python

@@ -9,7 +9,7 @@
 namespace tetskin::python {
 namespace {
 
-/// How often this process has come from another one by `fork`, with one thread of those that there were.
+/// Number of `fork`s that led to this process; each keeps only one of the threads.
 std::atomic<unsigned> forks{0};
 
 void countForks() {
@@ -48,7 +48,7 @@ void restore(const std::shared_ptr<World>& world, const nb::bytes& snapshot) {
 Locked::Locked(World& world) : lock_(world.mutex, std::try_to_lock) {
   if (!lock_.owns_lock()) {
     const nb::gil_scoped_release release;
-    // A thread of this process that has the lock says so at once.
+    // Returns at once if a thread of this process has the lock.
     for (int look = 0; world.lockedIn != forks && !lock_.try_lock(); ++look) {
       if (look == 100) {
         fail(StatusCode::InvalidOption,
@@ -83,25 +83,25 @@ Class<World> bindWorlds(nb::module_& module) {
           },
           nb::kw_only(), "gravity"_a = Vec3{0, -9.81, 0}, "threads"_a = 1, "deterministic"_a = false,
           "record_forces"_a = true,
-          "gravity: world length / s^2. threads: number that work on a step; results are the same to the bit with any. "
-          "deterministic: the same bits on other "
-          "processors, for some percent of the time. record_forces: for forces_on.")
+          "gravity: world length / s^2. threads: number that work on a step; any number gives the same results to the "
+          "bit. deterministic: the same bits on other processors, at a cost of some percent. record_forces: for "
+          "forces_on.")
       .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
-           "Advances by dt seconds in `substeps` steps of Bullet's, and updates all surfaces; returns the number of "
-           "steps made: none for 0 seconds. The GIL is released. An Error of the code NON_FINITE comes after the step: "
-           "a body has exploded.")
+           "Advances by dt seconds in `substeps` steps of Bullet, and updates all surfaces; returns the number of "
+           "steps made: 0 for 0 seconds. The GIL is released. An Error with the code NON_FINITE is raised after the "
+           "step: a body has exploded.")
       .def("save", save,
-           "The state of the world, as bytes, from which restore goes on to the last bit: in this process or another, "
-           "on any number of threads.")
+           "The state of the world as bytes. After restore the world continues to the last bit: in this process or "
+           "another, on any number of threads.")
       .def("restore", restore, "snapshot"_a,
-           "Restores a state in place. The world has the same bodies and joints as when it was saved, made in the same "
-           "order. On an Error nothing is changed.")
+           "Restores a state in place. The world must have the same bodies and joints as when it was saved, made in "
+           "the same order. On an Error nothing is changed.")
       .def("shift_origin", locked([](const std::shared_ptr<World>& w, const Vec3& origin) {
              check(w->shiftOrigin(toBullet(origin, "origin")));
            }),
            "origin"_a,
-           "Makes a point the origin: it is subtracted from all positions in the world, which goes on as before. For "
-           "worlds that are large beside the digits of a float; best by multiples of 1,024.")
+           "Makes a point the origin: subtracts it from all positions in the world, which continues as before. For "
+           "worlds that are large for the precision of a float; best by multiples of 1,024.")
       .def(
           "__reduce__",
           [](const std::shared_ptr<World>&) -> nb::tuple {
@@ -110,13 +110,13 @@ Class<World> bindWorlds(nb::module_& module) {
                 "which restore() of a world built alike takes");
           },
           nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"),
-          "Raises a TypeError: what travels is what builds a world, and its snapshot.")
+          "Raises a TypeError: pickle what builds a world, and its snapshot.")
       .def_prop_rw("gravity",
                    locked([](const std::shared_ptr<World>& w) { return vectorOf(w->bullet().getGravity()); }),
                    locked([](const std::shared_ptr<World>& w, const Vec3& gravity) {
                      w->bullet().setGravity(toBullet(gravity, "gravity"));
                    }),
-                   "(3,) float64, world length / s^2; that of all bodies without their own.");
+                   "(3,) float64, world length / s^2; for all bodies without their own.");
   return world;
 }
 

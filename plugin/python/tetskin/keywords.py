@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What is wrong with the names of a call's arguments, in a sentence: for the extension module."""
+"""Says in a sentence what is wrong with the names of a call's arguments; used by the extension module."""
 from __future__ import annotations
 
 import ast
@@ -9,7 +9,7 @@ import inspect
 from typing import Sequence
 
 def _signature_of(text: str) -> inspect.Signature:
-    """Of a function's heading, as nanobind writes it."""
+    """The signature in a function's heading, as nanobind writes it."""
     heading = text.split(" -> ")[0].replace("\\", "_").rstrip(":")
     defined = ast.parse(heading + ": ...").body[0]
     assert isinstance(defined, ast.FunctionDef)
@@ -47,9 +47,9 @@ def _fault_of(signature: inspect.Signature, positional: int, names: Sequence[str
 
 
 def fault(name: str, signatures: Sequence[Sequence[str]], positional: int, names: Sequence[str]) -> str | None:
-    """What is wrong with this number of arguments without a name, and these names; None: they fit a signature.
+    """What is wrong with this number of positional arguments and these names; None if they fit a signature.
 
-    signatures: of nanobind, one for each overload, each with its heading first.
+    signatures: nanobind's, one for each overload, each with its heading first.
     """
     said = None
     for heading, *_ in signatures:

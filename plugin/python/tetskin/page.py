@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Worlds to look at: in a notebook, or as a page, one HTML file that any browser opens without a network."""
+"""Shows worlds in a notebook, or as a page: one HTML file that any browser opens without a network."""
 from __future__ import annotations
 
 import html as _html
@@ -18,7 +18,7 @@ _FRAME = (
 
 
 class Film:
-    """A run of a world, to look at: in a notebook, or as a page.
+    """A run of a world, shown in a notebook or as a page.
 
         film = ts.Film(world)
         for frame in range(240):
@@ -26,14 +26,14 @@ class Film:
             film.add_frame()
         film.show()                 # or film.save("drop.html")
 
-    The first frame settles what is shown: all soft bodies, by their surfaces; rigid bodies that move; fixed ones, where
-    they are then. What is added later is not shown. A frame takes 8 bytes of the page for each node of a cage, and none
-    for vertices: the page skins. Of frames that would take more than 16 MB, it has every second one, or every fourth,
-    and so on, and moves from one to the next. What is up is told by the world's gravity.
+    The first frame decides what is shown: the surfaces of all soft bodies, rigid bodies that move, and fixed ones where
+    they are in that frame. Objects added later are not shown. A frame takes 8 bytes of the page for each node of a
+    cage, and none for vertices: the page skins. If frames would take more than 16 MB, the page has every second one, or
+    every fourth, and so on, and moves from one to the next. The world's gravity defines what is up.
     """
 
     def __init__(self, world: World, *, frames_per_second: float = 60.0, title: str = "") -> None:
-        """frames_per_second: of simulated time, at which the page plays; title: above what is shown."""
+        """frames_per_second: per second of simulated time, for playback; title: shown above the scene."""
         self._writer = PageWriter(world, frames_per_second=frames_per_second, title=title)
 
     def __len__(self) -> int:
@@ -44,11 +44,12 @@ class Film:
         return f"<tetskin.Film: {len(self)} frame{'s' * (len(self) != 1)}>"
 
     def add_frame(self) -> None:
-        """Adds the world as it is now. An Error, and nothing is added, if something shown was removed or exploded."""
+        """Adds the world's current state. Raises an Error, and adds nothing, if something shown was removed or
+        exploded."""
         self._writer.add_frame()
 
     def html(self) -> str:
-        """The page: about 1 MB, and what the meshes and frames take."""
+        """The page: about 1 MB plus meshes and frames."""
         return _page_of(self._writer)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -106,7 +107,7 @@ def _display(make_page: Callable[[], str], height: int, instead: str) -> None:
 
 
 def frame(page: str, height: int = 480) -> str:
-    """HTML of a frame that holds a page, for what shows HTML: notebooks, reports. height: pixels."""
+    """HTML of a frame that holds a page, for viewers of HTML such as notebooks and reports. height: pixels."""
     return _FRAME.format(_html.escape(page), height)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What `progress=True` prints."""
+"""The bar that `progress=True` prints."""
 import sys
 import time
 
@@ -9,10 +9,10 @@ _SECONDS = 0.1
 
 
 class Bar:
-    """A bar of plain text on the standard output, which terminals and notebooks show in place."""
+    """A plain text bar on the standard output, which terminals and notebooks redraw in place."""
 
     def __init__(self, what: str) -> None:
-        """what: is done, in a word."""
+        """what: the task, in a word."""
         self._what = what
         self._next = 0.0
         self._ended = False

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Beside pybullet: a fine surface on its own soft bodies, and its robots among tetskin's.
+"""Works with pybullet: a fine surface on its soft bodies, and its robots among tetskin's.
 
     body, skin = tetskin.pybullet.load_soft_body(cage, mesh, mass=3, useNeoHookean=1)
     mirror = tetskin.pybullet.Mirror(client, world)
 
-Needs the package pybullet, which is imported by the first call. All lengths are those of pybullet's world, which is
-also that of the `World` that mirrors it.
+Needs the package pybullet, which the first call imports. All lengths are those of pybullet's world; the `World` that
+mirrors it uses the same.
 """
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ __all__ = ["Mirror", "Skin", "load_soft_body"]
 
 Normals = Literal["none", "transformed", "recomputed"]
 Interpolation = Literal["linear", "quadratic"]
-SOFT_BODY = 3  # of getDynamicsInfo, which gives it no name
-ALONG_Y = (-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))  # turns z, along which pybullet's shapes are, into tetskin's y
+SOFT_BODY = 3  # of getDynamicsInfo; pybullet has no name for it
+ALONG_Y = (-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))  # turns z, the axis of pybullet's shapes, into tetskin's y
 NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -43,7 +43,7 @@ def _error(code: str, message: str) -> _core.Error:
 
 
 def _connected(client: int) -> Any:
-    """pybullet, with which this client is connected."""
+    """The module pybullet; checks that the client is connected."""
     p = _pybullet()
     if not p.getConnectionInfo(client)["isConnected"]:
         raise _error("NOT_ADDED", f"client {client} of pybullet is not connected: call pybullet.connect first, and "
@@ -52,7 +52,7 @@ def _connected(client: int) -> Any:
 
 
 def _ids(p: Any, client: int) -> set[int]:
-    """Of all bodies of a client. pybullet itself crashes when it is asked for the mesh of another one."""
+    """Ids of all bodies of a client. pybullet crashes when asked for the mesh of any other id."""
     return {p.getBodyUniqueId(i, physicsClientId=client) for i in range(p.getNumBodies(physicsClientId=client))}
 
 
@@ -63,10 +63,10 @@ def _check_body(p: Any, body: int, client: int) -> None:
 
 
 class Skin:
-    """A fine surface on a soft body of pybullet's own, which it has loaded from the file of a cage, `Cage.save`.
+    """A fine surface on one of pybullet's soft bodies, loaded from a cage's file (`Cage.save`).
 
-    body_id, client: as of pybullet. cage, mesh, normals, interpolation: as of `tetskin.Skin`. An Error if the body is
-    no soft one, or has another number of nodes than the cage; its nodes are those of the cage, in this order.
+    body_id, client: as in pybullet. cage, mesh, normals, interpolation: as in `tetskin.Skin`. Raises an Error if the
+    body is not soft, or has another number of nodes than the cage; its nodes must be the cage's, in the same order.
     """
 
     def __init__(self, body_id: int, cage: _core.Cage, mesh: Any, client: int = 0, *, normals: Normals = "none",
@@ -77,18 +77,18 @@ class Skin:
         self.update()
 
     def update(self) -> np.ndarray:
-        """Computes the surface for the nodes as they are now: call it after stepSimulation. Returns positions. On an
-        Error, the surface stays as it was."""
+        """Computes the surface for the current nodes: call it after stepSimulation. Returns positions. On an Error, the
+        surface stays as it was."""
         return self._skin.update(self.nodes)
 
     @property
     def nodes(self) -> np.ndarray:
-        """(nodes, 3) float64, world space, as pybullet has them now, in the cage's order. A new array."""
+        """(nodes, 3) float64, world space: pybullet's current nodes, in the cage's order. A new array."""
         p = _connected(self.client)
         _check_body(p, self.body_id, self.client)
         if p.getDynamicsInfo(self.body_id, -1, physicsClientId=self.client)[10] != SOFT_BODY:
             raise _error("INVALID_OPTION", f"body {self.body_id} is no soft body of pybullet's")
-        # Without the flag, pybullet gives the vertices that it draws, which are others.
+        # Without the flag, pybullet returns the vertices that it draws, which are different.
         count, nodes = p.getMeshData(self.body_id, -1, flags=p.MESH_DATA_SIMULATION_MESH, physicsClientId=self.client)
         if count != self._skin.node_count:
             raise _error("SIZE_MISMATCH", f"body {self.body_id} has {count} nodes, and the cage "
@@ -108,9 +108,9 @@ class Skin:
 
 def load_soft_body(cage: _core.Cage, mesh: Any, *, client: int = 0, normals: Normals = "none",
                    interpolation: Interpolation = "linear", **options: Any) -> tuple[int, Skin]:
-    """Makes a soft body of pybullet's own of a cage, and a skin on it. Returns its id and the skin.
+    """Makes a pybullet soft body from a cage, and a skin on it. Returns its id and the skin.
 
-    options: what loadSoftBody takes besides the file's name, such as basePosition, mass, useNeoHookean, NeoHookeanMu,
+    options: those of loadSoftBody except the file's name, such as basePosition, mass, useNeoHookean, NeoHookeanMu,
     collisionMargin. Its world must have been reset with RESET_USE_DEFORMABLE_WORLD.
     """
     p = _connected(client)
@@ -129,7 +129,7 @@ def load_soft_body(cage: _core.Cage, mesh: Any, *, client: int = 0, normals: Nor
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Of quaternions (n, 4), x, y, z, w: first b, then a."""
+    """The product of quaternions (n, 4), x, y, z, w: first b, then a."""
     u, v, s, t = a[:, :3], b[:, :3], a[:, 3:], b[:, 3:]
     return np.hstack([s * v + t * u + np.cross(u, v), s * t - (u * v).sum(1, keepdims=True)])
 
@@ -142,7 +142,7 @@ def _rotated(q: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 
 def _obj_parts(path: Path) -> list[np.ndarray]:
-    """The points (n, 3) of each object of an OBJ file: pybullet makes a hull of each."""
+    """The points (n, 3) of each object in an OBJ file: pybullet makes a hull from each."""
     points: list[list[float]] = []
     parts: list[set[int]] = [set()]
     for line in path.read_text(errors="replace").splitlines():
@@ -160,7 +160,7 @@ def _obj_parts(path: Path) -> list[np.ndarray]:
 
 
 class _Part:
-    """A collision shape of a link, and its rigid body: where it is in the frame of the link's centre of mass."""
+    """A collision shape of a link, its place in the frame of the link's centre of mass, and its rigid body."""
 
     def __init__(self, link: int, shape: _core.Shape, position: Sequence[float] = (0.0, 0.0, 0.0),
                  rotation: Sequence[float] = NO_TURN) -> None:
@@ -169,13 +169,13 @@ class _Part:
 
 
 def _mesh_parts(p: Any, client: int, body: int, link: int, index: int, entries: Sequence[Any]) -> list[_Part]:
-    """A mesh, which pybullet holds as hulls, or as its triangles if it was loaded so."""
+    """A mesh. pybullet stores it as hulls, or as triangles if it was loaded as such."""
     _, _, _, scale, name, position, rotation = entries[index]
     path = Path(name.decode())
     alone = len(entries) == 1
     is_obj = path.suffix.lower() == ".obj"
     points: Sequence[Any] = ()
-    if alone or not is_obj:  # the hulls of one OBJ among other shapes cannot be told apart
+    if alone or not is_obj:  # among other shapes, the hulls of one OBJ cannot be told apart
         selected = {} if alone else {"collisionShapeIndex": index}
         points = p.getMeshData(body, link, physicsClientId=client, **selected)[1]
         if not points:
@@ -195,7 +195,7 @@ def _mesh_parts(p: Any, client: int, body: int, link: int, index: int, entries: 
 
 
 def _parts(p: Any, client: int, body: int, link: int) -> list[_Part]:
-    """What a link collides with."""
+    """A link's collision shapes."""
     try:
         entries = p.getCollisionShapeData(body, link, physicsClientId=client)
     except p.error as error:
@@ -225,13 +225,13 @@ def _parts(p: Any, client: int, body: int, link: int) -> list[_Part]:
 class Mirror:
     """Rigid bodies of pybullet among the soft bodies of a tetskin `World`, in steps that take turns.
 
-    Each collision shape of pybullet's bodies is a kinematic body of `world`, at its place. `step` gives the forces of
-    the world's soft bodies to pybullet's links, and steps both. The two are loosely coupled: a link yields to a force
-    only in the next step, and what is too light for that is thrown off; the page of the guide tells the limits. What is
-    rigid in `world` alone meets pybullet's bodies, but does not push them.
+    Each collision shape of pybullet's bodies becomes a kinematic body of `world`, at the same place. `step` applies the
+    forces of the world's soft bodies to pybullet's links, and steps both. The two are loosely coupled: a link yields to
+    a force only in the next step, and bodies too light for that are thrown off; the guide's page gives the limits.
+    Rigid bodies of `world` itself collide with pybullet's bodies, but do not push them.
 
-    client: as of pybullet. bodies: their ids; None: all that are rigid now. Others join by `add`. Units are the same on
-    both sides; gravity is set on both, by hand.
+    client: as in pybullet. bodies: their ids; None: all current rigid bodies. `add` adds others. Units are the same on
+    both sides; set gravity on both.
     """
 
     def __init__(self, client: int, world: _core.World, bodies: Iterable[int] | None = None) -> None:
@@ -257,9 +257,9 @@ class Mirror:
         return tuple(self._bodies)
 
     def add(self, body: int, links: Iterable[int] | None = None) -> None:
-        """Mirrors another body as it is now. links: only these, with -1 for its base; None: all. Their friction is
-        pybullet's lateralFriction now. An Error if it is mirrored already, does not exist, or has a shape that
-        pybullet does not tell."""
+        """Mirrors another body in its current state. links: only these, with -1 for its base; None: all. Their friction
+        is pybullet's current lateralFriction. Raises an Error if it is already mirrored, does not exist, or has a shape
+        that pybullet does not report."""
         p = _connected(self.client)
         _check_body(p, body, self.client)
         if body in self._bodies:
@@ -283,15 +283,16 @@ class Mirror:
                                                    friction=friction)
 
     def remove(self, body: int) -> None:
-        """Takes a body out of the world, also one that pybullet has removed. Removing it again changes nothing."""
+        """Takes a body out of the world, even one that pybullet has removed. Removing it again changes nothing."""
         for part in self._bodies.pop(body, []):
             part.rigid.remove()
         self._forces = {link: force for link, force in self._forces.items() if link[0] != body}
         self._arrange()
 
     def teleport(self, body: int) -> None:
-        """After resetBasePositionAndOrientation or resetJointState: puts a body where it is now. Without it, it moves
-        there within the next step, and takes along what is in its way. Its `rigid_bodies` are others then."""
+        """Call it after resetBasePositionAndOrientation or resetJointState: puts a body's mirrors at its new place.
+        Otherwise they move there within the next step, and push along what is in their way. Replaces its
+        `rigid_bodies`."""
         p = _connected(self.client)
         _check_body(p, body, self.client)
         if body not in self._bodies:
@@ -302,22 +303,22 @@ class Mirror:
         self._place(p, body, parts)
 
     def rigid_bodies(self, body: int, link: int = -1) -> list[_core.RigidBody]:
-        """Those of the world that mirror a link, one for each of its shapes, for instance to weld something to it."""
+        """The world's mirrors of a link, one for each of its shapes, for instance to weld something to it."""
         return [part.rigid for part in self._bodies.get(body, []) if part.link == link]
 
     def force_on(self, body: int, link: int = -1) -> tuple[np.ndarray, np.ndarray]:
-        """Force and torque about the centre of mass of a link, (3,) float64 each, world space: the mean
-        over the last step, which pybullet's next one has."""
+        """Force and torque about the centre of mass of a link, (3,) float64 each, world space: the mean over the last
+        step, which pybullet's next step applies."""
         force, torque = self._forces.get((body, link), (np.zeros(3), np.zeros(3)))
         return force.copy(), torque.copy()
 
     def step(self, substeps: int = 4) -> None:
         """Steps both by pybullet's time step: pybullet, by stepSimulation, then the world, in `substeps` steps.
 
-        Pybullet's step has the forces of the world's last one; then bodies move on to where pybullet has brought them,
-        and the world steps with them. So both are at the same time afterwards, and bodies have moved with exactly the
-        velocities that pybullet's have. (Moved to where they will presumably be, they would give forces a step earlier,
-        but jerk, and even heavy ones would not come to rest.) Bodies that pybullet has removed leave the mirror.
+        Pybullet's step applies the forces of the world's last step; then the mirrors move to pybullet's new poses while
+        the world steps. So both are at the same time afterwards, and the mirrors have moved with exactly the velocities
+        of pybullet's bodies. (Extrapolated poses would give forces a step earlier, but jerk, and even heavy bodies
+        would not come to rest.) Bodies that pybullet has removed leave the mirror.
         """
         p = _connected(self.client)
         parameters = p.getPhysicsEngineParameters(physicsClientId=self.client)
@@ -333,13 +334,13 @@ class Mirror:
 
     def _follow(self, parts: list[tuple[int, _Part]], positions: np.ndarray, rotations: np.ndarray, arms: np.ndarray,
                 seconds: float, substeps: int) -> None:
-        """Steps the world while the parts go there on straight paths, and takes the mean of the forces on them.
+        """Steps the world while the parts move there on straight paths, and averages the forces on them.
 
-        The world would take bodies that are moved once per frame along curves, which expect how they go on: forces that
-        act back on pybullet would follow what is expected, and swing.
+        The world moves bodies that are set once per frame along curves, which extrapolate their motion: forces on
+        pybullet would then follow the extrapolation, and oscillate.
         """
         if substeps < 1:
-            self.world.step(seconds, substeps=substeps)  # which says what is wrong with that
+            self.world.step(seconds, substeps=substeps)  # which reports the error
         from_positions = np.array([part.rigid.position for _, part in parts]).reshape(-1, 3)
         from_rotations = np.array([part.rigid.rotation for _, part in parts]).reshape(-1, 4)
         turned = np.sum(from_rotations * rotations, axis=1, keepdims=True)
@@ -358,7 +359,7 @@ class Mirror:
                 self._add_force(body, part, arm, 1 / substeps)
 
     def _arrange(self) -> None:
-        """Arrays of what is the same in all steps, by body: links with shapes, and of each part the link's row."""
+        """Arrays that stay the same in all steps, by body: links with shapes, and the link's row of each part."""
         self._links: dict[int, list[int]] = {}
         self._rows: dict[int, tuple[list[int], np.ndarray, np.ndarray]] = {}
         for body, parts in self._bodies.items():
@@ -369,7 +370,7 @@ class Mirror:
                                 np.array([part.rotation for part in parts]).reshape(-1, 4))
 
     def _poses(self, p: Any, bodies: Iterable[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of all parts of these bodies: centres of mass of the links, positions, and rotations."""
+        """For all parts of these bodies: centres of mass of the links, positions, and rotations."""
         states: list[tuple[Any, ...]] = []
         local_positions, local_rotations = [np.zeros((0, 3))], [np.zeros((0, 4))]
         for body in bodies:
@@ -391,13 +392,14 @@ class Mirror:
             states.append(p.getBasePositionAndOrientation(body, physicsClientId=self.client))
             links = links[1:]
         if links:
-            # pybullet keeps the poses of links from before its last step, unless it is asked to compute them.
+            # pybullet returns the poses of links from before its last step, unless it is asked to compute them.
             of_links = p.getLinkStates(body, links, computeForwardKinematics=1, physicsClientId=self.client)
             states += [state[:2] for state in of_links]
         return states
 
     def _add_force(self, body: int, part: _Part, arm: np.ndarray, share: float) -> None:
-        """Adds a share of that of the world's last step on a part to its link's. arm: from the link's centre to it."""
+        """Adds a share of the force of the world's last step on a part to its link. arm: from the link's centre to the
+        part."""
         wrench = self.world.forces_on(part.rigid).total
         if not any(wrench.force) and not any(wrench.torque):
             return
@@ -406,7 +408,7 @@ class Mirror:
                                          torque + share * (wrench.torque + np.cross(arm, wrench.force)))
 
     def _give(self, p: Any) -> None:
-        """Gives the links their forces, for pybullet's next step."""
+        """Applies the forces to the links, for pybullet's next step."""
         for (body, link), (force, torque) in self._forces.items():
             if link == -1:
                 centre = p.getBasePositionAndOrientation(body, physicsClientId=self.client)[0]

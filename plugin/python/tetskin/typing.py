@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Types of arguments, as numpy.typing has them: for annotations of your own, and for what reads ours."""
+"""Types of arguments, like those of numpy.typing: for your own annotations, and for tools that read ours."""
 
 from typing import Any, Protocol, Sequence, SupportsFloat, Union
 
@@ -8,7 +8,7 @@ import numpy.typing
 
 
 class SupportsArray(Protocol):
-    """What numpy.asarray makes an array of: arrays, tensors, columns of a table."""
+    """Accepted by numpy.asarray: arrays, tensors, columns of a table."""
 
     def __array__(self) -> numpy.typing.NDArray[Any]: ...
 

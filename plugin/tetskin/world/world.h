@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// A DeformableWorld and all that is in it, with one owner: soft bodies with their surfaces, rigid bodies, joints.
+// A DeformableWorld and everything in it, with one owner: soft bodies with their surfaces, rigid bodies, joints.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -33,25 +33,25 @@ struct WorldBodyOptions {
   /// Material and settings of the body. `pinned` selects by position in the world.
   SoftBodyOptions material;
   BindingOptions binding;               ///< how the surface follows the cage
-  std::vector<int> pinned;              ///< nodes to pin, by index, besides those that `material.pinned` selects
+  std::vector<int> pinned;              ///< nodes to pin, by index, in addition to those that `material.pinned` selects
   bool visible = true;                  ///< whether steps update the surface, see `SoftBodySkin::setVisible`
   bool surfaceContact = true;           ///< rigid bodies touch the surface (SurfaceContact), not the cage's nodes
   bool softContact = false;             ///< touches other bodies that have this, at their surfaces (SoftContacts)
-  bool selfContact = false;             ///< the same, and itself
+  bool selfContact = false;             ///< the same, and self-contact
   std::optional<double> contactMargin;  ///< `SurfaceContactOptions::margin`, world length
   std::optional<double> sampleSpacing;  ///< `SurfaceContactOptions::sampleSpacing`, rest units
 };
 
-/// A world that owns what is in it:
+/// A world that owns the objects in it:
 ///
 ///     tetskin::World world;
 ///     auto body = world.addBody(cage, mesh).value();
 ///     while (world.step(1.0 / 60).ok()) draw(body->positions, mesh->triangles);
 ///
-/// Bodies, joints and springs are held by shared pointers, and may be let go in any order. Removing a thing also
-/// removes what is attached to it. What has been removed stays readable as long as somebody holds it, and takes part in
-/// nothing. Change things through the world, or through Bullet's and tetskin's own objects, which are all there; do not
-/// add or delete those that the world owns. For what it does not cover, `bullet()` is the whole of Bullet's world.
+/// Bodies, joints and springs are held by shared pointers, which may be released in any order. Removing an object also
+/// removes everything attached to it. A removed object stays readable as long as somebody holds it, but takes part in
+/// nothing. Change objects through the world, or through Bullet's and tetskin's own objects, which are accessible; do
+/// not add or delete those that the world owns. `bullet()` is Bullet's whole world, for everything else.
 class TETSKIN_WORLD_API World {
  public:
   /// A rigid body. Its shape may be shared with others.
@@ -70,15 +70,15 @@ class TETSKIN_WORLD_API World {
 
   /// A soft body, and its surface if it was added with a mesh.
   struct Body {
-    std::shared_ptr<const Cage> cage;          ///< at rest, where it was given
-    std::shared_ptr<const TriangleMesh> mesh;  ///< null: the body has no surface
+    std::shared_ptr<const Cage> cage;          ///< at rest, where it was placed
+    std::shared_ptr<const TriangleMesh> mesh;  ///< null if the body has no surface
     /// Shared by all bodies of one cage, mesh and options; null likewise.
     std::shared_ptr<const SoftBodyBinding> binding;
     EmbedReport fit;                          ///< of the mesh in the cage, at rest
     std::unique_ptr<DeformableBody> body;     ///< never null
     SoftBodySkin skin;                        ///< updated by `step`; its targets are the arrays below
     std::unique_ptr<SurfaceContact> contact;  ///< null without `surfaceContact`
-    /// vertexCount x 3, world space, as the last step left them; the memory stays as long as the body.
+    /// vertexCount x 3, world space, after the last step; the memory stays as long as the body.
     std::vector<float> positions;
     std::vector<float> normals;  ///< likewise, unit length; empty for Normals::None
     bool softContact = false;    ///< it is among the world's SoftContacts
@@ -86,20 +86,20 @@ class TETSKIN_WORLD_API World {
 
    private:
     friend class World;
-    std::unique_ptr<SurfaceTree> tree_;  ///< made when it is first asked for
+    std::unique_ptr<SurfaceTree> tree_;  ///< made on first use
   };
 
   /// A spring or a weld between a surface and something else. Both are null once it has been released.
   struct Touch {
     std::shared_ptr<Body> body;
-    std::shared_ptr<RigidBody> rigid;  ///< what it is fixed to; null: space
+    std::shared_ptr<RigidBody> rigid;  ///< the body that it is fixed to; null: space
     std::unique_ptr<SurfaceSpring> spring;
     std::unique_ptr<SurfaceWeld> weld;
   };
 
-  /// Where a ray has met a surface.
+  /// Where a ray has hit a surface.
   struct RayHit {
-    std::shared_ptr<Body> body;  ///< null: it meets none
+    std::shared_ptr<Body> body;  ///< null if it hits none
     SurfaceHit hit;
   };
 
@@ -112,9 +112,9 @@ class TETSKIN_WORLD_API World {
   DeformableWorld& bullet() { return *world_; }              ///< Bullet's world
   const DeformableWorld& bullet() const { return *world_; }  ///< Bullet's world
 
-  /// Advances by `dt` seconds in this number of equal substeps, and updates all visible surfaces. Motors of hinges that
-  /// were added by `addJoint` are limited by torques, mass length^2 / s^2, where Bullet has impulses.
-  /// dt        1e-6 to 10 seconds, or 0: nothing is done
+  /// Advances by `dt` seconds in this number of equal substeps, and updates all visible surfaces. Motors of hinges
+  /// added by `addJoint` are limited by torques, mass length^2 / s^2; Bullet itself uses impulses.
+  /// dt        1e-6 to 10 seconds, or 0, which does nothing
   /// substeps  1 to 10000
   /// Returns   the number of substeps made
   /// Errors    InvalidOption: out of range, or called from within a step, and nothing has changed. After the step:
@@ -125,7 +125,8 @@ class TETSKIN_WORLD_API World {
       return world_->stepSimulation(whole, count, substep);
     });
   }
-  /// The same by a call in place of `stepSimulation`, with its arguments and result: `Recorder::step`, for instance.
+  /// The same with another call instead of `stepSimulation`, with its arguments and result: for instance
+  /// `Recorder::step`.
   template <class Stepped>
   Result<int> step(double dt, int substeps, Stepped&& stepped) {
     Status status = checkStep(dt, substeps);
@@ -142,17 +143,17 @@ class TETSKIN_WORLD_API World {
     return made;
   }
   /// Makes the next step of a recorded run, and updates all visible surfaces.
-  /// Returns  false, and has done nothing, at its end
+  /// Returns  false at its end, without a step
   /// Errors   those of `step`
   Result<bool> step(Replay& replay);
-  /// A step is being made. Called from it, `step`, `restore` and `replay` are refused with InvalidOption.
+  /// Whether a step is being made. Within it, `step`, `restore` and `replay` are refused with InvalidOption.
   bool inStep() const { return stepping_; }
 
   /// The state, see `saveSnapshot`.
   Result<std::vector<char>> save() const;
   /// Goes back to a saved state, see `restoreSnapshot`, and updates all visible surfaces.
   Status restore(const void* snapshot, std::size_t size);
-  /// Opens a recorded run, see `Replay::open`, in the state in which recording began.
+  /// Opens a recorded run, see `Replay::open`, in the state at the start of the recording.
   /// path  UTF-8
   Result<std::unique_ptr<Replay>> replay(const std::string& path);
 
@@ -175,34 +176,34 @@ class TETSKIN_WORLD_API World {
   Result<std::shared_ptr<RigidBody>> addRigidBody(std::shared_ptr<btCollisionShape> shape, double mass,
                                                   const btTransform& pose, double friction = 0.5,
                                                   bool kinematic = false);
-  /// Adds a joint that was made of these bodies; second: null for space. It wakes them.
+  /// Adds a joint made for these bodies; second: null for space. It wakes them.
   /// collide  the two bodies still touch each other
   std::shared_ptr<Joint> addJoint(std::shared_ptr<RigidBody> first, std::shared_ptr<RigidBody> second,
                                   std::unique_ptr<btTypedConstraint> joint, bool collide = false);
-  /// Keeps a spring or weld, with what it is attached to.
+  /// Keeps a spring or weld, with the objects that it is attached to.
   std::shared_ptr<Touch> add(Touch&& touch);
 
-  /// Remove a thing, and all that is attached to it. Nothing happens to one that has been removed.
+  /// Remove an object, and everything attached to it. Does nothing if it has already been removed.
   void remove(RigidBody& rigid);
   void remove(Joint& joint);
   void remove(Body& body);
   void remove(Touch& touch);
 
-  /// Puts a rigid body somewhere: a kinematic one in the next step, which gives it the velocity of the motion. Nothing
-  /// happens to one that has been removed.
+  /// Places a rigid body: a kinematic one in the next step, which gives it the velocity of the motion. Does nothing if
+  /// it has been removed.
   void setPose(RigidBody& rigid, const btTransform& pose);
-  /// As `DeformableBody::teleport`, with the surface.
+  /// Like `DeformableBody::teleport`, with the surface.
   Status teleport(Body& body, const btTransform& motion);
-  /// As `DeformableBody::reset`, with the surface.
+  /// Like `DeformableBody::reset`, with the surface.
   Status reset(Body& body);
-  /// As tetskin::shiftOrigin, with all surfaces.
+  /// Like tetskin::shiftOrigin, with all surfaces.
   Status shiftOrigin(const btVector3& origin);
 
   /// The tree of a body's surface, for points and rays; made by the first call, see `SurfaceTree::create`. Errors:
   /// Unbound, the body has no surface; BodyDeleted, it has been removed.
   Result<const SurfaceTree*> treeOf(Body& body);
   /// The first intersection of a segment with the body's surface. Errors: those of `treeOf` and of
-  /// `SurfaceTree::raycast`, but NoHit.
+  /// `SurfaceTree::raycast`, except NoHit.
   Result<RayHit> raycast(const std::shared_ptr<Body>& body, const btVector3& from, const btVector3& to);
   /// The first intersection of a segment with any surface.
   Result<RayHit> raycast(const btVector3& from, const btVector3& to);
@@ -213,7 +214,7 @@ class TETSKIN_WORLD_API World {
   const std::vector<std::shared_ptr<RigidBody>>& rigidBodies() const { return rigids_; }  ///< in the order of adding
 
  private:
-  /// What bodies of one cage and mesh share.
+  /// Data that bodies of one cage and mesh share.
   struct Shared {
     std::weak_ptr<const Cage> cage;
     std::weak_ptr<const TriangleMesh> mesh;
@@ -223,8 +224,8 @@ class TETSKIN_WORLD_API World {
     std::weak_ptr<const ContactShape> shape;
   };
 
-  /// While it lives, the world is within a step, and limits the motors of hinges as Bullet does it: by an impulse.
-  /// substep  seconds; 0: motors are left alone
+  /// While it lives, the world is within a step, and limits the motors of hinges in Bullet's way: by an impulse.
+  /// substep  seconds; 0: motors are unchanged
   class TETSKIN_WORLD_API Within {
    public:
     explicit Within(World& world, btScalar substep = 0);
@@ -243,7 +244,7 @@ class TETSKIN_WORLD_API World {
   Shared& sharedOf(const Body& body, const BindingOptions& options);
   Status bindSurface(Body& body, const WorldBodyOptions& options);
   Status touchOthers(Body& body, Shared& shared, bool itself);
-  /// Removes those that a condition holds for, in their order. Needs no memory: what is to be freed can be.
+  /// Removes those for which a condition holds, in order. Allocates nothing, so it works when memory is short.
   template <class Thing, class Condition>
   void removeEach(std::vector<std::shared_ptr<Thing>>& all, Condition&& condition) {
     for (std::size_t i = 0; i < all.size();) condition(*all[i]) ? remove(*std::shared_ptr<Thing>(all[i])) : void(++i);

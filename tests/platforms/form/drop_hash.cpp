@@ -16,7 +16,7 @@
 #include <map>
 #include <utility>
 
-/// A cube of which each side has `n` x `n` squares, pushed out onto a sphere, with furrows.
+/// A cube with `n` x `n` squares on each side, pushed out onto a sphere, with furrows.
 tetskin::TriangleMesh makeBall(int n) {
   tetskin::TriangleMesh ball;
   std::map<std::array<int, 3>, int> numbers;

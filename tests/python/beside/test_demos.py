@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The demos of demos/examples/python do what they say, and write what they name."""
+"""The demos of demos/examples/python do what they say, and write the files that they name."""
 
 import os
 import re
@@ -19,7 +19,7 @@ DEMOS = {
     "gripper": ["gripper.html", "forces.png"],
     "cage_from_scan": ["cage_from_scan.html", "stiffness.png", "cage.vtk"],
 }
-"""What each demo writes."""
+"""The output of each demo."""
 MOMENTS = {"drop": 61, "gripper": 181, "cage_from_scan": 45}
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 

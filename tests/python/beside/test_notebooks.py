@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The notebooks are those of the scripts, run, and show what they film."""
+"""The notebooks are those of the scripts, have been run, and show their films."""
 
 import sys
 import textwrap
@@ -44,7 +44,7 @@ def test_a_notebook_runs_and_plays_its_film(name, tmp_path, monkeypatch):
 
 
 def test_the_interrupt_button_cancels_a_long_call(tmp_path):
-    """The kernel is sent what the button sends, while it makes cages for ever."""
+    """The kernel receives the button's message, while it makes cages forever."""
     from jupyter_client.manager import start_new_kernel
 
     code = textwrap.dedent("""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""The package imports no other package but NumPy by itself."""
+"""By itself the package imports no other package than NumPy."""
 
 import subprocess
 import sys

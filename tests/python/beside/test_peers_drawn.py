@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""demos/lab/peers, where matplotlib is there: what it draws and tells of a table."""
+"""demos/lab/peers with matplotlib: its drawings and remarks on a table."""
 import csv
 import subprocess
 import sys

@@ -151,7 +151,7 @@ def surface_distances(client, body, link, ball):
         contacts = world.contacts(soft)
         nearest = contacts.distances.argmin()
         at, away = contacts.points[nearest].astype(float), contacts.normals[nearest].astype(float)
-        # Rays that are much shorter than what they meet miss it sometimes.
+        # Rays that are much shorter than their targets sometimes miss them.
         again = p.rayTest(at + 0.4 * away, at - 0.4 * away, physicsClientId=client)[0]
         if again[:2] == (body, link):
             differences.append((at - again[3]) @ away - contacts.distances[nearest])
@@ -263,7 +263,7 @@ def test_poses_follow_pybullet_in_each_step(client):
 
 
 def test_links_follow_pybullet_in_each_step(client):
-    """Without being asked, pybullet tells poses of links from before its last step."""
+    """Unless asked to compute them, pybullet returns poses of links from before its last step."""
     p.setGravity(0, 0, -9.81, physicsClientId=client)
     arm = p.loadURDF("franka_panda/panda.urdf", useFixedBase=True, physicsClientId=client)
     p.resetJointState(arm, 1, 1, physicsClientId=client)
@@ -350,7 +350,7 @@ def test_bodies_come_and_go(client):
     mirror = tetskin.pybullet.Mirror(client, world)
     second = make_box(client, (2, 0, 1))
     mirror.step()
-    assert mirror.bodies == (first,) and len(world.rigid_bodies) == 1  # what is new joins by add alone
+    assert mirror.bodies == (first,) and len(world.rigid_bodies) == 1  # new bodies join only by add
     mirror.add(second)
     assert mirror.bodies == (first, second) and len(world.rigid_bodies) == 2
     assert "already" in failed("INVALID_OPTION", mirror.add, second)
@@ -390,7 +390,7 @@ def test_a_mirror_tells_what_is_wrong(client, cage, mesh):
     maximal = make_box(client, useMaximalCoordinates=True)
     assert "useMaximalCoordinates" in failed("INVALID_OPTION", mirror.add, maximal)
     assert "useMaximalCoordinates" in failed("INVALID_OPTION", tetskin.pybullet.Mirror, client, world)
-    assert mirror.bodies == (box,) and len(world.rigid_bodies) == 1  # nothing is left of what has failed
+    assert mirror.bodies == (box,) and len(world.rigid_bodies) == 1  # nothing is left of the failed call
     p.setRealTimeSimulation(1, physicsClientId=client)
     assert "setRealTimeSimulation" in failed("INVALID_OPTION", mirror.step)
     p.setRealTimeSimulation(0, physicsClientId=client)
@@ -482,7 +482,7 @@ def test_the_programs_of_the_page_run_as_written(tmp_path, monkeypatch):
     finally:
         for one in clients:
             p.disconnect(one)
-    # What the page says of its first program.
+    # The page's claims about its first program.
     assert abs(names["on_box"][2] - 29.4) < 0.1 and abs(names["on_ground"][2] + 39.2) < 0.1
     assert names["skin"].positions.shape == (len(mesh.positions), 3)
 

@@ -23,7 +23,7 @@ from distributed import Client, LocalCluster
 from conftest import torus
 
 SCRIPT = Path(__file__).parents[3] / "demos/examples/python/sweep.py"
-HANG = 300  # seconds after which a program is taken to hang, on any machine
+HANG = 300  # seconds after which a program counts as hanging, on any machine
 
 sys.path.insert(0, str(SCRIPT.parent))  # also that of processes that are spawned, which find both modules by it
 import sweep
@@ -46,7 +46,7 @@ def options(*arguments):
 
 
 def result_of(table):
-    """What does not depend on who has made a run, and when."""
+    """The data that does not depend on which worker has made a run, and when."""
     return table.drop(columns=["worker", "ms_per_frame", "actions"], errors="ignore")
 
 
@@ -65,7 +65,7 @@ def test_runs_on_workers_are_those_of_one_process_to_the_bit(what, client):
     work = getattr(sweep, what)
     there, here = work(client, options(what, "--frames", "20")), work(None, options(what, "--frames", "20"))
     assert result_of(there).equals(result_of(here)) and there["status"].eq("ok").all()
-    assert there["sha256"].nunique() > 5  # of rollouts, some do not reach the ball
+    assert there["sha256"].nunique() > 5  # some rollouts do not reach the ball
     assert set(there["worker"]).isdisjoint(here["worker"])
 
 
@@ -79,7 +79,7 @@ def test_other_bits_are_found():
 
 
 class KillsItsWorker:
-    """A run of the sweep, in the middle of which its worker is killed, as by the system where memory is short."""
+    """A run of the sweep whose worker is killed in the middle, as by the system when memory is short."""
 
     def __init__(self, marker, substeps):
         self.marker, self.substeps, self.run = marker, substeps, sweep.bend_and_compare
@@ -110,7 +110,7 @@ def test_a_killed_worker_costs_its_run_again_and_no_result(client, tmp_path, mon
 
 
 def test_a_run_that_kills_all_its_workers_is_a_row_and_the_others_go_on(cluster, client, monkeypatch):
-    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)  # each run that was there is given up, at first
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)  # each current run is given up, at first
     monkeypatch.setattr(sweep, "bend_and_compare", KillsItsWorker(None, 2))
     table = sweep.sweep(client, options())
     failed = table[table["status"].ne("ok")]
@@ -180,7 +180,7 @@ def test_arguments_that_mean_nothing_are_refused(arguments, capsys):
 
 
 def test_the_program_of_the_page_runs_as_written_and_prints_what_it_shows(tmp_path):
-    """As a file of its own, which its workers import, with the torus of the other pages."""
+    """As a separate file, which its workers import, with the torus of the other pages."""
     page = (Path(__file__).parents[3] / "plugin/docs/many_runs.md").read_text()
     (code,), (shown,) = (re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL) for language in ("python", "text"))
     (tmp_path / "program.py").write_text(code)

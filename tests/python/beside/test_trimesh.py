@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""Meshes of trimesh: taken as they are, with their texture coordinates; and its files, read back."""
+"""Meshes of trimesh: accepted directly, with their texture coordinates; and its files, read back."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What type checkers know about the package: mypy, strictly, on programs that are right and on lines that are wrong."""
+"""Type checking of the package: mypy, strict, on correct programs and on wrong lines."""
 
 import re
 import subprocess
@@ -101,7 +101,7 @@ ts.nothing  # wrong
 
 @pytest.fixture(scope="module")
 def mypy(tmp_path_factory):
-    """Checks files; returns what mypy says, and whether it is content. Packages without types are taken as they are."""
+    """Checks files; returns what mypy says, and whether it is content. Packages without types are accepted."""
     folder = tmp_path_factory.mktemp("mypy")
 
     def run(*files):

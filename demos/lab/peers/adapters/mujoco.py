@@ -25,7 +25,7 @@ def numbers(rows):
 
 
 class Simulation:
-    """substeps: per frame. cells: of the grid, None: the tets themselves; order: 1 or 2, of the cells."""
+    """substeps: per frame. cells: of the grid, or None for the tets themselves; order: 1 or 2, of the cells."""
 
     def __init__(self,
                  substeps=16,

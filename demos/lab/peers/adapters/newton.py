@@ -98,7 +98,7 @@ class Simulation:
         self.control = self.model.control()
         self.pipeline = newton.CollisionPipeline(self.model) if self.contact else None
         self.contacts = self.pipeline.contacts() if self.pipeline else None
-        self.solver.step(self.now, self.next, self.control, self.contacts, 1e-9)  # compiles what is not in its cache
+        self.solver.step(self.now, self.next, self.control, self.contacts, 1e-9)  # compiles kernels that are not in its cache
         self.now = self.model.state()
 
     def set_velocities(self, handle, rows):
@@ -141,7 +141,7 @@ class Simulation:
 def skin_times(body, moved):
     """Seconds of processor time to build the model with the skin more than without, and to move it once: median of 20."""
     spent = {}
-    for skinned in (True, False, True):  # the first one compiles what is not in its cache
+    for skinned in (True, False, True):  # the first one compiles kernels that are not in its cache
         simulation = Simulation(gravity=(0.0, 0.0, 0.0))
         simulation.add_soft(body)
         began = time.process_time()

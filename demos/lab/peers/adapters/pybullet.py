@@ -4,8 +4,8 @@
 
 The force's constants are not Lamé's: 4/3 mu and lambda + 5/6 mu have the same Young's modulus and Poisson's ratio. A
 body divides its mass evenly among its nodes, and no call changes that; damping is Rayleigh's, without rotation. Soft
-bodies meet each other only where self-collision is on. Their example is deformable_torus.py: margin 0.006, friction
-0.5, repulsion 800, steps of 1/240 s.
+bodies collide with each other only if self-collision is on. Their example is deformable_torus.py: margin 0.006,
+friction 0.5, repulsion 800, steps of 1/240 s.
 """
 import contextlib
 import os
@@ -47,7 +47,7 @@ def write_vtk(path, nodes, tets):
 
 
 class Simulation:
-    """substeps: per frame. margin: of collisions, metres. lame: give the force Lamé's constants as they are."""
+    """substeps: per frame. margin: of collisions, metres. lame: give the force Lamé's constants unchanged."""
 
     def __init__(self, substeps=4, margin=0.006, lame=False, gravity=GRAVITY):
         self.substeps, self.margin, self.lame = substeps, margin, lame
@@ -134,7 +134,7 @@ class Simulation:
 
 def skin_times(body, moved):
     """Seconds of processor time to load the body with a mesh to draw more than without. Its update is a part of the
-    step, and cannot be timed by itself: the one of a step with the mesh more than without, the median of 10."""
+    step, and cannot be timed by itself: the difference between steps with and without the mesh, the median of 10."""
     spent, steps = {}, {}
     for drawn in (False, True):
         simulation = Simulation(gravity=(0.0, 0.0, 0.0))

@@ -39,7 +39,7 @@ def damping_ratio_of(body):
 
 class Simulation:
     """substeps: per frame. solver: "constraints" or "fem". iterations: passes of the constraints within a substep, or
-    at most so many of the conjugate gradients. radius: of particles and skin, in contact."""
+    the maximum of the conjugate gradients. radius: of particles and skin, in contact."""
 
     def __init__(self, substeps=4, solver="constraints", iterations=None, radius=0.004, gravity=GRAVITY):
         self.solver, self.iterations, self.radius = solver, iterations, radius

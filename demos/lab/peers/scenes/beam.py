@@ -74,7 +74,7 @@ def corners_of(nodes):
 
 
 def swing(simulation, body, frames=FRAMES, clock=None):
-    """(frames, 3): where the middle of the free end's corners has gone after each frame."""
+    """(frames, 3): the displacement of the middle of the free end's corners after each frame."""
     handle = simulation.add_soft(body)
     simulation.start()
     rest = simulation.nodes(handle)
@@ -101,7 +101,7 @@ def error(way, reference):
 
 
 def prepare(quick):
-    """The references by material, (frames, 3) each, and what is to be said of them."""
+    """The references by material, (frames, 3) each, and remarks on them."""
     from adapters.tetskin import Simulation
     quadratic = lambda name: swing(Simulation(8, "alone", quadratic=True, tolerance=1e-5), body_of(name))  # noqa: E731
     ours = swing(Simulation(128, "alone", tolerance=1e-7), body_of("3,000 tets"))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What a fine surface costs by itself: to attach the snake's 60,000 triangles to a cage, and to move them once per
+"""The cost of a fine surface by itself: attaching the snake's 60,000 triangles to a cage, and moving them once per
 frame.
 
-Each adapter's function skin_times does what the peer offers; the cage's nodes are moved by a bend that all share.
+Each adapter's function skin_times uses what the peer offers; the cage's nodes are moved by a bend that all share.
 """
 import importlib
 

@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """A snake of 60,000 triangles, in a cage of some 1,000 tets, falls 0.2 m onto the ground and rests there.
 
-All peers simulate the cage's tets, as they are. Those that take a second, finer surface are in contact at it; for the
-others the skin is put on afterwards, by tetskin's Skin: what is drawn is that in every peer, and its gap is measured.
-Error: RMS distance of the drawn surface, over the frames from 1.5 to 2 s, from that of tetskin's world in 64 substeps,
-in percent of the snake's size: it is a comparison with us, and not with the truth, which for the gap is 0.
+All peers simulate the cage's own tets. Those that take a second, finer surface are in contact at it; for the others
+tetskin's Skin adds the skin afterwards: this surface is drawn for every peer, and its gap is measured. Error: RMS
+distance of the drawn surface, over the frames from 1.5 to 2 s, from that of tetskin's world in 64 substeps, in percent
+of the snake's size: it is a comparison with us, and not with the truth, which for the gap is 0.
 """
 import numpy as np
 import tetskin as ts
@@ -43,7 +43,7 @@ def body_of():
 
 
 class Drawn:
-    """The surface as it is drawn: the peer's own skin, or ours on its nodes."""
+    """The drawn surface: the peer's own skin, or ours on its nodes."""
 
     def __init__(self, simulation, body, handle):
         self.simulation, self.handle, self.skin = simulation, handle, None
@@ -59,7 +59,7 @@ class Drawn:
 
 
 def land(simulation, clock=None, frames=REST):
-    """Surfaces (END - 90, vertices, 3) float32 before END, and what is told of the rest."""
+    """Surfaces (END - 90, vertices, 3) float32 before END, and the values at rest."""
     body = body_of()
     simulation.add_plane(1.0)
     handle = simulation.add_soft(body)

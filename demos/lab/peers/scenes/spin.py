@@ -3,8 +3,7 @@
 """A free box of 1 x 0.4 x 0.3 m spins without gravity, damping and contact for 5 s, about an axis that is not one of
 its own.
 
-The drift of its angular momentum, and what is left of its kinetic energy, which swings into strain and back by some
-percent.
+The drift of its angular momentum, and its remaining kinetic energy, which swings into strain and back by some percent.
 """
 import numpy as np
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""A cube falls 0.1 m and rests, with stiffness from 1e3 to 1e9 Pa: who holds.
+"""A cube falls 0.1 m and rests, with stiffness from 1e3 to 1e9 Pa: which peers stay stable.
 
 How far its longest diagonal is from that at rest at the end, and how fast it still is.
 """

@@ -9,7 +9,7 @@
 namespace tetskin {
 namespace {
 
-/// Undoes what was begun, unless it is told that all went well: also where memory runs out.
+/// Undoes a half-made change, unless it is told of success: also if memory runs out.
 template <class Undo>
 struct Unless {
   Undo undo;
@@ -47,7 +47,7 @@ void showTeleported(World::Body& body) {
   (void)body.skin.update();
 }
 
-/// Also of a body without a surface to be seen, which no skin looks at. One that is asleep has been looked at.
+/// Also for a body without a visible surface, which no skin checks. A sleeping one has been checked.
 bool isFinite(const World::Body& body) {
   const btSoftBody& soft = body.body->body();
   const auto nodes = nodePositions(soft);
@@ -81,7 +81,7 @@ Status World::checkStep(double dt, int substeps) const {
   return invalid("the world is within a step: it cannot be stepped or restored by what it calls");
 }
 
-/// The longest step that is within `dt` as often as it should be: Bullet divides, and rounds down.
+/// The longest step that fits into `dt` as often as it should: Bullet divides, and rounds down.
 btScalar World::substepOf(double dt, int substeps) {
   const auto whole = static_cast<btScalar>(dt);
   btScalar step = whole / static_cast<btScalar>(substeps);
@@ -112,7 +112,7 @@ Result<bool> World::step(Replay& replay) {
     const Within within(*this);
     if (!replay.step()) return false;
   }
-  // A file has the impulses of steps.
+  // A file contains impulses per step.
   for (const auto& joint : joints_) {
     if (btHingeConstraint* hinge = hingeOf(*joint))
       hinge->setMaxMotorImpulse(hinge->getMaxMotorImpulse() / replay.report().secondsPerStep);
@@ -307,7 +307,7 @@ Result<std::shared_ptr<World::Body>> World::addBody(std::shared_ptr<const Cage> 
       return Status{StatusCode::IndexOutOfRange, "nodes: there is no node " + std::to_string(node)};
   }
   Cage placed = *cage;
-  // From one array into another: in place, Emscripten 3.1.6 turns the last of an odd number while it is still read.
+  // Not in place: Emscripten 3.1.6 would overwrite the last of an odd number before it has been read.
   const std::vector<Eigen::Vector3d>& rest = cage->mesh.nodes;
   std::transform(rest.begin(), rest.end(), placed.mesh.nodes.begin(),
                  [&](const Eigen::Vector3d& node) -> Eigen::Vector3d { return placement * node; });
