@@ -38,7 +38,11 @@ using namespace bullet_detail;
 struct DeformableSolver::Impl {
   explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
-  // The stages of a step; implemented in step.cpp.
+  /// How far a step is: each of the calls below asserts that the one before it has been made. A step that something has
+  /// ended early stays where it was until `endStep`, or the next `gather`.
+  enum class Stage { Between, Gathered, Predicted, Assembled, Solved, Written };
+
+  // The stages of a step that is solved here; implemented in step.cpp.
   /// seconds  above 0
   void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
   void predict();
@@ -48,13 +52,17 @@ struct DeformableSolver::Impl {
   void writeBack();
 
   // Steps of the integration of positions; implemented in step_positions.cpp.
-  /// Call it before Bullet moves the nodes: the application may have moved some of them within the step.
+  /// Before Bullet moves the nodes: the application may have moved some of them within the step.
   void listForeignNodes(SolvedBody& body) const;
-  /// Call it after Bullet has moved the nodes in its own precision: gives them the positions that the dynamics have.
+  /// Gives nodes that Bullet has moved in its own precision the positions that the dynamics have.
   void refinePositions(btScalar dt);
-  /// Call it when rows are final: marks bodies that touch a soft one so far from the origin that rounding of positions,
-  /// at which such contacts are found, shakes them.
+  /// Marks bodies that touch a soft one so far from the origin that rounding of positions, at which such contacts are
+  /// found, shakes them.
   void findShaken();
+
+  bool inStep() const { return stage != Stage::Between; }
+  /// Goes on to a stage; solving here, from the one before it.
+  void enter(Stage next);
 
   ForceList& forces() { return solver.m_objective->m_lf; }
   const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
@@ -84,11 +92,11 @@ struct DeformableSolver::Impl {
   btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
-  /// Call it before a step: what is kept by the addresses of objects that have left the world goes with them, as others
-  /// may have been created there.
+  /// What is kept by the addresses of objects that have left the world goes with them, as others may have been created
+  /// there.
   void forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world);
   void numberAnew();
-  /// Call it before Bullet detects contacts, and again when it has called the application since.
+  /// Before Bullet detects contacts, and again when it has called the application since.
   void noteObjects();
   void dropRemovedObjects();
   void dropRemovedForces();
@@ -150,7 +158,7 @@ struct DeformableSolver::Impl {
   const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
   RigidForces* rigidForces = nullptr;                   ///< of a DeformableWorld alone, which owns them
   bool inSimulation = false;                            ///< within `stepSimulation`, of a DeformableWorld alone
-  bool inStep = false;                                  ///< from `gather` until positions have been integrated
+  Stage stage = Stage::Between;                         ///< until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;               ///< null if nobody reads it
   RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;

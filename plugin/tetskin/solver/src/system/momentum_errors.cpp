@@ -97,7 +97,8 @@ void removeMomentumError(const SystemBodies& bodies, const SystemBody& body) {
 void removeMomentumErrors(SystemBodies& bodies) {
   if (!bodies.hasRows() || bodies.hasForces()) return;
   bodies.forEachBody([&](SystemBody& body, ParallelFor*) {
-    if (body.solved.elastic && body.solved.fixed.empty() && !isHung(bodies, body)) removeMomentumError(bodies, body);
+    if (body.solved.elastic && body.solved.acted.fixed.empty() && !isHung(bodies, body))
+      removeMomentumError(bodies, body);
   });
 }
 

@@ -79,7 +79,7 @@ void ReducedUnknowns::collectComponents() {
   std::vector<std::vector<ComponentUnknown>> found(bodies_.list().size());
   bodies_.forEachBody([&](SystemBody& body, ParallelFor* inner) {
     if (needsComponents(body)) {
-      found[body.solved.place] = ComponentUnknown::makeAll(body.dynamics(), kMaxParts, inner);
+      found[body.solved.solve.place] = ComponentUnknown::makeAll(body.dynamics(), kMaxParts, inner);
     }
   });
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -119,7 +119,7 @@ Eigen::Index ReducedUnknowns::firstOf(std::size_t r, std::size_t e) const {
 /// The separate unknowns do not include other forces on the nodes.
 bool ReducedUnknowns::needsComponents(const SystemBody& body) const {
   const SolvedBody& solved = body.solved;
-  if (!solved.elastic || solved.rowCount == 0 || bodies_.hasForces() || !solved.fixed.empty()) return false;
+  if (!solved.elastic || solved.acted.rowCount == 0 || bodies_.hasForces() || !solved.acted.fixed.empty()) return false;
   return !(solved.dynamics->stiffnessNumber() < kStiffPart) || isJoined(body);
 }
 

@@ -113,7 +113,7 @@ class ReducedUnknowns {
   /// Calls call(component) for those of a body.
   template <class Call>
   void forComponents(const SystemBody& body, Call&& call) const {
-    const auto& [first, last] = componentsOf_[body.solved.place];
+    const auto& [first, last] = componentsOf_[body.solved.solve.place];
     for (std::size_t c = first; c < last; ++c) call(components_[c]);
   }
 

@@ -15,7 +15,7 @@ SystemBodies::SystemBodies(const SystemInput& input, const SolvedSystem& system,
   bodies_.reserve(system.bodies.size());
   for (std::size_t k = 0; k < system.bodies.size(); ++k) {
     SystemBody& body = bodies_.emplace_back(system.bodies[k], in_.bodies.bodies()[system.bodies[k]]);
-    body.solved.place = k;
+    body.solved.solve.place = k;
     sizes_.push_back(body.matrix().slotCount());
   }
   collectEnds();
@@ -28,12 +28,12 @@ void SystemBodies::collectEnds() {
       const RowEnd& end = row(r).ends[index];
       if (!end.isSoft()) continue;
       const SolvedBody& on = in_.bodies.bodies()[end.body];
-      assert(on.place < bodies_.size() && &bodies_[on.place].solved == &on);
-      ends[on.place].emplace_back(r, index);
+      assert(on.solve.place < bodies_.size() && &bodies_[on.solve.place].solved == &on);
+      ends[on.solve.place].emplace_back(r, index);
     }
   }
   forEachBody([&](SystemBody& body, ParallelFor*) {
-    for (const auto& [r, index] : ends[body.solved.place]) body.ends.add(r, index, pointOf(r, index));
+    for (const auto& [r, index] : ends[body.solved.solve.place]) body.ends.add(r, index, pointOf(r, index));
   });
 }
 

@@ -47,7 +47,7 @@ struct SystemBody {
 /// order.
 class SystemBodies {
  public:
-  /// system  of the bodies of the input, whose `place` is set
+  /// system  of the bodies of the input, whose places in it are set
   SystemBodies(const SystemInput& input, const SolvedSystem& system, ParallelFor* threads);
 
   std::vector<SystemBody>& list() { return bodies_; }

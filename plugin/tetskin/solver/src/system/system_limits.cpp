@@ -62,11 +62,11 @@ elastic_detail::SolveLimits limitsWithoutRows(const SystemBodies& bodies) {
   double squaredStart = 0.0, unseen = 0.0;
   for (const SystemBody& one : bodies.list()) {
     const SolvedBody& body = one.solved;
-    unseen += body.dynamics->squaredImpulses(body.unseenSpeed);
+    unseen += body.dynamics->squaredImpulses(body.solve.unseenSpeed);
     limits.tolerance = std::min(limits.tolerance, body.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.settings->iterations);
-    if (body.elastic && !body.deferSolve) limits.enough += body.solve->enough();
-    changed |= !body.fixed.empty() || body.velocityChanged;
+    if (body.elastic && !body.solve.deferred) limits.enough += body.memory->gradient.enough();
+    changed |= !body.acted.fixed.empty() || body.acted.changed;
     stiff |= body.dynamics->isStiff();
     squaredStart += body.dynamics->squaredSolution() * shareOfImpulses(body);
     anyElastic |= body.elastic != nullptr;

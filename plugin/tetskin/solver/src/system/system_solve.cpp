@@ -37,7 +37,7 @@ SystemSolve::SystemSolve(const SystemInput& input, const SolvedSystem& system, P
     : bodies_(input, system, threads),
       reduced_(bodies_),
       products_(bodies_, reduced_),
-      gradient_(*bodies_.list().front().solved.solve),
+      gradient_(bodies_.list().front().solved.memory->gradient),
       endVelocities_(bodies_.rowCount(), {btVector3(0, 0, 0), btVector3(0, 0, 0)}),
       before_(bodies_.rowCount(), btVector3(0, 0, 0)),
       stepped_(before_) {
@@ -283,7 +283,7 @@ btScalar SystemSolve::searchLine(const Residuals&) {
   bodies_.forEachBody([&](SystemBody& body, ParallelFor*) {
     const auto& matrix = body.matrix();
     const btScalar *solution = matrix.solution(), *residual = body.matrix().residual();
-    Slope& own = slopes[body.solved.place];
+    Slope& own = slopes[body.solved.solve.place];
     for (std::size_t i = 0; i < matrix.wideSize(); ++i) {
       const auto step = static_cast<double>(solution[i] - body.start.solution[i]);
       const auto before = static_cast<double>(body.start.residual[i]);
