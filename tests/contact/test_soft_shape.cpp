@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "contact_test.h"
 #include "soft_fixtures.h"
 
 namespace tetskin::test {

@@ -144,12 +144,12 @@ TEST_F(WarmRows, OfANodeBeginWithTheDirectionsInWhichBulletFixesIt) {
   fix(2, {x, x});
   fix(3, {x, y, z});
   listFixedNodes(projection, bodies_);
-  ASSERT_EQ(body.fixed.size(), 4U);
-  EXPECT_EQ(body.fixed[0].kind, FixedNode::AlongDirection);
-  EXPECT_EQ(body.fixed[1].kind, FixedNode::AllButDirection);
-  EXPECT_NEAR(std::abs(body.fixed[1].direction.z()), 1, 1e-6);
-  EXPECT_EQ(body.fixed[2].kind, FixedNode::AlongDirection);
-  EXPECT_EQ(body.fixed[3].kind, FixedNode::Fixed);
+  ASSERT_EQ(body.acted.fixed.size(), 4U);
+  EXPECT_EQ(body.acted.fixed[0].kind, FixedNode::AlongDirection);
+  EXPECT_EQ(body.acted.fixed[1].kind, FixedNode::AllButDirection);
+  EXPECT_NEAR(std::abs(body.acted.fixed[1].direction.z()), 1, 1e-6);
+  EXPECT_EQ(body.acted.fixed[2].kind, FixedNode::AlongDirection);
+  EXPECT_EQ(body.acted.fixed[3].kind, FixedNode::Fixed);
 }
 
 /// A fold is pushed several ways.

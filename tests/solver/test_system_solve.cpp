@@ -107,7 +107,7 @@ class System : public testing::Test {
     system.bodies = {0};
     for (ContactRow& row : rows_.rows()) system.rows.push_back(&row);
     for (std::size_t r = 0; r < rigids_.list().size(); ++r) system.rigids.push_back(r);
-    bodies_.bodies()[0].rowCount = static_cast<int>(rows_.rows().size());
+    bodies_.bodies()[0].acted.rowCount = static_cast<int>(rows_.rows().size());
     boxBefore_ << toEigen(box_.getLinearVelocity()), toEigen(box_.getAngularVelocity());
     return SystemSolve({bodies_, rows_, rigids_, others_}, system, nullptr).solve();
   }

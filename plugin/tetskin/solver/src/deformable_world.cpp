@@ -56,7 +56,7 @@ class Simulation {
   Simulation(SolverImpl& solver, const btSoftBodyArray& bodies)
       : solver_(solver), bodies_(bodies), isInner_(solver.inSimulation), running_(solver.inSimulation) {}
   ~Simulation() {
-    if (solver_.inStep && !isInner_) solver_.endStep(bodies_);
+    if (solver_.inStep() && !isInner_) solver_.endStep(bodies_);
   }
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

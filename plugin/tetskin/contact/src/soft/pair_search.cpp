@@ -10,43 +10,15 @@ namespace {
 
 /// Positions of a sample that are nearer to each other at rest than this many mean edges are one, found on the face
 /// between two tets.
-constexpr btScalar kOnePlace = btScalar(0.3);
+constexpr btScalar kOnePlaceEdges = btScalar(0.3);
 /// For contacts of a body with itself, in cubes of the grid: a sample whose rest position, as a tet maps it, differs
 /// from its own by less than this is where it belongs, and does not touch there.
 constexpr btScalar kOwnPlaceCubes = btScalar(1.5);
-/// In cubes of the grid: how much deeper another sample of a node must be than one that touched before. Without it, a
-/// resting body is supported by other samples in each step, and jitters.
-constexpr btScalar kKeptCubes = btScalar(0.1);
-/// In mean edges: two samples of a node that are this far apart may both be contacts. At 2, which leaves one, light
-/// parts swing between the two: in `tetskin_measure` soft stack/1 to 100 to 1 never rests (nodes at 0.01 of its size
-/// per second, where 0.005 is promised); at 0.2, nodes of light corners in a bin of 100 cubes swing at 1 m/s.
-constexpr btScalar kBesideEdges = btScalar(0.1);
-/// Most contacts of a node beside the deepest one, in a direction. With 1, a light end in the heap of `tetskin_pile`
-/// swings at 1 m/s on four samples.
-constexpr std::size_t kMostBeside = 3;
-/// Depth, in cubes of the grid, beyond which a further sample becomes a contact: one that others support does not sink.
-/// With all of them, a bin of cubes comes to rest later.
-constexpr btScalar kSunkCubes = btScalar(0.05);
-/// Steps for which a sample is remembered that has touched: samples that take turns do so within fewer.
-constexpr int kRememberedSteps = 16;
-/// Cosine between normals from which on two contacts of a node count as one: a node in a fold is pushed several ways.
-/// The soft scenes of `tetskin_measure`, which have no folds, hold with -1, too.
-constexpr btScalar kOneWay = btScalar(0.7);
-/// Cosine between the normals of two surfaces below which they can touch, for a sample on an edge, and for one on a
-/// face.
-constexpr btScalar kOpposing = btScalar(-0.3), kOpposingOnFaces = btScalar(-0.8);
-/// By how much that cosine may be larger for a sample that has touched: otherwise a light part that one such contact
-/// holds comes and goes with it.
-constexpr btScalar kKeptOpposing = btScalar(0.15);
-/// Depth, in cubes of the grid, beyond which a sample is a contact even if the normals are as if its surface slid along
-/// the other one, unless the normals agree by this cosine. The overlaps of `tetskin_measure` hold with 0.95 and with
-/// -1, too.
-constexpr btScalar kPiercingCubes = btScalar(0.2), kAgreeing = btScalar(0.3);
 /// In cubes of the grid: relative motion up to which touches are followed instead of searched for. With 0.1, a pile of
 /// cubes is 0.8 mm deep at rest instead of 0.3.
 constexpr btScalar kFollowedCubes = btScalar(0.05);
 /// A side that is farther away at rest than this many mean edges belongs to another part.
-constexpr btScalar kOneSide = 1;
+constexpr btScalar kOneSideEdges = 1;
 
 /// Maps a covector from rest space to the world, by the gradients of a deformed tet's weights.
 btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& deformed, const btVector3& gradient) {
@@ -60,8 +32,13 @@ btVector3 carriedGradient(const ShapeData& data, int tet, const DeformedTet& def
   return carried;
 }
 
-bool contains(const std::vector<int>& ascending, int sample) {
-  return std::binary_search(ascending.begin(), ascending.end(), sample);
+/// Lists the samples that pierce, ascending.
+void listPierced(const std::vector<Touch>& touches, std::vector<int>& pierced) {
+  pierced.clear();
+  for (const Touch& touch : touches) {
+    if (touch.pierces) pierced.push_back(touch.sample);
+  }
+  std::sort(pierced.begin(), pierced.end());
 }
 
 Clearance outside(btScalar gap) {
@@ -107,17 +84,15 @@ Overlap PairSearch::find(ContactBody& first, ContactBody& second, btScalar dt, c
   memory.follows = apart.isZero();
   if (!memory.candidates.empty()) second.place();
   overlap_ = {};
-  touches.clear();
-  touches_ = &touches;
-  touchOfNode_.assign(first.data().nodes.size(), -1);
+  touches_.begin(first, second.data().grid.spacing(), memory.touched, touches);
   memory.sides.beginStep();
-  touched_.swap(memory.touched);
   pierced_.swap(memory.pierced);
   memory.motion.markSearched();
   memory.candidates.visit(
       second, [&](const VisitedRun& run) -> const ContactBox& { return beginRun(run); },
       [&](int tet) { return testTet(tet); }, [&] { touchRun(); });
-  remember(memory);
+  touches_.remember(memory.touched);
+  listPierced(touches, memory.pierced);
   memory.overlap = overlap_;
   return overlap_;
 }
@@ -165,35 +140,6 @@ bool PairMemory::fits(const ContactBody& first, const ContactBody& second, const
          std::all_of(touched.begin(), touched.end(), [&](const TouchedSample& t) { return isSample(t.sample); }) &&
          std::all_of(touches.begin(), touches.end(),
                      [&](const Touch& t) { return isSample(t.sample) && t.tet >= 0 && t.tet < tets; });
-}
-
-/// A node that touches nothing in this step keeps the samples with which it touched before.
-void PairSearch::remember(PairMemory& memory) const {
-  memory.touched.clear();
-  memory.pierced.clear();
-  for (const Touch& touch : *touches_) {
-    memory.touched.push_back({touch.sample, 0});
-    if (touch.pierces) memory.pierced.push_back(touch.sample);
-  }
-  std::sort(memory.pierced.begin(), memory.pierced.end());
-  const auto less = [](const TouchedSample& a, const TouchedSample& b) { return a.sample < b.sample; };
-  std::sort(memory.touched.begin(), memory.touched.end(), less);
-  const auto now = static_cast<std::ptrdiff_t>(memory.touched.size());
-  const std::vector<int>& nodes = now_.first->data().sampleNodes;
-  for (const TouchedSample& known : touched_) {
-    if (std::binary_search(memory.touched.begin(), memory.touched.begin() + now, known, less)) continue;
-    const int node = nodes[static_cast<std::size_t>(known.sample)];
-    const int age = known.age + (touchOfNode_[static_cast<std::size_t>(node)] < 0 ? 0 : 1);
-    if (age < kRememberedSteps) memory.touched.push_back({known.sample, age});
-  }
-  std::inplace_merge(memory.touched.begin(), memory.touched.begin() + now, memory.touched.end(), less);
-}
-
-/// Below 0: it has not touched.
-int PairSearch::ageOf(int sample) const {
-  const auto known = std::lower_bound(touched_.begin(), touched_.end(), sample,
-                                      [](const TouchedSample& a, int wanted) { return a.sample < wanted; });
-  return known != touched_.end() && known->sample == sample ? known->age : -1;
 }
 
 const ContactBox& PairSearch::beginRun(const VisitedRun& run) {
@@ -349,7 +295,7 @@ Clearance PairSearch::addPosition(int tet, int sample, int k) {
     if (moved < own) return outside(ownPlaceClearance((own - moved) / in.restPerWorld, in));
   }
   int& head = heads_[static_cast<std::size_t>(k)];
-  const btScalar apart = kOnePlace * data.edge;
+  const btScalar apart = kOnePlaceEdges * data.edge;
   for (int p = head; p >= 0; p = positions_[static_cast<std::size_t>(p)].next) {
     if ((positions_[static_cast<std::size_t>(p)].rest - position.rest).length2() < apart * apart) return atSurface();
   }
@@ -408,27 +354,18 @@ btVector3 PairSearch::ownNormal(int sample) const {
   return length > SIMD_EPSILON ? own / length : btVector3(0, 0, 0);
 }
 
-/// Determines the direction in which the contact pushes; returns false if it is no contact. Surfaces touch whose
-/// normals oppose each other: a surface that slides along another one does not catch on its edges by the sides of its
-/// own. All deep samples leave in one direction, since pushing each to its nearest surface would tear the body; less
-/// deep samples beside them do not hold it back.
-bool PairSearch::chooseNormal(const btVector3& own, bool onFace, Touch& touch) const {
-  const bool overlaps = !now_.apart.isZero();
-  // Where bodies coincide, their surfaces do, too.
-  if (overlaps && own.dot(touch.normal) > kAgreeing) touch.distance = std::min(touch.distance, -2 * now_.deep);
-  const bool deep = overlaps && touch.distance < -now_.deep;
-  if (deep) touch.normal = now_.apart;
-  if (overlaps && touch.distance < 0 && touch.normal.dot(now_.apart) < -kOpposing) return false;
-  if (own.isZero()) return true;
-  const bool pierced = contains(pierced_, touch.sample);
-  touch.pierces = !overlaps && (pierced || touch.distance < -kPiercingCubes * now_.second->data().grid.spacing());
-  if (touch.pierces) return own.dot(touch.normal) < kAgreeing;
-  const btScalar kept = ageOf(touch.sample) >= 0 ? kKeptOpposing : btScalar(0);
-  return own.dot(touch.normal) < (onFace && !deep ? kOpposingOnFaces : kOpposing) + kept;
+SampleSurface PairSearch::surfaceOf(int sample) const {
+  SampleSurface surface;
+  surface.normal = ownNormal(sample);
+  surface.onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
+  surface.touched = touches_.ageOf(sample) >= 0;
+  surface.pierced = std::binary_search(pierced_.begin(), pierced_.end(), sample);
+  return surface;
 }
 
+/// Of the touch as it is before a normal is chosen.
 void PairSearch::accumulateOverlap(const btVector3& own, const Touch& touch) {
-  overlap_.agreeing += own.dot(touch.normal) > kAgreeing ? 1 : 0;
+  overlap_.agreeing += agree(own, touch.normal) ? 1 : 0;
   if (!(touch.distance < 0)) return;
   overlap_.deepest = std::min(overlap_.deepest, touch.distance);
   overlap_.normals += own;
@@ -438,7 +375,7 @@ void PairSearch::accumulateOverlap(const btVector3& own, const Touch& touch) {
 void PairSearch::makeTouch(int k, const SamplePosition& position) {
   const ShapeData& in = now_.second->data();
   const int sample = run_.first + k;
-  const ContactSide* before = now_.sides->find(sample, position.rest, kOneSide * in.edge);
+  const ContactSide* before = now_.sides->find(sample, position.rest, kOneSideEdges * in.edge);
   const btVector3 motion =
       asksForMotion(in.grid, position.nearest, before) ? restMotion(sample, position) : btVector3(0, 0, 0);
   SideDistance found;
@@ -460,66 +397,9 @@ void PairSearch::makeTouch(int k, const SamplePosition& position) {
   made.restFound = position.rest;
   made.restNormal = found.side.normal;
   made.restDistance = found.distance;
-  const btVector3 own = ownNormal(sample);
-  accumulateOverlap(own, made);
-  const bool onFace = now_.first->data().sampleNormals[static_cast<std::size_t>(sample)].length() > kOnFace;
-  if (!chooseNormal(own, onFace, made)) return;
-  keepDeepest(made, now_.first->data().sampleNodes[static_cast<std::size_t>(sample)]);
-}
-
-/// Samples that touched in the step before count as deeper: otherwise a resting body would be supported by other
-/// samples in each step, and jitter.
-btScalar PairSearch::rankOf(const Touch& touch) const {
-  return ageOf(touch.sample) == 0 ? touch.distance - kKeptCubes * now_.second->data().grid.spacing() : touch.distance;
-}
-
-/// Of a node with samples on a long part, one may touch while others that have touched are held by that contact only:
-/// were they not contacts, too, they would take turns, and the part would swing from step to step.
-void PairSearch::keepDeepest(const Touch& touch, int node) {
-  assert(node >= 0 && static_cast<std::size_t>(node) < touchOfNode_.size());
-  sameWay_.clear();
-  for (int t = touchOfNode_[static_cast<std::size_t>(node)]; t >= 0; t = at(t).next) {
-    if (at(t).normal.dot(touch.normal) >= kOneWay) sameWay_.push_back(t);
-  }
-  if (sameWay_.empty()) return add(touch, node);
-  const auto isDeeper = [this](int a, int b) { return rankOf(at(a)) < rankOf(at(b)); };
-  std::swap(sameWay_.front(), *std::min_element(sameWay_.begin(), sameWay_.end(), isDeeper));
-  Touch other = touch;  // the one that is not the deepest
-  if (rankOf(touch) < rankOf(at(sameWay_.front()))) {
-    other = at(sameWay_.front());
-    replace(sameWay_.front(), touch);
-  }
-  if (ageOf(other.sample) >= 0) keepBeside(other, node);
-}
-
-/// Keeps a touch unless one nearby, or enough others, are deeper.
-void PairSearch::keepBeside(const Touch& touch, int node) {
-  assert(!sameWay_.empty());
-  const btScalar apart = kBesideEdges * now_.first->data().edge;
-  const auto isNear = [&](int t) { return (touch.point - at(t).point).length2() <= apart * apart; };
-  if (isNear(sameWay_.front())) return;
-  auto rival = std::find_if(sameWay_.begin() + 1, sameWay_.end(), isNear);
-  if (rival == sameWay_.end()) {
-    // A sample that has touched in the step before would sink otherwise.
-    const bool sinks = ageOf(touch.sample) == 0 || touch.distance < -kSunkCubes * now_.second->data().grid.spacing();
-    if (sameWay_.size() <= (sinks ? kMostBeside : 1)) return add(touch, node);
-    rival = std::max_element(sameWay_.begin() + 1, sameWay_.end(),
-                             [this](int a, int b) { return rankOf(at(a)) < rankOf(at(b)); });
-  }
-  if (rankOf(touch) < rankOf(at(*rival))) replace(*rival, touch);
-}
-
-void PairSearch::replace(int index, const Touch& by) {
-  const int next = at(index).next;
-  at(index) = by;
-  at(index).next = next;
-}
-
-void PairSearch::add(const Touch& touch, int node) {
-  int& head = touchOfNode_[static_cast<std::size_t>(node)];
-  touches_->push_back(touch);
-  touches_->back().next = head;
-  head = static_cast<int>(touches_->size()) - 1;
+  const SampleSurface own = surfaceOf(sample);
+  accumulateOverlap(own.normal, made);
+  if (chooseNormal({now_.apart, now_.deep, in.grid.spacing()}, own, made)) touches_.keep(made);
 }
 
 }  // namespace tetskin::contact_detail

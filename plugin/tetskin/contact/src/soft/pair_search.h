@@ -4,7 +4,9 @@
 // Internal to SoftContacts: finds where samples of one body touch another.
 #pragma once
 
+#include <tetskin/contact/src/soft/contact_normal.h>
 #include <tetskin/contact/src/soft/contact_sides.h>
+#include <tetskin/contact/src/soft/node_touches.h>
 #include <tetskin/contact/src/soft/pair_candidates.h>
 #include <tetskin/contact/src/soft/pair_motion.h>
 
@@ -13,34 +15,12 @@
 
 namespace tetskin::contact_detail {
 
-/// A sample of one body at the surface of another, or below it.
-struct Touch {
-  int sample = 0, run = 0;
-  int tet = -1;              ///< of the other body
-  btScalar weights[4] = {};  ///< in that tet
-  btVector3 point{0, 0, 0};  ///< of the sample, world space
-  btVector3 normal{0, 1, 0};
-  btScalar distance = 0;  ///< world space; below 0: the depth
-  bool pierces = false;   ///< deeper than a sample of a sliding surface can be, in this step or before
-  int next = -1;          ///< next touch of the same node
-  // The surface as a plane, when the touch was found; rest space of the other body.
-  btVector3 restFound{0, 0, 0};  ///< position of the sample
-  btVector3 restNormal{0, 1, 0};
-  btScalar restDistance = 0;
-};
-
 /// The overlap of one body with another, measured by its samples.
 struct Overlap {
   btScalar deepest = 0;        ///< least distance, below 0
   btVector3 normals{0, 0, 0};  ///< sum of the unit normals of the samples inside
   int inside = 0;              ///< number of samples inside
   int agreeing = 0;  ///< number of samples inside or within reach whose normals agree with those of the other surface
-};
-
-/// A sample that has touched the other body in one of the last steps.
-struct TouchedSample {
-  int sample = 0;
-  int age = 0;  ///< steps in which its node has touched with other samples since then
 };
 
 /// What a pair of bodies stores from step to step about the first one's samples in the second one.
@@ -72,10 +52,8 @@ class PairSearch {
   ///          within it are left out
   /// apart    direction in which the first body is to leave the second, where it is deep in it, and the depth from
   ///          which on it applies; or 0
-  /// touches  those of the step before, on return those of this step: for each node of the first body, the deepest of
-  ///          the samples in which it has the largest weight, and the deepest of those that are pushed in another
-  ///          direction; beside each, others that have touched in the last steps. While the bodies have hardly moved
-  ///          relative to each other, they stay the same samples in the same tets
+  /// touches  those of the step before, on return those of this step: see NodeTouches. While the bodies have hardly
+  ///          moved relative to each other, they stay the same samples in the same tets
   Overlap find(ContactBody& first, ContactBody& second, btScalar dt, const btVector3& apart, btScalar deep,
                PairMemory& memory, std::vector<Touch>& touches);
 
@@ -104,7 +82,6 @@ class PairSearch {
   };
 
   bool follow(std::vector<Touch>& touches);
-  void remember(PairMemory& memory) const;
   const ContactBox& beginRun(const VisitedRun& run);
   void carryRun();
   const DeformedTet& deformed(int tet);
@@ -121,14 +98,7 @@ class PairSearch {
   btVector3 velocityOf(int sample, const SamplePosition& position) const;
   btVector3 restMotion(int sample, const SamplePosition& position);
   btVector3 ownNormal(int sample) const;
-  bool chooseNormal(const btVector3& own, bool onFace, Touch& touch) const;
-  void keepDeepest(const Touch& touch, int node);
-  void keepBeside(const Touch& touch, int node);
-  void replace(int index, const Touch& by);
-  void add(const Touch& touch, int node);
-  Touch& at(int index) { return (*touches_)[static_cast<std::size_t>(index)]; }
-  btScalar rankOf(const Touch& touch) const;
-  int ageOf(int sample) const;
+  SampleSurface surfaceOf(int sample) const;
 
   Search now_{};
   std::uint64_t pair_ = 0;       ///< number of the pair that is searched
@@ -141,13 +111,10 @@ class PairSearch {
   std::vector<btScalar>
       carried_[3];                ///< by sample of the run: its coordinates; lanes that are left over repeat the last
   std::vector<btScalar> inside_;  ///< by sample of the run: how far inside of the tet it is
-  std::vector<TouchedSample> touched_;  ///< of the steps before
-  std::vector<int> pierced_;            ///< samples of the step before
+  std::vector<int> pierced_;      ///< samples of the step before
   std::vector<SamplePosition> positions_;
   std::vector<int> heads_;  ///< by sample of the run: index in `positions_`
-  std::vector<Touch>* touches_ = nullptr;
-  std::vector<int> touchOfNode_;
-  std::vector<int> sameWay_;  ///< in `touches_`: those of a node in one direction, the deepest first
+  NodeTouches touches_;
   Overlap overlap_;
 };
 

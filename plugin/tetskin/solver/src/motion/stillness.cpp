@@ -44,7 +44,7 @@ bool isPinned(const btSoftBody& body) {
 
 /// True if anything keeps the body from flying freely; contacts of Bullet's own bodies are not known here.
 bool isHeld(const SolvedBody& solved) {
-  return !solved.elastic || *solved.hasRows || isPinned(*solved.body);
+  return !solved.elastic || solved.memory->rows.any || isPinned(*solved.body);
 }
 
 /// The velocity of the centroid of the nodes that can move.
@@ -153,7 +153,7 @@ btScalar Stillness::timeOf(const SolvedBody& solved, btScalar seconds) {
   const btScalar mean = kMeanTime * btSqrt(size / std::max(gravity, kSizesPerSecond * kSizesPerSecond * size));
   const btVector3 velocity = meanVelocity(body);
   wait.velocity += std::min(seconds / mean, btScalar(1)) * (velocity - wait.velocity);
-  const bool touched = !solved.elastic || *solved.hasContacts;
+  const bool touched = !solved.elastic || solved.memory->rows.contacts;
   const btScalar unbalanced = kUnbalanced * threshold * gravity * mean + (touched ? rounding / seconds : btScalar(0));
   const bool isBalanced = !((velocity - wait.velocity).length() > unbalanced) || !(gravity > 0);
   const bool isCalm = isBalanced && !(squared > kCalm * kCalm * threshold * threshold);

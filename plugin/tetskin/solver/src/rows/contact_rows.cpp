@@ -187,11 +187,11 @@ const FrictionAnchor* anchorFrom(const std::vector<FrictionAnchor>& anchors, con
 /// frame      the object's
 void warmStart(const SolvedBody& body, const btVector3& remainder, const btTransform& frame, btScalar seconds,
                ContactRow& row, RowOrigin& origin) {
-  assert(body.frictionAnchors && seconds > 0);
+  assert(body.memory && seconds > 0);
   // In the object's frame, where sums keep digits that a position far from the origin lacks.
   const btVector3 here = frame.invXform(origin.position) + remainder * frame.getBasis();
   origin.stickingPosition = here;
-  const FrictionAnchor* known = anchorFrom(*body.frictionAnchors, row, origin);
+  const FrictionAnchor* known = anchorFrom(body.memory->frictionAnchors, row, origin);
   if (!known) return;
   origin.stickingPosition = known->position;
   btVector3 offset = row.ends[1].isSoft() ? known->position : frame.getBasis() * (here - known->position);
@@ -298,7 +298,7 @@ void ContactRows::collect(SolverBodies& bodies, RigidUnknowns& rigids, btScalar 
     const std::size_t before = rows_.size();
     addBody(bodies, b, rigids, seconds);
     addAnchors(bodies, b, rigids, seconds);
-    body.rowCount = static_cast<int>(rows_.size() - before);
+    body.acted.rowCount = static_cast<int>(rows_.size() - before);
   }
 }
 
@@ -333,8 +333,8 @@ void ContactRows::add(PointContacts& contacts, SolverBodies& bodies, btScalar se
     row.gapVelocity = std::max(seenGap(gap, contact) / seconds, -pushingOut);
     warmStart(body, remainder, object->getWorldTransform(), seconds, row, origin);
     add(row, origin);
-    ++body.rowCount;
-    if (other) ++other->rowCount;
+    ++body.acted.rowCount;
+    if (other) ++other->acted.rowCount;
   }
 }
 
@@ -369,14 +369,14 @@ void ContactRows::add(std::vector<PointJoint>& joints, SolverBodies& bodies, Rig
     if (!joint.at.isFree(*joint.body) && row.ends[1].rigid.unknown < 0) continue;
     if (isNaN(row.relative)) continue;
     add(row, origin);
-    ++bodies.bodies()[index].rowCount;
+    ++bodies.bodies()[index].acted.rowCount;
   }
 }
 
 void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds) {
   SolvedBody& body = bodies.bodies()[index];
   BodyChannel* channel = channelOf(*body.body);
-  readBulletsContacts(*body.body, channel ? channel->speculation() : btScalar(0), *body.bulletsContacts);
+  readBulletsContacts(*body.body, channel ? channel->speculation() : btScalar(0), body.memory->bulletsContacts);
   if (channel) channel->setSpeculation(0);
   const btScalar pushingOut = kPushingOut * sizeOf(*body.body);
   const auto add = [&](PointContact& contact, bool atStart) {
@@ -396,7 +396,7 @@ void ContactRows::addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns
     warmStart(body, remainder, rigids.startOf(*contact.object), seconds, row, origin);
     this->add(row, origin);
   };
-  for (PointContact& contact : *body.bulletsContacts) add(contact, false);
+  for (PointContact& contact : body.memory->bulletsContacts) add(contact, false);
   if (!channel) return;
   for (PointContact& contact : channel->pointContacts()) add(contact, true);
 }
@@ -445,7 +445,7 @@ btScalar ContactRows::likeUsual(btScalar seconds) const {
 void ContactRows::listLoads(const SolverBodies& bodies, btScalar seconds) {
   loads_.resize(bodies.bodies().size());
   for (std::size_t b = 0; b < loads_.size(); ++b) {
-    loads_[b].assign(bodies.bodies()[b].rowCount > 0 ? bodies.bodies()[b].dynamics->nodeCount() : 0, 0);
+    loads_[b].assign(bodies.bodies()[b].acted.rowCount > 0 ? bodies.bodies()[b].dynamics->nodeCount() : 0, 0);
   }
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const ContactRow& row = rows_[r];
@@ -501,8 +501,8 @@ void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& 
 
 void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
   for (SolvedBody& body : bodies.bodies()) {
-    body.frictionAnchors->clear();
-    *body.hasRows = *body.hasContacts = false;
+    body.memory->frictionAnchors.clear();
+    body.memory->rows = {};
   }
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const ContactRow& row = rows_[r];
@@ -511,14 +511,15 @@ void ContactRows::finish(SolverBodies& bodies, btScalar seconds) const {
     if (row.state == ContactRow::State::Apart && !row.constant) continue;
     for (const RowEnd& end : row.ends) {
       if (!end.isSoft()) continue;
-      *bodies.bodies()[end.body].hasRows = true;
-      *bodies.bodies()[end.body].hasContacts |= !row.joined;
+      RowsOnBody& on = bodies.bodies()[end.body].memory->rows;
+      on.any = true;
+      on.contacts |= !row.joined;
     }
     if (row.joined || !row.ends[0].isSoft()) continue;
-    bodies.bodies()[row.ends[0].body].frictionAnchors->push_back(frictionAnchorOf(row, origins_[r], seconds));
+    bodies.bodies()[row.ends[0].body].memory->frictionAnchors.push_back(frictionAnchorOf(row, origins_[r], seconds));
   }
   for (SolvedBody& body : bodies.bodies()) {
-    std::stable_sort(body.frictionAnchors->begin(), body.frictionAnchors->end(),
+    std::stable_sort(body.memory->frictionAnchors.begin(), body.memory->frictionAnchors.end(),
                      [](const FrictionAnchor& a, const FrictionAnchor& b) { return a.point < b.point; });
   }
 }

@@ -33,14 +33,14 @@ void listFixedNodes(const btDeformableContactProjection& projection, SolverBodie
     const int number = projected.getKeyAtIndex(k).getUid1();
     SolvedBody& body = bodies.bodyOf(number);
     const std::size_t node = body.indexOf(number);
-    if (body.dynamics->matrix().mass(node) != 0) body.fixed.push_back(fixedNode(node, *projected.getAtIndex(k)));
+    if (body.dynamics->matrix().mass(node) != 0) body.acted.fixed.push_back(fixedNode(node, *projected.getAtIndex(k)));
   }
 }
 
 void fixNodes(const SolvedBody& body) {
   assert(body.dynamics);
   auto& matrix = body.dynamics->matrix();
-  for (const FixedNode& fixed : body.fixed) {
+  for (const FixedNode& fixed : body.acted.fixed) {
     if (fixed.kind == FixedNode::Fixed) matrix.fix(fixed.node);
     if (fixed.kind == FixedNode::AlongDirection) matrix.fixAlong(fixed.node, fixed.direction.m_floats);
     if (fixed.kind == FixedNode::AllButDirection) matrix.fixAllBut(fixed.node, fixed.direction.m_floats);
@@ -52,7 +52,7 @@ void addDynamicFriction(const btDeformableContactProjection& projection, SolverB
     const btVector3 dv = constraint.getDv(&node);
     if (node.m_im == 0 || isNaN(dv)) return;
     residual[node.index] += dv / node.m_im;
-    bodies.bodyOf(node.index).velocityChanged = true;
+    bodies.bodyOf(node.index).acted.changed = true;
   };
   for (std::size_t b = 0; b < bodies.bodies().size(); ++b) {
     const auto& nodes = projection.m_nodeRigidConstraints[static_cast<int>(b)];

@@ -71,7 +71,7 @@ std::vector<const btSoftBody*> SolverBodies::dropAllBut(const btAlignedObjectArr
   }
   dropped_ = true;
   dropSolved(isGone);
-  for (const btSoftBody* body : gone) persistent_.erase(body);
+  for (const btSoftBody* body : gone) memories_.erase(body);
   awake.resizeNoInitialize(0);
   for (btSoftBody* body : awake_) awake.push_back(body);
   return gone;
@@ -128,8 +128,8 @@ void SolverBodies::clear() {
 
 void SolverBodies::forget(const btSoftBody& body) {
   clear();
-  persistent_.erase(&body);
-  for (auto& [other, kept] : persistent_) {
+  memories_.erase(&body);
+  for (auto& [other, kept] : memories_) {
     auto& anchors = kept.frictionAnchors;
     anchors.erase(std::remove_if(anchors.begin(), anchors.end(), [&](const auto& a) { return a.object == &body; }),
                   anchors.end());
@@ -137,13 +137,13 @@ void SolverBodies::forget(const btSoftBody& body) {
 }
 
 void SolverBodies::forgetTrees() {
-  for (auto& [body, kept] : persistent_) kept.paddedTrees.forget();
+  for (auto& [body, kept] : memories_) kept.paddedTrees.forget();
 }
 
 void SolverBodies::assign(const ForceList& forces) {
   listAwake();
   takeElastic(forces);
-  attachPersistent();
+  attachMemories();
   makeSystems(forces);
 }
 
@@ -192,19 +192,13 @@ void SolverBodies::takeElastic(const ForceList& forces) {
   }
 }
 
-void SolverBodies::attachPersistent() {
+void SolverBodies::attachMemories() {
   for (SolvedBody& body : bodies_) {
-    PersistentState& kept = persistent_[body.body];
+    BodyMemory& kept = memories_[body.body];
     const auto nodes = static_cast<std::size_t>(body.body->m_nodes.size());
-    body.frictionAnchors = &kept.frictionAnchors;
-    body.bulletsContacts = &kept.bulletsContacts;
-    body.hasRows = &kept.hasRows;
-    body.hadRows = kept.hasRows;
-    body.hasContacts = &kept.hasContacts;
-    body.hadContacts = kept.hasContacts;
-    body.paddedTrees = &kept.paddedTrees;
+    body.memory = &kept;
+    body.before = kept.rows;
     body.byBullet = !body.elastic || needsBulletsTrees(*body.body);
-    body.solve = &kept.solve;
     if (body.elastic) {
       body.dynamics = body.elastic->dynamics.get();
       continue;
@@ -293,7 +287,7 @@ SolvedBody& SolverBodies::bodyOf(int node) {
 }
 
 void SolverBodies::forget(const std::unordered_set<const btCollisionObject*>& gone) {
-  for (auto& [body, kept] : persistent_) {
+  for (auto& [body, kept] : memories_) {
     auto& anchors = kept.frictionAnchors;
     anchors.erase(std::remove_if(anchors.begin(), anchors.end(),
                                  [&](const FrictionAnchor& anchor) { return gone.count(anchor.object) > 0; }),
@@ -308,8 +302,8 @@ void SolverBodies::visitState(WorldStream& stream) {
     dropped_ = true;
     seen_.copyFromArray(stream.world().getSoftBodyArray());  // what leaves before the next step is known to go
   }
-  stream.byObject(persistent_, [&](const btSoftBody&, PersistentState& kept) {
-    stream(kept.hasRows, kept.hasContacts);
+  stream.byObject(memories_, [&](const btSoftBody&, BodyMemory& kept) {
+    stream(kept.rows.any, kept.rows.contacts);
     stream.each(kept.frictionAnchors, [&](FrictionAnchor& anchor) {
       stream(anchor.point, anchor.sample);
       stream.object(anchor.object);

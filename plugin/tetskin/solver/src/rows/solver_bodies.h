@@ -33,36 +33,60 @@ inline btScalar sizeOf(const btSoftBody& body) {
   return size[size.maxAxis()];
 }
 
+/// Whether rows act on a body in a step, and whether some of them are contacts.
+struct RowsOnBody {
+  bool any = false, contacts = false;
+};
+
+/// What is kept of a body from step to step.
+struct BodyMemory {
+  std::unique_ptr<Dynamics> masses;             ///< of a body without an elastic force
+  std::vector<FrictionAnchor> frictionAnchors;  ///< of the last step, by number of the point; of elastic bodies only
+  RowsOnBody rows;                              ///< of the last step that has been solved
+  PointContacts bulletsContacts;                ///< contacts of this step that Bullet has found
+  PaddedTrees paddedTrees;                      ///< when Bullet's trees of the body were fitted, and by how much
+  elastic_detail::ConjugateGradient<btScalar> gradient;  ///< of its own system
+};
+
 /// A body awake in this step. What it points to outlives the step: its owners are the world, the list of forces, and
-/// SolverBodies::PersistentState.
+/// SolverBodies.
 struct SolvedBody {
+  /// What the solve of a body is told, and what it tells.
+  struct Solve {
+    bool deferred = false;     ///< it begins only when contacts are known
+    double unseenSpeed = 0.0;  ///< the error of velocities that is not visible
+    std::size_t place = 0;     ///< in `SolvedSystem::bodies`, while its system is solved
+    bool again = false;        ///< result: solved once more with the effects of contacts and other forces
+    int iterations = 0;        ///< result, of this step; coupled bodies store them in the first one
+  };
+  /// What acts on it beside elasticity.
+  struct Actions {
+    int rowCount = 0;              ///< rows of contacts and anchors
+    std::vector<FixedNode> fixed;  ///< without pinned ones
+    bool changed = false;          ///< something has changed velocities, or will
+  };
+  /// How positions follow from velocities.
+  struct Positions {
+    std::vector<int> foreign;  ///< nodes that something else places: anchors of Bullet's, the application
+    bool shaken = false;       ///< contacts found at rounded positions shake it: see DeformableSolver::Impl::findShaken
+  };
+
+  // What it is.
   btSoftBody* body = nullptr;
   int first = 0;                             ///< number of its first node in Bullet's vectors
   ForcedBody* elastic = nullptr;             ///< null: only Bullet's forces act on it
   const SolverSettings* settings = nullptr;  ///< of the elastic force; without one, Bullet's
-  Dynamics* dynamics = nullptr;              ///< of the elastic force, or of PersistentState
-  bool needsDeformation = false;             ///< Bullet's own deformation gradients are needed
-  /// Of the step before, by number of the point; for elastic bodies only.
-  std::vector<FrictionAnchor>* frictionAnchors = nullptr;
-  PointContacts* bulletsContacts = nullptr;  ///< contacts of this step that Bullet has found
-  PaddedTrees* paddedTrees = nullptr;        ///< when Bullet's trees of the body were fitted, and by how much
-  bool byBullet = true;                      ///< Bullet searches for its contacts with rigid objects, by its own trees
-  elastic_detail::ConjugateGradient<btScalar>* solve = nullptr;  ///< of the body's own system
-  int iterations = 0;            ///< of this step; coupled bodies store them in the first one
-  int rowCount = 0;              ///< rows of contacts and anchors
-  std::size_t place = 0;         ///< in `SolvedSystem::bodies`, while its system is solved
-  bool* hasRows = nullptr;       ///< written for the next step: the body has rows
-  bool hadRows = false;          ///< value of `hasRows` in the step before
-  bool* hasContacts = nullptr;   ///< written for the next step: some of the rows are contacts
-  bool hadContacts = false;      ///< value of `hasContacts` in the step before
-  bool deferSolve = false;       ///< its solve begins only when contacts are known
-  std::vector<FixedNode> fixed;  ///< without pinned ones
-  std::vector<int> foreign;  ///< nodes that something else than the step places: anchors of Bullet's, the application
-  double unseenSpeed = 0.0;  ///< the error of velocities that is not visible
-  elastic_detail::StepStart start;  ///< by which its step begins
-  bool shaken = false;       ///< contacts found at rounded positions shake it: see DeformableSolver::Impl::findShaken
-  bool solvedAgain = false;  ///< solved once more with the effects of contacts and other forces
-  bool velocityChanged = false;  ///< something other than elasticity has changed velocities, or will
+  Dynamics* dynamics = nullptr;              ///< of the elastic force, or `BodyMemory::masses`
+  BodyMemory* memory = nullptr;
+  bool needsDeformation = false;  ///< Bullet's own deformation gradients are needed
+  bool byBullet = true;           ///< Bullet searches for its contacts with rigid objects, by its own trees
+  RowsOnBody before;              ///< in the step before
+
+  // Its step.
+  elastic_detail::StepStart start;
+  Solve solve;
+  Actions acted;
+  Positions positions;
 
   /// Null if the world is not known: the body is not elastic, or has been moved to another one since.
   btDiscreteDynamicsWorld* world() const {
@@ -138,20 +162,10 @@ class SolverBodies {
   void dropSolved(const IsGone& isGone);
   void listAwake();
   void takeElastic(const ForceList& forces);
-  void attachPersistent();
+  void attachMemories();
   void makeSystems(const ForceList& forces);
   /// Indices of the awake bodies that a force may act on, and couples.
   std::vector<std::size_t> actedOnBy(const btDeformableLagrangianForce& force) const;
-
-  struct PersistentState {
-    std::unique_ptr<Dynamics> masses;  ///< of a body without an elastic force
-    std::vector<FrictionAnchor> frictionAnchors;
-    bool hasRows = false;      ///< true if any row acts on the body
-    bool hasContacts = false;  ///< true if any of these is a contact
-    PointContacts bulletsContacts;
-    PaddedTrees paddedTrees;
-    elastic_detail::ConjugateGradient<btScalar> solve;
-  };
 
   std::vector<btSoftBody*> awake_, asleep_;
   std::vector<int> nodeCounts_;  ///< of all bodies, in the order of their numbers
@@ -162,7 +176,7 @@ class SolverBodies {
   std::unordered_map<const btSoftBody*, std::size_t> indices_;  ///< index in `bodies_`
   std::vector<SolvedSystem> systems_;
   std::vector<btDiscreteDynamicsWorld*> worlds_;
-  std::unordered_map<const btSoftBody*, PersistentState> persistent_;
+  std::unordered_map<const btSoftBody*, BodyMemory> memories_;
 };
 
 }  // namespace tetskin::bullet_detail

@@ -36,7 +36,7 @@ void countMoves(const btAlignedObjectArray<btSoftBody*>& bodies) {
 
 bool bullet_detail::isWithinStep(const DeformableSolver& solver) {
   const auto& impl = Access<DeformableSolver>::impl(solver);
-  return impl.inStep || impl.inSimulation;
+  return impl.inStep() || impl.inSimulation;
 }
 
 DeformableSolver::DeformableSolver() : impl_(std::make_unique<Impl>(*this)) {
@@ -204,7 +204,7 @@ void DeformableSolver::Impl::endStep(const btAlignedObjectArray<btSoftBody*>& wo
   hidden.show(world);
   rigids.paths().endStep();
   if (rigidForces) rigidForces->end();
-  inStep = false;
+  stage = Stage::Between;
 }
 
 }  // namespace tetskin

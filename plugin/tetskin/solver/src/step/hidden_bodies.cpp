@@ -12,10 +12,10 @@ void HiddenBodies::hide(const std::vector<SolvedBody>& bodies, btScalar dt) {
     btSoftBody& body = *solved.body;
     const bool hides = body.isActive() && !collidesWithSoftBodies(body);
     if (!hides) {
-      solved.paddedTrees->forget();  // because Bullet fits them without padding
+      solved.memory->paddedTrees.forget();  // because Bullet fits them without padding
       continue;
     }
-    solved.paddedTrees->fitAgain(body, *solved.dynamics, btSqrt(body.m_maxSpeedSquared) * dt);
+    solved.memory->paddedTrees.fitAgain(body, *solved.dynamics, btSqrt(body.m_maxSpeedSquared) * dt);
     hidden_.emplace_back(&body, body.getActivationState());
     body.forceActivationState(ISLAND_SLEEPING);
   }

@@ -151,11 +151,16 @@ std::size_t nodeCountOf(const SolvedSystem& system, const SolverBodies& bodies) 
 
 }  // namespace
 
+void DeformableSolver::Impl::enter(Stage next) {
+  assert(static_cast<int>(next) == static_cast<int>(stage) + 1);
+  stage = next;
+}
+
 // ---- gather
 
 void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds) {
   assert(seconds > 0);
-  inStep = true;
+  stage = Stage::Gathered;
   solving = solver.ownSolveActive();
   hidden.show(world);
   all.copyFromArray(world);
@@ -204,13 +209,14 @@ void DeformableSolver::Impl::assign() {
 // ---- predict
 
 void DeformableSolver::Impl::predict() {
+  enter(Stage::Predicted);
   useOwnSettings();
   applyOthers();
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     body.start.seconds = static_cast<double>(dt());
     body.start.continues = continuesLastStep(body);
-    body.start.pressed = body.hadRows;
-    body.start.touched = body.hadContacts;
+    body.start.pressed = body.before.any;
+    body.start.touched = body.before.contacts;
     readNodes(*body.body, *body.dynamics);
     body.dynamics->setDeterministic(deterministic);
     staggerHeld(body);
@@ -219,7 +225,7 @@ void DeformableSolver::Impl::predict() {
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
     // With other forces, the velocities at the beginning of the step determine the tolerances.
-    first.deferSolve = first.hadRows && system.forces.empty();
+    first.solve.deferred = first.before.any && system.forces.empty();
   }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     predictVelocities(body, inner);
@@ -241,13 +247,14 @@ void DeformableSolver::Impl::useOwnSettings() {
 }
 
 void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* inner) {
+  assert(body.start.seconds == static_cast<double>(dt()));
   Dynamics& dynamics = *body.dynamics;
   dynamics.predict(body.start, inner);
-  body.unseenSpeed = unseenSpeed(body);
+  body.solve.unseenSpeed = unseenSpeed(body);
   dynamics.matrix().free();
-  if (body.deferSolve) return;
+  if (body.solve.deferred) return;
   dynamics.findResidual(inner);
-  if (body.elastic) solveAlone(body, body.hadRows ? 0 : body.settings->iterations, inner);
+  if (body.elastic) solveAlone(body, body.before.any ? 0 : body.settings->iterations, inner);
 }
 
 void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelFor* inner) const {
@@ -255,13 +262,14 @@ void DeformableSolver::Impl::solveAlone(SolvedBody& body, int maximum, ParallelF
   elastic_detail::SolveLimits limits;
   limits.tolerance = body.settings->tolerance;
   limits.iterations = body.settings->iterations;
-  limits.enough = body.dynamics->squaredImpulses(body.unseenSpeed);
-  body.iterations = body.dynamics->solve(*body.solve, limits, maximum, inner);
+  limits.enough = body.dynamics->squaredImpulses(body.solve.unseenSpeed);
+  body.solve.iterations = body.dynamics->solve(body.memory->gradient, limits, maximum, inner);
 }
 
 void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
   if (!body.elastic) return;
   const auto& matrix = body.dynamics->matrix();
+  assert(body.dynamics->nodeCount() == static_cast<std::size_t>(body.body->m_nodes.size()));
   for (std::size_t n = 0; n < body.dynamics->nodeCount(); ++n) {
     btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];
     if (node.m_im > 0) {
@@ -275,23 +283,27 @@ void DeformableSolver::Impl::writePrediction(SolvedBody& body) const {
 
 /// Uses Bullet's own function, which also refits the trees of nodes and faces.
 void DeformableSolver::Impl::predictByBullet(SolvedBody& body) {
-  body.paddedTrees->forget();
+  assert(body.byBullet);
+  body.memory->paddedTrees.forget();
   solver.predictDeformableMotion(body.body, dt());
   if (body.elastic) speculate(body, fastestNode(*body.body));
 }
 
 /// The same as btDeformableBodySolver::predictDeformableMotion, except for the trees and the box in the broadphase.
 void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
+  assert(!body.byBullet);
   prepareStep(body, dt());
   const double squared = moveNodes(*body.body, dt());
   const auto fastest = static_cast<btScalar>(std::sqrt(squared));
-  body.paddedTrees->fit(*body.body, *body.dynamics, fastest * dt());
+  body.memory->paddedTrees.fit(*body.body, *body.dynamics, fastest * dt());
   if (body.elastic) speculate(body, fastest);
 }
 
 // ---- assemble
 
 void DeformableSolver::Impl::assemble() {
+  enter(Stage::Assembled);
+  assert(solver.m_dv.size() >= bodies.awakeCount() && solver.m_backupVelocity.size() >= bodies.awakeCount());
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     body.dynamics->matrix().free();
     readContacts(body);
@@ -304,6 +316,7 @@ void DeformableSolver::Impl::assemble() {
   std::vector<bool> touched(bodies.bodies().size(), false);
   for (const ContactRow& row : rows.rows()) {
     for (const RowEnd& end : row.ends) {
+      assert(!end.isSoft() || end.body < touched.size());
       if (end.isSoft() && !row.joined) touched[end.body] = true;
     }
   }
@@ -322,7 +335,7 @@ void DeformableSolver::Impl::readContacts(SolvedBody& body) {
     const int number = body.first + static_cast<int>(n);
     const btVector3& before = solver.m_backupVelocity[number];
     btVector3& dv = solver.m_dv[number];
-    body.velocityChanged |= !dv.isZero();
+    body.acted.changed |= !dv.isZero();
     if (isNaN(dv)) dv.setZero();  // the same test as in btDeformableBodySolver::updateVelocity
     btScalar* solution = dynamics.matrix().solution() + dynamics.matrix().wideOf(n);
     // The solution relative to the rigid motion.
@@ -337,6 +350,7 @@ void DeformableSolver::Impl::readContacts(SolvedBody& body) {
 /// Systems with Bullet's forces are solved here one after the other, each by all threads; of the others, small ones in
 /// parallel.
 void DeformableSolver::Impl::solve() {
+  enter(Stage::Solved);
   others.beginStep(bodies, solver.m_residual, solver.m_backupVelocity, dt());
   std::vector<SolvedSystem*> own;
   std::vector<std::size_t> sizes;
@@ -353,7 +367,7 @@ void DeformableSolver::Impl::solve() {
   };
   runBySize(threads, sizes, isDivided, [&](std::size_t k, ParallelFor* inner) { solveSystem(*own[k], inner); });
   iterations = passes = unconverged = 0;
-  for (const SolvedBody& body : bodies.bodies()) iterations += body.iterations;
+  for (const SolvedBody& body : bodies.bodies()) iterations += body.solve.iterations;
   for (const SolvedSystem& system : bodies.systems()) {
     passes += system.passes;
     unconverged += system.converged ? 0 : 1;
@@ -361,37 +375,38 @@ void DeformableSolver::Impl::solve() {
 }
 
 void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inner) {
-  assert(!system.bodies.empty());
+  assert(stage == Stage::Solved && !system.bodies.empty());
   SolvedBody& first = bodies.bodies()[system.bodies.front()];
   bool again = !system.forces.empty() || !system.rows.empty();
   for (const std::size_t b : system.bodies) {
     const SolvedBody& body = bodies.bodies()[b];
-    again |= !body.fixed.empty() || body.velocityChanged;
+    again |= !body.acted.fixed.empty() || body.acted.changed;
   }
   if (again) {
     const SolveReport report = SystemSolve({bodies, rows, rigids, others}, system, inner).solve();
-    first.iterations += report.iterations;
+    first.solve.iterations += report.iterations;
     system.passes = report.passes;
     system.converged = report.converged;
     for (const std::size_t b : system.bodies) {
       SolvedBody& body = bodies.bodies()[b];
-      body.solvedAgain = true;
+      body.solve.again = true;
       if (body.elastic) body.dynamics->remember(elastic_detail::SolvedWith::Others, inner);
     }
   } else if (first.elastic) {
     // A body whose solve was deferred because of possible contacts, but which has none, is solved with all iterations;
     // any other continues where it stopped.
-    if (first.deferSolve) {
+    if (first.solve.deferred) {
       first.dynamics->findResidual(inner);
       solveAlone(first, first.settings->iterations, inner);
     } else {
-      const int before = first.solve->iterations();
-      first.solve->iterate(first.settings->iterations, inner);
-      first.iterations += first.solve->iterations() - before;
+      const int before = first.memory->gradient.iterations();
+      first.memory->gradient.iterate(first.settings->iterations, inner);
+      first.solve.iterations += first.memory->gradient.iterations() - before;
     }
   }
-  if (first.elastic && !again) system.converged = first.solve->squaredResidual() <= first.solve->enough();
-  const bool free = system.forces.empty() && system.rows.empty() && first.fixed.empty() && !first.velocityChanged;
+  if (first.elastic && !again)
+    system.converged = first.memory->gradient.squaredResidual() <= first.memory->gradient.enough();
+  const bool free = system.forces.empty() && system.rows.empty() && first.acted.fixed.empty() && !first.acted.changed;
   if (!free || !first.elastic) return;
   first.dynamics->remember(elastic_detail::SolvedWith::ElasticityAlone, inner);
   first.dynamics->removeMomentum();
@@ -400,6 +415,7 @@ void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inne
 // ---- contacts
 
 void DeformableSolver::Impl::finishContacts() {
+  assert(stage == Stage::Solved);
   rows.finish(bodies, dt());
   for (RowSource* source : rowSources()) source->finish(dt());
   if (const auto record = recorded.lock()) record->record(bodies, rows, dt());
@@ -408,8 +424,9 @@ void DeformableSolver::Impl::finishContacts() {
 // ---- write back
 
 void DeformableSolver::Impl::writeBack() {
+  enter(Stage::Written);
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
-    if (body.solvedAgain) body.dynamics->bendTurns();
+    if (body.solve.again) body.dynamics->bendTurns();
     writeVelocities(body);
     listForeignNodes(body);
   });
@@ -420,7 +437,8 @@ void DeformableSolver::Impl::writeBack() {
 
 void DeformableSolver::Impl::writeVelocities(SolvedBody& body) const {
   const auto& matrix = body.dynamics->matrix();
-  const bool rounded = !body.elastic || *body.hasContacts;
+  const bool rounded = !body.elastic || body.memory->rows.contacts;
+  assert(body.dynamics->nodeCount() <= static_cast<std::size_t>(body.body->m_nodes.size()));
   body.body->m_maxSpeedSquared = 0;
   for (std::size_t n = 0; n < body.dynamics->nodeCount(); ++n) {
     btSoftBody::Node& node = body.body->m_nodes[static_cast<int>(n)];

@@ -38,7 +38,11 @@ using namespace bullet_detail;
 struct DeformableSolver::Impl {
   explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
-  // The stages of a step; implemented in step.cpp.
+  /// How far a step is: each of the calls below asserts that the one before it has been made. A step that something has
+  /// ended early stays where it was until `endStep`, or the next `gather`.
+  enum class Stage { Between, Gathered, Predicted, Assembled, Solved, Written };
+
+  // The stages of a step that is solved here; implemented in step.cpp.
   /// seconds  above 0
   void gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds);
   void predict();
@@ -48,13 +52,16 @@ struct DeformableSolver::Impl {
   void writeBack();
 
   // Parts of the integration of positions; implemented in step_positions.cpp.
-  /// Call it before Bullet moves the nodes: the application may have moved some of them within the step.
+  /// Before Bullet moves the nodes: the application may have moved some of them within the step.
   void listForeignNodes(SolvedBody& body) const;
-  /// Call it after Bullet has moved the nodes in its own precision: gives them the positions of the dynamics.
+  /// Gives nodes that Bullet has moved in its own precision the positions of the dynamics.
   void refinePositions(btScalar dt);
-  /// Call it when rows are final: marks bodies whose contacts with a soft body are so far from the origin that the
-  /// rounding of positions shakes them.
+  /// Marks bodies whose contacts with a soft body are so far from the origin that the rounding of positions shakes them.
   void findShaken();
+
+  bool inStep() const { return stage != Stage::Between; }
+  /// Goes on to a stage; solving here, from the one before it.
+  void enter(Stage next);
 
   ForceList& forces() { return solver.m_objective->m_lf; }
   const btDeformableContactProjection& projection() const { return solver.m_objective->m_projection; }
@@ -84,11 +91,11 @@ struct DeformableSolver::Impl {
   btDeformableMultiBodyDynamicsWorld* worldOf(const btAlignedObjectArray<btSoftBody*>& softs) const;
   /// Drops the bodies that have left the world.
   void dropRemoved(const btAlignedObjectArray<btSoftBody*>& world);
-  /// Call it before a step. Drops what is stored under the addresses of objects that have left the world, because
-  /// others may have been created there.
+  /// Drops what is stored under the addresses of objects that have left the world, because others may have been created
+  /// there.
   void forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world);
   void numberAnew();
-  /// Call it before Bullet detects contacts, and again if it has called the application since.
+  /// Before Bullet detects contacts, and again if it has called the application since.
   void noteObjects();
   void dropRemovedObjects();
   void dropRemovedForces();
@@ -150,7 +157,7 @@ struct DeformableSolver::Impl {
   const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
   RigidForces* rigidForces = nullptr;                   ///< only in a DeformableWorld, which owns them
   bool inSimulation = false;                            ///< within `stepSimulation`; only in a DeformableWorld
-  bool inStep = false;                                  ///< from `gather` until positions have been integrated
+  Stage stage = Stage::Between;                         ///< until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;               ///< null if there is no record
   RecordDrawing recordDrawing;
   ParallelFor* threads = nullptr;

@@ -49,7 +49,7 @@ btDeformableMultiBodyDynamicsWorld* DeformableSolver::Impl::worldOf(
 }
 
 void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>& world) {
-  if (!inStep) bodies.clear();  // the next step lists them anew
+  if (!inStep()) bodies.clear();  // the next step lists them anew
   const std::vector<const btSoftBody*> gone = bodies.dropAllBut(world, solver.m_softBodies);
   if (gone.empty()) return;
   for (const btSoftBody* body : gone) {
@@ -58,7 +58,7 @@ void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>
     stillness.forget(*body);
     if (auto* own = bodyWithTrees(*const_cast<btSoftBody*>(body))) own->setMovesCountedBy(nullptr);
   }
-  if (!inStep) {
+  if (!inStep()) {
     // The next step numbers the nodes.
     solver.m_objective->m_nodes.resizeNoInitialize(0);
     return;
@@ -72,6 +72,7 @@ void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>
 
 void DeformableSolver::Impl::numberAnew() {
   bodies.number(*solver.m_objective);
+  assert(solver.m_objective->m_nodes.size() == bodies.nodeCount());
   solver.m_numNodes = bodies.nodeCount();
   for (VectorStack* v : {&solver.m_dv, &solver.m_ddv, &solver.m_residual, &solver.m_backupVelocity}) {
     v->resize(bodies.nodeCount(), btVector3(0, 0, 0));

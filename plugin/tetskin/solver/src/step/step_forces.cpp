@@ -4,6 +4,8 @@
 // The impulses of forces other than elasticity in a step: Bullet's, and the application's.
 #include <tetskin/solver/src/step/step.h>
 
+#include <cassert>
+
 namespace tetskin {
 
 /// Like btDeformableBackwardEulerObjective::applyExplicitForce, with elastic forces taken explicitly.
@@ -12,6 +14,7 @@ void DeformableSolver::Impl::applyOthers() {
     if (body.needsDeformation) body.body->advanceDeformation();
   }
   VectorStack& impulses = solver.m_residual;
+  assert(impulses.size() >= bodies.awakeCount());
   for (int i = 0; i < forces().size(); ++i) forces()[i]->addScaledExplicitForce(dt(), impulses);
   for (SolvedBody& body : bodies.bodies()) {
     for (int n = 0; n < body.body->m_nodes.size(); ++n) {
@@ -26,6 +29,7 @@ void DeformableSolver::Impl::applyOthers() {
 
 /// Like btDeformableBackwardEulerObjective::computeResidual.
 void DeformableSolver::Impl::addOthers() {
+  assert(stage == Stage::Assembled && solver.m_residual.size() >= bodies.awakeCount());
   for (int i = 0; i < forces().size(); ++i) {
     btDeformableLagrangianForce& force = *forces()[i];
     if (!takesPart(force)) continue;

@@ -3,6 +3,7 @@
 #include <tetskin/solver/src/step/step_objects.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace tetskin::bullet_detail {
 namespace {
@@ -50,6 +51,7 @@ StepObjects::Gone StepObjects::gone() const {
   if (!world_) return gone;
   std::vector<Noted> here = objectsOf(*world_);
   std::sort(here.begin(), here.end());
+  assert(std::adjacent_find(here.begin(), here.end()) == here.end());  // no object is in the world twice
   for (const Noted& object : noted_) {
     if (!std::binary_search(here.begin(), here.end(), object)) gone.insert(object.first);
   }

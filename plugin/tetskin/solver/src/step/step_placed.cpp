@@ -12,7 +12,7 @@
 namespace tetskin {
 
 void DeformableSolver::Impl::forgetTouches(btSoftBody& body) {
-  assert(!inStep);
+  assert(!inStep());
   bodies.forget(body);
   sleepers.forget(body);
   stillness.forget(body);

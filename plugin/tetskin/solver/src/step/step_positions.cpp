@@ -8,6 +8,9 @@
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/step/step.h>
 
+#include <algorithm>
+#include <cassert>
+
 namespace tetskin {
 namespace {
 
@@ -27,22 +30,24 @@ bool isElsewhere(const btSoftBody::Node& node, const btScalar* point) {
 }  // namespace
 
 void DeformableSolver::Impl::listForeignNodes(SolvedBody& body) const {
-  body.foreign.clear();
+  assert(stage == Stage::Written);
+  body.positions.foreign.clear();
   if (!body.elastic || !hasItsNodes(body)) return;
   for (int n = 0; n < body.body->m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body.body->m_nodes[n];
-    if (isElsewhere(node, body.dynamics->point(static_cast<std::size_t>(n)))) body.foreign.push_back(n);
+    if (isElsewhere(node, body.dynamics->point(static_cast<std::size_t>(n)))) body.positions.foreign.push_back(n);
   }
 }
 
 void DeformableSolver::Impl::findShaken() {
-  for (SolvedBody& body : bodies.bodies()) body.shaken = false;
+  assert(stage >= Stage::Solved);  // rows are final
+  for (SolvedBody& body : bodies.bodies()) body.positions.shaken = false;
   for (const ContactRow& row : rows.rows()) {
     if (!row.ends[0].isSoft() || !row.ends[1].isSoft() || row.joined) continue;
     for (const RowEnd& end : row.ends) {
       SolvedBody& solved = bodies.bodies()[end.body];
       const btVector3 far = solved.body->m_bounds[0].absolute() + solved.body->m_bounds[1].absolute();
-      solved.shaken = SIMD_EPSILON * far[far.maxAxis()] > kVisible * sizeOf(*solved.body);
+      solved.positions.shaken = SIMD_EPSILON * far[far.maxAxis()] > kVisible * sizeOf(*solved.body);
     }
   }
 }
@@ -50,11 +55,13 @@ void DeformableSolver::Impl::findShaken() {
 /// Uses the velocities that Bullet has used, because it bounds them.
 void DeformableSolver::Impl::refinePositions(btScalar dt) {
   if (!solving) return;
+  assert(stage == Stage::Written && dt > 0);
   for (const SolvedBody& solved : bodies.bodies()) {
     if (!solved.elastic || !hasItsNodes(solved)) continue;
-    auto foreign = solved.foreign.begin();
+    assert(std::is_sorted(solved.positions.foreign.begin(), solved.positions.foreign.end()));
+    auto foreign = solved.positions.foreign.begin();
     for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
-      if (foreign != solved.foreign.end() && *foreign == n) {
+      if (foreign != solved.positions.foreign.end() && *foreign == n) {
         ++foreign;
         continue;
       }
@@ -62,7 +69,7 @@ void DeformableSolver::Impl::refinePositions(btScalar dt) {
       const auto at = static_cast<std::size_t>(n);
       btVector3 v = node.m_v + node.m_splitv;
       if (node.m_im == btScalar(0) && v.isZero()) continue;
-      if (solved.shaken) v = movingComponent(fromPoint(solved.dynamics->point(at)), v, dt);
+      if (solved.positions.shaken) v = movingComponent(fromPoint(solved.dynamics->point(at)), v, dt);
       btScalar by[3];
       toPoint(v, by);
       node.m_x = node.m_q = fromPoint(solved.dynamics->advance(at, static_cast<double>(dt), by));

@@ -54,6 +54,7 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
   // Boxes and balls that land, rest or stop in `tetskin_measure` also pass with 0: it is for bodies that tip over what
   // stops them. More would cost searches of points that do not arrive.
   constexpr btScalar kPathFraction = btScalar(0.2);
+  assert(stage == Stage::Predicted && !(fastest < 0));
   auto* own = bodyWithTrees(*body.body);
   const btDiscreteDynamicsWorld* world = body.world();
   if (!own || !world) return;
@@ -72,6 +73,7 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
 double DeformableSolver::Impl::unseenSpeed(const SolvedBody& body) const {
   constexpr double kUnseen = 1e-3;
   const auto seconds = static_cast<double>(dt());
+  assert(seconds > 0.0 && body.dynamics);
   const btDiscreteDynamicsWorld* world = body.world();
   const double gravity = world ? static_cast<double>(world->getGravity().length()) : 0.0;
   return std::max(kUnseen * gravity * seconds, body.dynamics->roundingSpeed());
@@ -87,6 +89,7 @@ std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
 }
 
 void DeformableSolver::Impl::collectRows() {
+  assert(stage == Stage::Assembled);
   rigids.clear();
   rows.collect(bodies, rigids, dt());
   for (RowSource* source : rowSources()) {
@@ -102,7 +105,7 @@ void DeformableSolver::Impl::collectRows() {
   joinByRows();
   runTasks(threads, bodies.bodies().size(), [&](std::size_t k) {
     SolvedBody& body = bodies.bodies()[k];
-    if (body.hadRows && body.rowCount > 0) reuseLastVelocity(body);
+    if (body.before.any && body.acted.rowCount > 0) reuseLastVelocity(body);
   });
 }
 
@@ -130,6 +133,7 @@ void DeformableSolver::Impl::joinByRows() {
   DisjointSets sets(bodyCount + rigids.list().size());
   // Below 0: the object's motion is prescribed.
   const auto memberOf = [&](const RowEnd& end) {
+    assert(!end.isSoft() || end.body < bodyCount);
     if (end.isSoft()) return static_cast<int>(end.body);
     return end.rigid.unknown < 0 ? -1 : static_cast<int>(bodyCount) + end.rigid.unknown;
   };

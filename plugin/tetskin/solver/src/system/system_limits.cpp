@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The tolerances to which a system is solved.
-#include <tetskin/solver/src/system/system_solve.h>
+#include <tetskin/solver/src/system/system_limits.h>
 
 #include <algorithm>
 #include <cassert>
@@ -31,21 +30,19 @@ double shareOfImpulses(const SolvedBody& body) {
   return mass > 0.0 ? body.dynamics->squaredImpulses(1.0) / mass : 1.0;
 }
 
-}  // namespace
-
-double SystemSolve::toleranceWithForces(double tolerance) const {
-  return system_.forces.empty() ? tolerance : std::min(tolerance, kWithForeignForces);
+double toleranceWithForces(const SystemBodies& bodies, double tolerance) {
+  return bodies.hasForces() ? std::min(tolerance, kWithForeignForces) : tolerance;
 }
 
 /// Where only Bullet's forces act, the solve is for their damping, and what it leaves is missing in every step: it goes
 /// as far as Bullet's does. Bullet's limit is relative to the damping impulses before contacts have changed velocities,
 /// or to 1 where these are larger.
-elastic_detail::SolveLimits SystemSolve::limitsOfBulletsForces() const {
+elastic_detail::SolveLimits limitsOfBulletsForces(const SystemBodies& bodies) {
   double squared = 0.0;
-  for (const Body& one : bodies_) {
+  for (const SystemBody& one : bodies.list()) {
     const btSoftBody& body = *one.solved.body;
     for (int n = 0; n < body.m_nodes.size(); ++n) {
-      const btVector3& impulse = in_.others.impulse(one.solved.first + n);
+      const btVector3& impulse = bodies.input().others.impulse(one.solved.first + n);
       squared += static_cast<double>(body.m_nodes[n].m_im * impulse.length2());
     }
   }
@@ -55,26 +52,27 @@ elastic_detail::SolveLimits SystemSolve::limitsOfBulletsForces() const {
   return limits;
 }
 
-/// The strictest tolerance of all bodies of the system.
-elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
+}  // namespace
+
+elastic_detail::SolveLimits limitsWithoutRows(const SystemBodies& bodies) {
   elastic_detail::SolveLimits limits;
   limits.iterations = 0;
   limits.tolerance = 1.0;
   bool changed = false, anyElastic = false, stiff = false;
   double squaredStart = 0.0, unseen = 0.0;
-  for (const Body& one : bodies_) {
+  for (const SystemBody& one : bodies.list()) {
     const SolvedBody& body = one.solved;
-    unseen += body.dynamics->squaredImpulses(body.unseenSpeed);
+    unseen += body.dynamics->squaredImpulses(body.solve.unseenSpeed);
     limits.tolerance = std::min(limits.tolerance, body.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.settings->iterations);
-    if (body.elastic && !body.deferSolve) limits.enough += body.solve->enough();
-    changed |= !body.fixed.empty() || body.velocityChanged;
+    if (body.elastic && !body.solve.deferred) limits.enough += body.memory->gradient.enough();
+    changed |= !body.acted.fixed.empty() || body.acted.changed;
     stiff |= body.dynamics->isStiff();
     squaredStart += body.dynamics->squaredSolution() * shareOfImpulses(body);
     anyElastic |= body.elastic != nullptr;
   }
-  if (!anyElastic) return limitsOfBulletsForces();
-  const double tolerance = toleranceWithForces(limits.tolerance);
+  if (!anyElastic) return limitsOfBulletsForces(bodies);
+  const double tolerance = toleranceWithForces(bodies, limits.tolerance);
   const double fraction = tolerance / std::max(limits.tolerance, 1e-300);  // a tolerance may be 0
   limits.tolerance = tolerance;
   limits.enough *= fraction * fraction;  // the limits are squares
@@ -90,28 +88,25 @@ elastic_detail::SolveLimits SystemSolve::limitsWithoutRows() const {
   return limits;
 }
 
-/// The residual is relative to what contacts and others have changed: the size of the solution, or the change of the
-/// velocities in the step, whichever is larger.
-elastic_detail::SolveLimits SystemSolve::limitsOfPass(int pass) const {
+elastic_detail::SolveLimits limitsOfPass(const SystemBodies& bodies, const ReducedUnknowns& reduced, int pass) {
+  assert(bodies.hasRows() && pass >= 0);
   elastic_detail::SolveLimits limits;
   limits.iterations = 0;
   double byMatrix = 0.0, byMasses = 0.0, share = 1.0, tolerance = 1.0;
-  for (const Body& body : bodies_) {
+  for (const SystemBody& body : bodies.list()) {
     tolerance = std::min(tolerance, body.solved.settings->tolerance);
     limits.iterations = std::max(limits.iterations, body.solved.settings->iterations);
-    byMatrix += body.byMatrix;
-    byMasses += body.byMasses;
+    byMatrix += body.start.byMatrix;
+    byMasses += body.start.byMasses;
     share = std::min(share, shareOfImpulses(body.solved));
   }
-  for (const ComponentUnknown& component : components_) {
-    byMasses += dot(partOf(reduced_, component), partOf(partsBefore_, component));
-  }
-  const bool joined = std::any_of(system_.rows.begin(), system_.rows.end(), [](const ContactRow* row) {
-    return row->joined && !(row->highest < BT_LARGE_FLOAT);
-  });
+  for (const ComponentUnknown& component : reduced.components()) byMasses += reduced.squaredByMasses(component);
+  const auto& rows = bodies.system().rows;
+  const bool joined = std::any_of(
+      rows.begin(), rows.end(), [](const ContactRow* row) { return row->joined && !(row->highest < BT_LARGE_FLOAT); });
   // In a stiff body, an error of velocities that is small by its masses is as large as all the forces that act on it.
   const double ofForces = std::max(tolerance * tolerance * share, kClosest * kClosest);
-  tolerance = toleranceWithForces(std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0));
+  tolerance = toleranceWithForces(bodies, std::min(kCloserWithRows * tolerance, joined ? kWhereJoined : 1.0));
   tolerance = std::max(tolerance, kClosest);
   const double squared = tolerance * tolerance;
   limits.enough = std::max(squared * byMatrix, std::min(squared, ofForces) * byMasses);
