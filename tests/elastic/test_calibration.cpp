@@ -334,7 +334,7 @@ TEST(Calibration, SaysHowMuchTooSoftACageIsWhereItIsPressed) {
     EXPECT_NEAR(sagOf(cage, 0, held) / limit - 1.0, report.stretchError, 0.1) << cubes;
     EXPECT_LT(std::abs(report.plainStretchError), 0.05);
     EXPECT_GT(report.stretchError, 0.05);
-    EXPECT_NE(report.describe().find("stretched or pressed"), std::string::npos);
+    EXPECT_NE(report.describe().find("stretched or compressed"), std::string::npos);
   }
 }
 

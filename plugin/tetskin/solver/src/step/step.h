@@ -56,7 +56,7 @@ struct DeformableSolver::Impl {
   void listForeignNodes(SolvedBody& body) const;
   /// Gives nodes that Bullet has moved in its own precision the positions of the dynamics.
   void refinePositions(btScalar dt);
-  /// Marks bodies whose contacts with a soft body are so far from the origin that the rounding of positions shakes them.
+  /// Marks bodies whose contacts with a soft body are so far from the origin that rounding of positions shakes them.
   void findShaken();
 
   bool inStep() const { return stage != Stage::Between; }
