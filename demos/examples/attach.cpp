@@ -26,8 +26,10 @@ namespace {
 void makeBar(std::string& nodes, std::string& tets) {
   std::ostringstream node, ele;
   node << "44 3 0 0\n", ele << "60 4 0\n";
-  for (int i = 0; i < 44; ++i)
-    node << i << ' ' << 0.2 * (i / 4) << ' ' << 0.5 * (i & 1) - 0.25 << ' ' << 0.25 * (i & 2) - 0.25 << '\n';
+  for (int i = 0; i < 44; ++i) {
+    const int slice = i / 4;
+    node << i << ' ' << 0.2 * slice << ' ' << 0.5 * (i & 1) - 0.25 << ' ' << 0.25 * (i & 2) - 0.25 << '\n';
+  }
   const int way[6][2] = {{4, 5}, {1, 3}, {2, 6}, {5, 1}, {3, 2}, {6, 4}};  // from one corner of a cube to the other
   for (int t = 0; t < 60; ++t) {
     const int first = 4 * (t / 6), *on = way[t % 6];
@@ -39,10 +41,11 @@ void makeBar(std::string& nodes, std::string& tets) {
 tetskin::TriangleMesh makeTube() {
   tetskin::TriangleMesh tube;
   for (int i = 0; i < 200 * 100; ++i) {
-    const double x = 2.0 * (i / 100) / 199, radius = 0.2 + 0.03 * std::sin(40 * x), angle = 6.2831853 * (i % 100) / 100;
+    const int ring = i / 100;
+    const double x = 2.0 * ring / 199, radius = 0.2 + 0.03 * std::sin(40 * x), angle = 6.2831853 * (i % 100) / 100;
     tube.positions.emplace_back(x, radius * std::cos(angle), radius * std::sin(angle));
-    if (i < 100) continue;
-    const int next = i - i % 100 + (i + 1) % 100;
+    if (ring == 0) continue;
+    const int next = 100 * ring + (i + 1) % 100;
     tube.triangles.push_back({i - 100, next - 100, next});
     tube.triangles.push_back({i - 100, next, i});
   }

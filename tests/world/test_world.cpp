@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // A world that owns what is in it does what its parts do by themselves, and lets go of them in any order.
+#include <gtest/gtest.h>
 #include <tetskin/replay/src/exported/state_hash.h>
 #include <tetskin/world/world.h>
 

@@ -40,7 +40,8 @@ void timeWorld(State& state, int bodies, std::size_t tets, bool landed) {
       (void)world.addRigidBody(plane, 0, btTransform::getIdentity()).value();
     }
     for (int b = 0; b < bodies; ++b) {
-      const Eigen::Affine3d place(Eigen::Translation3d(3.0 * (b % side), 0, 3.0 * (b / side)));
+      const int row = b / side;
+      const Eigen::Affine3d place(Eigen::Translation3d(3.0 * (b % side), 0, 3.0 * row));
       world.addBody(cage, mesh, options, place).value()->body->body().setActivationState(DISABLE_DEACTIVATION);
     }
     for (int frame = 0; frame < (landed ? kFramesOfLanding : 1); ++frame) (void)world.step(kBudgetFrame).value();
