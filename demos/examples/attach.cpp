@@ -5,8 +5,9 @@
 //
 //   tetskin_attach [MESH NODE_FILE ELE_FILE]
 //
-// The files are a mesh, and TetGen's tets around it, numbered from 0; without them, a tube in a bar. The left end is
-// held. Writes out/attach/frame_0000.obj, frame_0020.obj, ...
+// The files are a mesh, and TetGen's tets around it, numbered from 0 (tetgen -z), as Bullet wants them; without them, a
+// tube in a bar. The left end is held. Writes out/attach/frame_0000.obj, frame_0020.obj, ... In a project of yours:
+// find_package(tetskin REQUIRED COMPONENTS bullet io), and link tetskin::bullet and tetskin::io.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
@@ -53,8 +54,10 @@ tetskin::TriangleMesh makeTube() {
 }
 
 std::string textOf(const char* path) {
+  const std::ifstream file(path);
+  if (!file) throw std::runtime_error(std::string(path) + ": cannot be opened");
   std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
+  text << file.rdbuf();
   return text.str();
 }
 
