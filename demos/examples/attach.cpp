@@ -5,8 +5,9 @@
 //
 //   tetskin_attach [MESH NODE_FILE ELE_FILE]
 //
-// The files are a mesh, and TetGen's tets around it, numbered from 0; without them, a tube in a bar. The left end is
-// held. Writes out/attach/frame_0000.obj, frame_0020.obj, ...
+// The files are a mesh, and TetGen's tets around it, numbered from 0 (tetgen -z), as Bullet wants them; without them, a
+// tube in a bar. The left end is held. Writes out/attach/frame_0000.obj, frame_0020.obj, ... In a project of yours:
+// find_package(tetskin REQUIRED COMPONENTS bullet io), and link tetskin::bullet and tetskin::io.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
@@ -26,8 +27,10 @@ namespace {
 void makeBar(std::string& nodes, std::string& tets) {
   std::ostringstream node, ele;
   node << "44 3 0 0\n", ele << "60 4 0\n";
-  for (int i = 0; i < 44; ++i)
-    node << i << ' ' << 0.2 * (i / 4) << ' ' << 0.5 * (i & 1) - 0.25 << ' ' << 0.25 * (i & 2) - 0.25 << '\n';
+  for (int i = 0; i < 44; ++i) {
+    const int slice = i / 4;
+    node << i << ' ' << 0.2 * slice << ' ' << 0.5 * (i & 1) - 0.25 << ' ' << 0.25 * (i & 2) - 0.25 << '\n';
+  }
   const int way[6][2] = {{4, 5}, {1, 3}, {2, 6}, {5, 1}, {3, 2}, {6, 4}};  // from one corner of a cube to the other
   for (int t = 0; t < 60; ++t) {
     const int first = 4 * (t / 6), *on = way[t % 6];
@@ -39,10 +42,11 @@ void makeBar(std::string& nodes, std::string& tets) {
 tetskin::TriangleMesh makeTube() {
   tetskin::TriangleMesh tube;
   for (int i = 0; i < 200 * 100; ++i) {
-    const double x = 2.0 * (i / 100) / 199, radius = 0.2 + 0.03 * std::sin(40 * x), angle = 6.2831853 * (i % 100) / 100;
+    const int ring = i / 100;
+    const double x = 2.0 * ring / 199, radius = 0.2 + 0.03 * std::sin(40 * x), angle = 6.2831853 * (i % 100) / 100;
     tube.positions.emplace_back(x, radius * std::cos(angle), radius * std::sin(angle));
-    if (i < 100) continue;
-    const int next = i - i % 100 + (i + 1) % 100;
+    if (ring == 0) continue;
+    const int next = 100 * ring + (i + 1) % 100;
     tube.triangles.push_back({i - 100, next - 100, next});
     tube.triangles.push_back({i - 100, next, i});
   }
@@ -50,8 +54,10 @@ tetskin::TriangleMesh makeTube() {
 }
 
 std::string textOf(const char* path) {
+  const std::ifstream file(path);
+  if (!file) throw std::runtime_error(std::string(path) + ": cannot be opened");
   std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
+  text << file.rdbuf();
   return text.str();
 }
 

@@ -17,6 +17,7 @@
 #include <functional>
 #include <memory>
 
+#include "bench/budget_cases.h"
 #include "bench/contact_cases.h"
 #include "bench/crowd_cases.h"
 #include "bench/palette_cases.h"
@@ -361,6 +362,7 @@ int main(int argc, char** argv) {
       bench::registerSnapshotCases();
       bench::registerContactCases();
       bench::registerPileCases();
+      bench::registerBudgetCases();
       bench::registerTouchCases();
       registerAttachSizes();
       registerBuildCageSizes();

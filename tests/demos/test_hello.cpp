@@ -14,6 +14,21 @@ TEST(Hello, RunsWithoutAnyFile) {
   EXPECT_NE(result.out.find("frame 60"), std::string::npos) << result.out;
 }
 
+TEST(Attach, HangsAMeshOnABodyOfTetGensData) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_ATTACH, {});
+  EXPECT_EQ(result.status, 0) << result.out;
+  EXPECT_NE(result.out.find("20000 inside"), std::string::npos) << result.out;
+  // It hangs by its end: free fall would take it to -5.
+  const std::size_t last = result.out.find("frame_0060.obj: lowest point at y = -");
+  ASSERT_NE(last, std::string::npos) << result.out;
+  EXPECT_LT(std::stod(result.out.substr(last + 37)), 3.0) << result.out;
+  EXPECT_TRUE(folder.exists("out/attach/frame_0060.obj"));
+  const CommandResult refused = folder.run(TETSKIN_ATTACH, {"none.obj", "none.node", "none.ele"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.out.find("none.obj: cannot be opened"), std::string::npos) << refused.out;
+}
+
 TEST(Hello, LinksOnlyWhatItUses) {
   const CommandFolder folder;
   const CommandResult libraries = folder.run("ldd", {TETSKIN_HELLO});

@@ -235,6 +235,19 @@ test("margin, solverTolerance and maxIterations are those of C++", () => {
   assert.ok(Math.abs(near - 0.01) < 0.02 && Math.abs(far - 0.2) < 0.02, `${near}, ${far}`);
 });
 
+test("nodeMasses, stiffnessScale, outside and maxDistance are those of C++", () => {
+  const world = tetskin.createWorld(), each = new Array(cage.nodeCount).fill(0.5);
+  const soft = tetskin.createWorld().addBody(cage, mesh, {nodeMasses: each, outside: "barycentric"});
+  assert.ok(Math.abs(soft.mass - 0.5 * cage.nodeCount) < 1e-3);
+  const stiffnessScale = new Float64Array(cage.tetCount).fill(2);
+  assert.equal(world.addBody(cage, mesh, {stiffnessScale}).mass, world.addBody(cage, mesh).mass);
+  assert.throws(() => world.addBody(cage, mesh, {stiffnessScale: [1]}), failure("SizeMismatch", /./));
+  assert.throws(() => world.addBody(cage, mesh, {nodeMasses: [1]}), failure("SizeMismatch", /./));
+  assert.throws(() => world.addBody(cage, mesh, {maxDistance: -1}), failure("InvalidOption", /./));
+  assert.throws(() => world.addBody(cage, mesh, {outside: "far"}), failure("InvalidArgument", /^outside: /));
+  assert.equal(world.bodies.length, 2);
+});
+
 test("materials change while it runs", () => {
   const {world, body} = drop({youngsModulus: 1e4, mass: 5});
   assert.ok(Math.abs(body.mass - 5) < 1e-3 && Math.abs(body.youngsModulus - 1e4) < 1e-6);

@@ -382,9 +382,7 @@ def test_a_motors_limit_is_a_torque_whatever_the_steps():
 def test_a_body_that_is_not_finite_is_told_whatever_is_seen_of_it(mesh, cage, surface):
     world = ts.World(gravity=(0, 0, 0))
     world.add_body(cage, mesh, position=(9, 9, 9))
-    body = world.add_body(cage, None if surface == "none" else mesh)
-    if surface == "hidden":
-        body.visible = False
+    body = world.add_body(cage, None if surface == "none" else mesh, visible=surface != "hidden")
     world.step()
     snapshot = world.save()
     for _ in range(2):

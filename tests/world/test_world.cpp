@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // A world that owns its objects behaves like its parts by themselves, and releases them in any order.
+#include <gtest/gtest.h>
 #include <tetskin/replay/src/exported/state_hash.h>
 #include <tetskin/world/world.h>
 

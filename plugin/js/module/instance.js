@@ -26,6 +26,8 @@ class Instance {
     for (const [name, call] of Object.entries(core)) {
       if (typeof call === "function" && /^[a-z]/.test(name)) core[name] = withoutExceptions(call);
     }
+    // Asked for once: a call may make memory grow, and take its views from the arguments of another one.
+    this.bodyOptions = {...core.bodyOptions(), pinned: [], nodeMasses: [], stiffnessScale: []};
     this.memoryVersion = 0;
     this.seen = this.buffer;
   }

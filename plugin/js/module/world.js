@@ -3,8 +3,6 @@
 
 const kRigidOptions = {mass: 0, position: [0, 0, 0], rotation: [0, 0, 0, 1], velocity: [0, 0, 0],
   angularVelocity: [0, 0, 0], friction: 0.5, kinematic: false};
-/** A body's options that are arrays; the module itself has the others. */
-const kBodyArrays = {pinned: [], nodeMasses: [], stiffnessScale: []};
 /** Errors after which the step has been made. */
 const kAfterStep = ["NonFinite", "TopologyChanged"];
 const kCauses = ["contact", "friction", "joints", "total"];
@@ -67,8 +65,7 @@ class World extends Thing {
     return this.keepRigid(this.core[add](own(this), ...shape, rigid));
   }
   addBody(cage, mesh, options) {
-    const known = {...this.core.bodyOptions(), ...kBodyArrays};
-    const {pinned, nodeMasses, stiffnessScale, ...soft} = optionsOf(options, known);
+    const {pinned, nodeMasses, stiffnessScale, ...soft} = optionsOf(options, this.hidden.instance.bodyOptions);
     wholeNumberOf(soft.maxIterations, "maxIterations");
     const cageHandle = handleIn(this.hidden.instance, cage, Cage, "cage");
     const meshHandle = mesh === null ? null : handleIn(this.hidden.instance, mesh, Mesh, "mesh");

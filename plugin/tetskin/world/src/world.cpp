@@ -271,7 +271,7 @@ Status World::bindSurface(Body& body, const WorldBodyOptions& options) {
     body.normals.resize(3 * count);
     instance.normalTarget = PointView<float>(body.normals.data(), count);
   }
-  const Status bound = body.skin.bind(body.body->body(), body.binding, instance);
+  Status bound = body.skin.bind(body.body->body(), body.binding, instance);
   if (!bound.ok()) return bound;
   if (options.surfaceContact) {
     SurfaceContactOptions margins;
@@ -320,7 +320,7 @@ Result<std::shared_ptr<World::Body>> World::addBody(std::shared_ptr<const Cage> 
   Unless added{[&] {
     if (soft_ && body->softContact) soft_->remove(body->body->body());
   }};
-  const Status bound = body->mesh ? bindSurface(*body, options) : Status{};
+  Status bound = body->mesh ? bindSurface(*body, options) : Status{};
   if (!bound.ok()) return bound;
   for (const int node : options.pinned) (void)body->body->setPinned(node);
   if (body->mesh && !options.visible) body->skin.setVisible(false);
