@@ -3,9 +3,9 @@
 //
 // The solve of one system by itself: a body, a rigid body and rows between them, made by hand, against dense matrices.
 #include <tetskin/solver/src/forces/node_vectors.h>
-#include <tetskin/solver/src/system/body_ends.h>
 #include <tetskin/solver/src/system/component_unknown.h>
 #include <tetskin/solver/src/system/step_fraction.h>
+#include <tetskin/solver/src/system/system_bodies.h>
 #include <tetskin/solver/src/system/system_solve.h>
 
 #include <Eigen/Cholesky>

@@ -160,7 +160,7 @@ void DeformableSolver::Impl::enter(Stage next) {
 
 void DeformableSolver::Impl::gather(const btAlignedObjectArray<btSoftBody*>& world, btScalar seconds) {
   assert(seconds > 0);
-  stage = Stage::Gathered;
+  stage = Stage::Gather;
   solving = solver.ownSolveActive();
   hidden.show(world);
   all.copyFromArray(world);
@@ -209,7 +209,7 @@ void DeformableSolver::Impl::assign() {
 // ---- predict
 
 void DeformableSolver::Impl::predict() {
-  enter(Stage::Predicted);
+  enter(Stage::Predict);
   useOwnSettings();
   applyOthers();
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
@@ -302,7 +302,7 @@ void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
 // ---- assemble
 
 void DeformableSolver::Impl::assemble() {
-  enter(Stage::Assembled);
+  enter(Stage::Assemble);
   assert(solver.m_dv.size() >= bodies.awakeCount() && solver.m_backupVelocity.size() >= bodies.awakeCount());
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     body.dynamics->matrix().free();
@@ -350,7 +350,7 @@ void DeformableSolver::Impl::readContacts(SolvedBody& body) {
 /// Systems with Bullet's forces are solved here one after the other, each by all threads; of the others, small ones in
 /// parallel.
 void DeformableSolver::Impl::solve() {
-  enter(Stage::Solved);
+  enter(Stage::Solve);
   others.beginStep(bodies, solver.m_residual, solver.m_backupVelocity, dt());
   std::vector<SolvedSystem*> own;
   std::vector<std::size_t> sizes;
@@ -375,47 +375,50 @@ void DeformableSolver::Impl::solve() {
 }
 
 void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inner) {
-  assert(stage == Stage::Solved && !system.bodies.empty());
-  SolvedBody& first = bodies.bodies()[system.bodies.front()];
-  bool again = !system.forces.empty() || !system.rows.empty();
+  assert(stage == Stage::Solve && !system.bodies.empty());
+  bool alone = system.forces.empty() && system.rows.empty();
   for (const std::size_t b : system.bodies) {
     const SolvedBody& body = bodies.bodies()[b];
-    again |= !body.acted.fixed.empty() || body.acted.changed;
+    alone &= body.acted.fixed.empty() && !body.acted.changed;
   }
-  if (again) {
-    const SolveReport report = SystemSolve({bodies, rows, rigids, others}, system, inner).solve();
-    first.solve.iterations += report.iterations;
-    system.passes = report.passes;
-    system.converged = report.converged;
-    for (const std::size_t b : system.bodies) {
-      SolvedBody& body = bodies.bodies()[b];
-      body.solve.again = true;
-      if (body.elastic) body.dynamics->remember(elastic_detail::SolvedWith::Others, inner);
-    }
-  } else if (first.elastic) {
-    // A body whose solve was deferred because of possible contacts, but which has none, is solved with all iterations;
-    // any other continues where it stopped.
-    if (first.solve.deferred) {
-      first.dynamics->findResidual(inner);
-      solveAlone(first, first.settings->iterations, inner);
-    } else {
-      const int before = first.memory->gradient.iterations();
-      first.memory->gradient.iterate(first.settings->iterations, inner);
-      first.solve.iterations += first.memory->gradient.iterations() - before;
-    }
+  alone ? finishAlone(system, inner) : solveAgain(system, inner);
+}
+
+void DeformableSolver::Impl::solveAgain(SolvedSystem& system, ParallelFor* inner) {
+  const SolveReport report = SystemSolve({bodies, rows, rigids, others}, system, inner).solve();
+  bodies.bodies()[system.bodies.front()].solve.iterations += report.iterations;
+  system.passes = report.passes;
+  system.converged = report.converged;
+  for (const std::size_t b : system.bodies) {
+    SolvedBody& body = bodies.bodies()[b];
+    body.solve.again = true;
+    if (body.elastic) body.dynamics->remember(elastic_detail::SolvedWith::Others, inner);
   }
-  if (first.elastic && !again)
-    system.converged = first.memory->gradient.squaredResidual() <= first.memory->gradient.enough();
-  const bool free = system.forces.empty() && system.rows.empty() && first.acted.fixed.empty() && !first.acted.changed;
-  if (!free || !first.elastic) return;
-  first.dynamics->remember(elastic_detail::SolvedWith::ElasticityAlone, inner);
-  first.dynamics->removeMomentum();
+}
+
+/// A body whose solve was deferred because of possible contacts, but which has none, is solved with all iterations; any
+/// other continues where it stopped.
+void DeformableSolver::Impl::finishAlone(SolvedSystem& system, ParallelFor* inner) {
+  SolvedBody& body = bodies.bodies()[system.bodies.front()];
+  if (!body.elastic) return;
+  auto& gradient = body.memory->gradient;
+  if (body.solve.deferred) {
+    body.dynamics->findResidual(inner);
+    solveAlone(body, body.settings->iterations, inner);
+  } else {
+    const int before = gradient.iterations();
+    gradient.iterate(body.settings->iterations, inner);
+    body.solve.iterations += gradient.iterations() - before;
+  }
+  system.converged = gradient.squaredResidual() <= gradient.enough();
+  body.dynamics->remember(elastic_detail::SolvedWith::ElasticityAlone, inner);
+  body.dynamics->removeMomentum();
 }
 
 // ---- contacts
 
 void DeformableSolver::Impl::finishContacts() {
-  assert(stage == Stage::Solved);
+  assert(stage == Stage::Solve);
   rows.finish(bodies, dt());
   for (RowSource* source : rowSources()) source->finish(dt());
   if (const auto record = recorded.lock()) record->record(bodies, rows, dt());
@@ -424,7 +427,7 @@ void DeformableSolver::Impl::finishContacts() {
 // ---- write back
 
 void DeformableSolver::Impl::writeBack() {
-  enter(Stage::Written);
+  enter(Stage::WriteBack);
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
     if (body.solve.again) body.dynamics->bendTurns();
     writeVelocities(body);

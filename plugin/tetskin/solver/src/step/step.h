@@ -38,9 +38,9 @@ using namespace bullet_detail;
 struct DeformableSolver::Impl {
   explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
-  /// How far a step is: each of the calls below asserts that the one before it has been made. A step that something has
-  /// ended early stays where it was until `endStep`, or the next `gather`.
-  enum class Stage { Between, Gathered, Predicted, Assembled, Solved, Written };
+  /// The stage that has begun last: each of the calls below asserts that the one before it has been made. A step that
+  /// something has ended early stays where it was until `endStep`, or the next `gather`.
+  enum class Stage { Between, Gather, Predict, Assemble, Solve, WriteBack };
 
   // The stages of a step that is solved here; implemented in step.cpp.
   /// seconds  above 0
@@ -134,6 +134,8 @@ struct DeformableSolver::Impl {
 
   // Parts of the stage `solve`.
   void solveSystem(SolvedSystem& system, ParallelFor* inner);
+  void solveAgain(SolvedSystem& system, ParallelFor* inner);
+  void finishAlone(SolvedSystem& system, ParallelFor* inner);
 
   // Parts of the stage `writeBack`.
   void writeVelocities(SolvedBody& body) const;

@@ -29,7 +29,7 @@ void DeformableSolver::Impl::applyOthers() {
 
 /// Like btDeformableBackwardEulerObjective::computeResidual.
 void DeformableSolver::Impl::addOthers() {
-  assert(stage == Stage::Assembled && solver.m_residual.size() >= bodies.awakeCount());
+  assert(stage == Stage::Assemble && solver.m_residual.size() >= bodies.awakeCount());
   for (int i = 0; i < forces().size(); ++i) {
     btDeformableLagrangianForce& force = *forces()[i];
     if (!takesPart(force)) continue;

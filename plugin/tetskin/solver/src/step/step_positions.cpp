@@ -30,7 +30,7 @@ bool isElsewhere(const btSoftBody::Node& node, const btScalar* point) {
 }  // namespace
 
 void DeformableSolver::Impl::listForeignNodes(SolvedBody& body) const {
-  assert(stage == Stage::Written);
+  assert(stage == Stage::WriteBack);
   body.positions.foreign.clear();
   if (!body.elastic || !hasItsNodes(body)) return;
   for (int n = 0; n < body.body->m_nodes.size(); ++n) {
@@ -40,7 +40,7 @@ void DeformableSolver::Impl::listForeignNodes(SolvedBody& body) const {
 }
 
 void DeformableSolver::Impl::findShaken() {
-  assert(stage >= Stage::Solved);  // rows are final
+  assert(stage >= Stage::Solve);  // rows are final
   for (SolvedBody& body : bodies.bodies()) body.positions.shaken = false;
   for (const ContactRow& row : rows.rows()) {
     if (!row.ends[0].isSoft() || !row.ends[1].isSoft() || row.joined) continue;
@@ -55,7 +55,7 @@ void DeformableSolver::Impl::findShaken() {
 /// Uses the velocities that Bullet has used, because it bounds them.
 void DeformableSolver::Impl::refinePositions(btScalar dt) {
   if (!solving) return;
-  assert(stage == Stage::Written && dt > 0);
+  assert(stage == Stage::WriteBack && dt > 0);
   for (const SolvedBody& solved : bodies.bodies()) {
     if (!solved.elastic || !hasItsNodes(solved)) continue;
     assert(std::is_sorted(solved.positions.foreign.begin(), solved.positions.foreign.end()));

@@ -54,7 +54,7 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
   // Boxes and balls that land, rest or stop in `tetskin_measure` also pass with 0: it is for bodies that tip over what
   // stops them. More would cost searches of points that do not arrive.
   constexpr btScalar kPathFraction = btScalar(0.2);
-  assert(stage == Stage::Predicted && !(fastest < 0));
+  assert(stage == Stage::Predict && !(fastest < 0));
   auto* own = bodyWithTrees(*body.body);
   const btDiscreteDynamicsWorld* world = body.world();
   if (!own || !world) return;
@@ -89,7 +89,7 @@ std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
 }
 
 void DeformableSolver::Impl::collectRows() {
-  assert(stage == Stage::Assembled);
+  assert(stage == Stage::Assemble);
   rigids.clear();
   rows.collect(bodies, rigids, dt());
   for (RowSource* source : rowSources()) {
