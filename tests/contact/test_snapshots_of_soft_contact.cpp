@@ -71,8 +71,8 @@ TEST(SnapshotsOfSoftContact, HoldTheSamplesThatTouchedOrPierced) {
   Bytes bytes(1000);
   bullet_detail::WorldStream out(world, bytes.data(), bytes.size()),
       in(world, static_cast<const unsigned char*>(bytes.data()), bytes.size());
-  saved.visitState(out, touches, false);
-  restored.visitState(in, touches, false);
+  saved.serialize(out, touches, false);
+  restored.serialize(in, touches, false);
   EXPECT_EQ(restored.pierced, saved.pierced);
   ASSERT_EQ(restored.touched.size(), 2U);
   EXPECT_EQ(restored.touched[1].sample, 5);

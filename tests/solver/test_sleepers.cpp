@@ -155,10 +155,10 @@ TEST_F(StillBody, OfASnapshotGoesOnWithTheMeanOfItsVelocity) {
   EXPECT_EQ(judged(stillness), 5);
   unsigned char bytes[1000];
   WorldStream out(world.deformable(), bytes, sizeof bytes);
-  stillness.visitState(out);
+  stillness.serialize(out);
   Stillness restored;
   WorldStream in(world.deformable(), static_cast<const unsigned char*>(bytes), sizeof bytes);
-  restored.visitState(in);
+  restored.serialize(in);
   EXPECT_EQ(judged(restored), 5);
 }
 

@@ -80,14 +80,14 @@ class Reader {
 
 /// Visits the arrays in their order, for a Writer or a Reader.
 template <class Stream, class Mesh>
-void visitMesh(Stream& stream, Mesh& mesh) {
+void serializeMesh(Stream& stream, Mesh& mesh) {
   stream.array(mesh.positions);
   stream.array(mesh.triangles);
   stream.array(mesh.normals);
   stream.array(mesh.texcoords);
 }
 template <class Stream, class AnyCage>
-void visitCage(Stream& stream, AnyCage& cage) {
+void serializeCage(Stream& stream, AnyCage& cage) {
   stream.array(cage.mesh.nodes);
   stream.array(cage.mesh.tets);
   stream.array(cage.vertexTets);
@@ -108,14 +108,14 @@ void checkLength(std::size_t length, std::size_t vertices) {
 
 std::vector<unsigned char> bytesOf(const TriangleMesh& mesh) {
   Writer writer(kMeshTag);
-  visitMesh(writer, mesh);
+  serializeMesh(writer, mesh);
   return writer.take();
 }
 
 MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count) {
   Reader reader(kMeshTag, bytes, count);
   auto mesh = std::make_shared<TriangleMesh>();
-  visitMesh(reader, *mesh);
+  serializeMesh(reader, *mesh);
   check(validate(*mesh));
   checkLength(mesh->normals.size(), mesh->vertexCount());
   checkLength(mesh->texcoords.size(), mesh->vertexCount());
@@ -125,7 +125,7 @@ MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count) {
 std::vector<unsigned char> bytesOf(const CageModel& model) {
   const Cage& cage = *model.cage;
   Writer writer(kCageTag);
-  visitCage(writer, cage);
+  serializeCage(writer, cage);
   std::vector<std::uint64_t> hash;
   if (cage.meshHash) hash.push_back(*cage.meshHash);
   writer.array(hash);
@@ -136,7 +136,7 @@ std::vector<unsigned char> bytesOf(const CageModel& model) {
 CageModel cageOfBytes(const unsigned char* bytes, std::size_t count) {
   Reader reader(kCageTag, bytes, count);
   Cage cage;
-  visitCage(reader, cage);
+  serializeCage(reader, cage);
   std::vector<std::uint64_t> hash;
   reader.array(hash);
   if (!hash.empty()) cage.meshHash = hash.front();

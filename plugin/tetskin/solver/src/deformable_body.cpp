@@ -207,7 +207,7 @@ struct DeformableBody::Impl final : BodyOwner {
   }
   void enter();
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
-  void visitState(WorldStream& stream) override;
+  void serialize(WorldStream& stream) override;
   void leaveWithoutSolver();
   bool isInAWorld() const { return body->getBroadphaseHandle() != nullptr; }
   bool isInItsWorld() const { return isInAWorld() && body->getSoftBodySolver() == solver; }
@@ -317,7 +317,7 @@ void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const 
 }
 
 /// Masses of pinned nodes, and the material.
-void DeformableBody::Impl::visitState(WorldStream& stream) {
+void DeformableBody::Impl::serialize(WorldStream& stream) {
   for (std::size_t n = 0; n < masses.size(); ++n) {
     if (static_cast<int>(n) < body->m_nodes.size() && body->m_nodes[static_cast<int>(n)].m_im == 0) stream(masses[n]);
   }

@@ -246,7 +246,7 @@ void BodyWithTrees::returnToStart() {
   updateBounds();
 }
 
-void BodyWithTrees::visitState(WorldStream& stream) {
+void BodyWithTrees::serialize(WorldStream& stream) {
   stream(shifted_);
   if (!stream.restoring()) return;
   countMove();

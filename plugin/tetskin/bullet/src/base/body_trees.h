@@ -75,7 +75,7 @@ class TETSKIN_BULLET_API BodyWithTrees : public btSoftBody {
 
   /// Expires when the body is destroyed.
   std::weak_ptr<const NodeMoves> lifetime() const { return moves_; }
-  /// Call it whenever nodes may have been moved; `transform`, `scale` and `visitState` do.
+  /// Call it whenever nodes may have been moved; `transform`, `scale` and `serialize` do.
   void countMove() { ++moves_->count; }
   /// From now on, only the steps of this solver move the nodes, and they call `countMove`; null: others may.
   void setMovesCountedBy(const btSoftBodySolver* solver) {
@@ -97,7 +97,7 @@ class TETSKIN_BULLET_API BodyWithTrees : public btSoftBody {
   btScalar margin() const;
 
   /// Writes or reads how far it was shifted; drops the results of the last step.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;

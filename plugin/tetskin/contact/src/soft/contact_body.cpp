@@ -74,7 +74,7 @@ void ContactBody::read() {
 }
 
 /// Everything else is read from the body in each step; its motion since the last step is measured from these positions.
-void ContactBody::visitState(bullet_detail::WorldStream& stream, bool moves) {
+void ContactBody::serialize(bullet_detail::WorldStream& stream, bool moves) {
   stream(self, id, reads);
   std::vector<btVector3> none;
   stream.each(moves || stream.restoring() ? positions : none, [&](btVector3& p) { stream(p); });

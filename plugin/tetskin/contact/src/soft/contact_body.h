@@ -105,7 +105,7 @@ class ContactBody {
   void fit();
 
   /// moves  whether its motion since the last step will be needed
-  void visitState(bullet_detail::WorldStream& stream, bool moves);
+  void serialize(bullet_detail::WorldStream& stream, bool moves);
 
   /// A box around the samples of a run, by the nodes of its tet.
   ContactBox runBox(int run) const {

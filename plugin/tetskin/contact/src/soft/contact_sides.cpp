@@ -87,7 +87,7 @@ void ContactSides::clear() {
 }
 
 /// Sides of the step before are not saved: the next step replaces them when it begins.
-void ContactSides::visitState(bullet_detail::WorldStream& stream) {
+void ContactSides::serialize(bullet_detail::WorldStream& stream) {
   if (stream.restoring()) clear();
   stream.each(now_, [&](ContactSide& side) { stream(side.sample, side.point, side.normal); });
 }

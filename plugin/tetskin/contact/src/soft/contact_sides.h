@@ -35,7 +35,7 @@ class ContactSides {
     now_.push_back(side);
   }
   void clear();
-  void visitState(bullet_detail::WorldStream& stream);
+  void serialize(bullet_detail::WorldStream& stream);
 
  private:
   std::vector<ContactSide> before_, now_;

@@ -95,7 +95,7 @@ void PairMotion::listNear(const ContactBody& first, const ContactBody& second) {
   listNodesIn(first.box.grownBy(beside), second, near_[1]);
 }
 
-void PairMotion::visitState(StateStream& stream) {
+void PairMotion::serialize(StateStream& stream) {
   stream.plain(reads_, 2);
   stream(searched_, path_, searchedComing_);
 }

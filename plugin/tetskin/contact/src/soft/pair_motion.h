@@ -22,7 +22,7 @@ class PairMotion {
   bool isStill(const ContactBody& first, const ContactBody& second, btScalar dt, btScalar maximum);
   /// Called after `isStill`, in the same step.
   void markSearched();
-  void visitState(StateStream& stream);
+  void serialize(StateStream& stream);
   btScalar sinceSearch() const { return path_; }
   /// False if the next step searches for contacts in any case.
   bool goesOn(const ContactBody& first, const ContactBody& second) const {

@@ -117,10 +117,10 @@ bool PairSearch::follow(std::vector<Touch>& touches) {
   return true;
 }
 
-void PairMemory::visitState(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed) {
+void PairMemory::serialize(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed) {
   if (stream.restoring()) candidates.drop();
-  motion.visitState(stream);
-  sides.visitState(stream);
+  motion.serialize(stream);
+  sides.serialize(stream);
   stream(overlap.deepest, overlap.normals, overlap.inside, overlap.agreeing, follows);
   stream.each(touched, [&](TouchedSample& sample) { stream(sample.sample, sample.age); });
   stream.array(pierced);

@@ -39,7 +39,7 @@ struct PairMemory {
   }
   /// touches   those of the last step
   /// followed  whether they are saved: `mayFollow`
-  void visitState(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed);
+  void serialize(bullet_detail::WorldStream& stream, std::vector<Touch>& touches, bool followed);
   /// True if all that it holds is of these bodies.
   bool fits(const ContactBody& first, const ContactBody& second, const std::vector<Touch>& touches) const;
 };

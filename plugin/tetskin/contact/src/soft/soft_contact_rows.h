@@ -42,7 +42,7 @@ class SoftContactRows : public RowSource {
   void forget(const btSoftBody& body) override;
   void shift(const btVector3& by) override;
   /// Of the last step's contacts, only those between sleeping bodies are kept; the others are reset, as before a step.
-  void visitState(WorldStream& stream) override;
+  void serialize(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
 
  private:
@@ -63,10 +63,10 @@ class SoftContactRows : public RowSource {
   std::unique_ptr<ContactBody> take(const btSoftBody& body);
   void includeReturned();
   void forgetPairs(const ContactBody& body);
-  void visitBodies(WorldStream& stream);
-  void visitPairs(WorldStream& stream);
-  void visitPair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
-  void visitSleeping(WorldStream& stream);
+  void serializeBodies(WorldStream& stream);
+  void serializePairs(WorldStream& stream);
+  void serializePair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
+  void serializeSleeping(WorldStream& stream);
   ContactBody* withId(int id) const;
   bool motionMatters(const ContactBody& body) const;
   void keepSleeping();

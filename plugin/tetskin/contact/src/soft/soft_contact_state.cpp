@@ -11,7 +11,7 @@
 namespace tetskin::contact_detail {
 namespace {
 
-void visitPoint(WorldStream& stream, CarriedPoint& point) {
+void serializePoint(WorldStream& stream, CarriedPoint& point) {
   stream(point.count);
   if (point.count > kMaxPointNodes) {
     point = {};
@@ -21,12 +21,12 @@ void visitPoint(WorldStream& stream, CarriedPoint& point) {
   stream.plain(point.weights.data(), point.count);
 }
 
-void visitContact(WorldStream& stream, PointContact& contact) {
+void serializeContact(WorldStream& stream, PointContact& contact) {
   stream.object(contact.body);
   stream.object(contact.object);
   stream(contact.point, contact.sample);
-  visitPoint(stream, contact.at);
-  visitPoint(stream, contact.onObject);
+  serializePoint(stream, contact.at);
+  serializePoint(stream, contact.onObject);
   stream(contact.position, contact.normal, contact.distance, contact.predicted, contact.friction, contact.impulse);
 }
 
@@ -55,15 +55,15 @@ void SoftContactRows::checkState(WorldStream& stream) {
   }
 }
 
-void SoftContactRows::visitState(WorldStream& stream) {
-  visitBodies(stream);
+void SoftContactRows::serialize(WorldStream& stream) {
+  serializeBodies(stream);
   if (stream.failed()) return;
-  visitPairs(stream);
-  visitSleeping(stream);
+  serializePairs(stream);
+  serializeSleeping(stream);
 }
 
 /// The bodies get back their order and their ids: pairs are searched in this order, and directions depend on ids.
-void SoftContactRows::visitBodies(WorldStream& stream) {
+void SoftContactRows::serializeBodies(WorldStream& stream) {
   updateBodies();
   stream.same(bodies_.size(), kOtherBodies);
   stream(nextId_);
@@ -74,7 +74,7 @@ void SoftContactRows::visitBodies(WorldStream& stream) {
                                     [&](const auto& body) { return body->body == named; });
     if (found == bodies_.end()) return stream.refuse(kOtherBodies);
     std::swap(bodies_[k], *found);
-    bodies_[k]->visitState(stream, stream.saving() && motionMatters(*bodies_[k]));
+    bodies_[k]->serialize(stream, stream.saving() && motionMatters(*bodies_[k]));
   }
 }
 
@@ -94,13 +94,13 @@ ContactBody* SoftContactRows::withId(int id) const {
   return found == bodies_.end() ? nullptr : found->get();
 }
 
-void SoftContactRows::visitPairs(WorldStream& stream) {
+void SoftContactRows::serializePairs(WorldStream& stream) {
   const std::size_t count = stream.length(pairStates_.size());
   if (stream.saving()) {
     for (auto& [key, state] : pairStates_) {
       std::pair<int, int> ids = key;
       stream(ids.first, ids.second);
-      visitPair(stream, ids, state);
+      serializePair(stream, ids, state);
     }
     return;
   }
@@ -108,11 +108,11 @@ void SoftContactRows::visitPairs(WorldStream& stream) {
   for (std::size_t k = 0; k < count && !stream.failed(); ++k) {
     std::pair<int, int> ids;
     stream(ids.first, ids.second);
-    visitPair(stream, ids, pairStates_[ids]);
+    serializePair(stream, ids, pairStates_[ids]);
   }
 }
 
-void SoftContactRows::visitPair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state) {
+void SoftContactRows::serializePair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state) {
   const ContactBody *first = withId(ids.first), *second = withId(ids.second);
   if (!first || !second) return stream.fail();
   stream(state.apart);
@@ -122,20 +122,20 @@ void SoftContactRows::visitPair(WorldStream& stream, const std::pair<int, int>& 
   for (int k = 0; k < (first == second ? 1 : 2); ++k) {
     const ContactBody &of = k == 0 ? *first : *second, &in = k == 0 ? *second : *first;
     PairMemory& memory = state.memories[k];
-    memory.visitState(stream, state.touches[k], memory.mayFollow(of, in));
+    memory.serialize(stream, state.touches[k], memory.mayFollow(of, in));
     if (!memory.fits(of, in, state.touches[k])) stream.fail();
   }
 }
 
 /// Sleeping bodies have no other contacts.
-void SoftContactRows::visitSleeping(WorldStream& stream) {
+void SoftContactRows::serializeSleeping(WorldStream& stream) {
   PointContacts sleeping;
   if (stream.saving()) {
     for (const PointContacts* contacts : {&sleeping_, &contacts_}) {
       std::copy_if(contacts->begin(), contacts->end(), std::back_inserter(sleeping), isBetweenSleepers);
     }
   }
-  stream.each(sleeping, [&](PointContact& contact) { visitContact(stream, contact); });
+  stream.each(sleeping, [&](PointContact& contact) { serializeContact(stream, contact); });
   if (!stream.restoring()) return;
   const bool known = std::all_of(sleeping.begin(), sleeping.end(), [](const PointContact& contact) {
     return contact.body && contact.object && btSoftBody::upcast(contact.object);

@@ -350,8 +350,8 @@ void BodyComponents<S>::carry(const Eigen::Matrix3d& turn, const Eigen::Vector3d
 }
 
 template <class S>
-void BodyComponents<S>::visitState(StateStream& stream) {
-  for (ComponentMotion& motion : motions_) motion.visitState(stream);
+void BodyComponents<S>::serialize(StateStream& stream) {
+  for (ComponentMotion& motion : motions_) motion.serialize(stream);
 }
 
 TETSKIN_INSTANTIATE_CLASS(BodyComponents)

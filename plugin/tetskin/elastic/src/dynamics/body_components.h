@@ -80,7 +80,7 @@ class BodyComponents {
                       S* solution) const;
 
   void carry(const Eigen::Matrix3d& turn, const Eigen::Vector3d& by);
-  void visitState(StateStream& stream);
+  void serialize(StateStream& stream);
 
  private:
   std::vector<ComponentMomentum> momenta(const NodeStates<S>& nodes, const S* solution, bool withRigid) const;

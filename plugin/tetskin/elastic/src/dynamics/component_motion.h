@@ -139,7 +139,7 @@ class ComponentMotion {
   /// Moves what the next `find` uses of this one along with a rigid motion.
   void carry(const Eigen::Matrix3d& turn, const Eigen::Vector3d& by) { about_ = (turn * about_ + by).eval(); }
   /// Writes or reads what the next `find` uses of this one.
-  void visitState(StateStream& stream) { stream.plain(about_.data(), 3); }
+  void serialize(StateStream& stream) { stream.plain(about_.data(), 3); }
 
  private:
   void findInverseInertia();

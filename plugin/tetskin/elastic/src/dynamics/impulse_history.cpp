@@ -102,13 +102,13 @@ void ImpulseHistory<S>::keep(const BlockMatrix<S>& matrix, const AlignedVector<S
 }
 
 template <class S>
-void ImpulseHistory<S>::visitState(StateStream& stream, const BlockMatrix<S>& matrix) {
+void ImpulseHistory<S>::serialize(StateStream& stream, const BlockMatrix<S>& matrix) {
   stream(seconds_);
   stream(resolved_);
   for (AlignedVector<S>* v : {&mean_, &last_}) {
     if (stream.restoring()) v->resize(matrix.wideSize());
     assert(v->size() == matrix.wideSize());
-    matrix.visitWide(stream, v->data());
+    matrix.serializeWide(stream, v->data());
   }
 }
 

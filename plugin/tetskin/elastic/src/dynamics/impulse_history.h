@@ -50,7 +50,7 @@ class ImpulseHistory {
             double seconds);
 
   /// Writes or reads what is known.
-  void visitState(StateStream& stream, const BlockMatrix<S>& matrix);
+  void serialize(StateStream& stream, const BlockMatrix<S>& matrix);
 
  private:
   AlignedVector<S> mean_;  ///< H, in the wide layout

@@ -117,7 +117,7 @@ void InitialGuess<S>::learn(double squared, double acting, int iterations) {
 }
 
 template <class S>
-void InitialGuess<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
+void InitialGuess<S>::serialize(StateStream& stream, BlockMatrix<S>& matrix) {
   stream(used_);
   stream(useless_);
   stream(pause_);
@@ -127,7 +127,7 @@ void InitialGuess<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
   if (!used_) return;
   const auto visit = [&](Wide& solution) {
     if (stream.restoring()) solution.resize(matrix.wideSize());
-    matrix.visitWide(stream, solution.data());
+    matrix.serializeWide(stream, solution.data());
   };
   if (known_ > 0) visit(last_);
   if (known_ > 1) visit(before_);

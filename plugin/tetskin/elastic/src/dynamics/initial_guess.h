@@ -44,7 +44,7 @@ class InitialGuess {
   std::array<AlignedVector<S>*, 2> known() { return {known_ > 0 ? &last_ : nullptr, known_ > 1 ? &before_ : nullptr}; }
 
   /// Writes or reads the state beside the matrix's solution, which is to be remembered.
-  void visitState(StateStream& stream, BlockMatrix<S>& matrix);
+  void serialize(StateStream& stream, BlockMatrix<S>& matrix);
 
  private:
   /// The ones named above.

@@ -73,8 +73,8 @@ void LoneSolve<S>::turn(const std::array<double, 9>& turn, const std::vector<std
 }
 
 template <class S>
-void LoneSolve<S>::visitState(StateStream& stream, BlockMatrix<S>& matrix) {
-  guess_.visitState(stream, matrix);
+void LoneSolve<S>::serialize(StateStream& stream, BlockMatrix<S>& matrix) {
+  guess_.serialize(stream, matrix);
   stream(twoLevelSolves_);
 }
 

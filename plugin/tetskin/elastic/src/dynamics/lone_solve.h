@@ -42,7 +42,7 @@ class LoneSolve {
   /// partOf  by slot
   void turn(const std::array<double, 9>& turn, const std::vector<std::uint32_t>& partOf);
   /// Writes or reads what is known beside the matrix's solution.
-  void visitState(StateStream& stream, BlockMatrix<S>& matrix);
+  void serialize(StateStream& stream, BlockMatrix<S>& matrix);
 
  private:
   int solveInTwoLevels(const LoneSystem<S>& system, ConjugateGradient<S>& gradient, SolveLimits limits,

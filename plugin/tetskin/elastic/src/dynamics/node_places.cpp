@@ -249,7 +249,7 @@ void NodePlaces<S>::carry(bool turns, const Matrix3d& turn, const Vector3d& by) 
 }
 
 template <class S>
-void NodePlaces<S>::visitState(StateStream& stream) {
+void NodePlaces<S>::serialize(StateStream& stream) {
   stream.plain(places_.data(), places_.size());
   for (Frame& frame : frames_) {
     stream.plain(frame.turn.coeffs().data(), 4);

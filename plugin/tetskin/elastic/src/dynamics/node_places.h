@@ -69,7 +69,7 @@ class NodePlaces {
   void fromDisplacement(std::size_t slot, const S* displacement, S* position) const;
 
   /// Writes or reads the positions of nodes and frames.
-  void visitState(StateStream& stream);
+  void serialize(StateStream& stream);
 
  private:
   struct Frame {

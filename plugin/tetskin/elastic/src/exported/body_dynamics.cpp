@@ -434,8 +434,8 @@ void BodyDynamics<S>::assembleAgain(double alpha) {
 
 /// Earlier steps are written only if the next one would use them.
 template <class S>
-void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool continues,
-                                 const std::function<void(std::size_t, S (&)[3])>& reached) {
+void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continues,
+                                const std::function<void(std::size_t, S (&)[3])>& reached) {
   bool deterministic = deterministic_;
   stream(deterministic);
   setDeterministic(deterministic);  // a step that found it changed would make the matrix anew
@@ -448,11 +448,11 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
   stream(stiffnessOverInertia_);
   stream(untouched_);
   stream(lastSeconds_);
-  components_.visitState(stream);
-  places_.visitState(stream);
-  const bool turned = tets_ && tets_->visitState(stream, static_cast<S>(alpha), !changed);
-  if (tets_) matrix_.visitWide(stream, matrix_.solution());
-  loneSolve_.visitState(stream, matrix_);
+  components_.serialize(stream);
+  places_.serialize(stream);
+  const bool turned = tets_ && tets_->serialize(stream, static_cast<S>(alpha), !changed);
+  if (tets_) matrix_.serializeWide(stream, matrix_.solution());
+  loneSolve_.serialize(stream, matrix_);
   if (stream.restoring()) {
     if (!changed && (changed_ || turned || alpha != alpha_)) assembleAgain(alpha);
     alpha_ = alpha;
@@ -464,12 +464,12 @@ void BodyDynamics<S>::visitState(StateStream& stream, bool outdated, bool contin
   if (!known) return;
   stream(length_);
   stream(near_);
-  history_.visitState(stream, matrix_);
-  visitReached(stream, reached);
+  history_.serialize(stream, matrix_);
+  serializeReached(stream, reached);
 }
 
 template <class S>
-void BodyDynamics<S>::visitReached(StateStream& stream, const std::function<void(std::size_t, S (&)[3])>& reached) {
+void BodyDynamics<S>::serializeReached(StateStream& stream, const std::function<void(std::size_t, S (&)[3])>& reached) {
   for (std::size_t n = 0; n < nodeCount(); ++n) {
     S velocity[3] = {};
     if (stream.saving()) reachedVelocity(n, velocity);

@@ -218,8 +218,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// continues  while saving: true for all nodes, see `continues`
   /// reached    called for each node if the last step is remembered: writes the velocity to which that has brought it,
   ///            or reads it
-  void visitState(StateStream& stream, bool outdated, bool continues,
-                  const std::function<void(std::size_t node, S (&velocity)[3])>& reached);
+  void serialize(StateStream& stream, bool outdated, bool continues,
+                 const std::function<void(std::size_t node, S (&velocity)[3])>& reached);
 
  private:
   /// How far a step is: calls in another order would use what the step before has left.
@@ -234,7 +234,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
   void assembleAgain(double alpha);
-  void visitReached(StateStream& stream, const std::function<void(std::size_t node, S (&velocity)[3])>& reached);
+  void serializeReached(StateStream& stream, const std::function<void(std::size_t node, S (&velocity)[3])>& reached);
   void reachedVelocity(std::size_t node, S* velocity) const;
 
   BlockMatrix<S> matrix_;

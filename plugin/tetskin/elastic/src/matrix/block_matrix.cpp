@@ -90,7 +90,7 @@ kernels::RowWork<S> BlockMatrix<S>::work(std::size_t firstChunk, std::size_t las
 }
 
 template <class S>
-void BlockMatrix<S>::visitWide(StateStream& stream, S* wide) const {
+void BlockMatrix<S>::serializeWide(StateStream& stream, S* wide) const {
   if (stream.restoring()) std::fill(wide, wide + wideSize(), S(0));
   for (const std::uint32_t slot : pattern_.slotOf) {
     S* at = wide + wideOfSlot(slot);

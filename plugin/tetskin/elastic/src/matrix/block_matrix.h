@@ -67,7 +67,7 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   }
   std::size_t wideSize() const { return pattern_.chunkCount() * kernels::kWideVector; }
   /// A vector in the wide layout, by node. Lanes without a node are undefined, and 0 after reading.
-  void visitWide(StateStream& stream, S* wide) const;
+  void serializeWide(StateStream& stream, S* wide) const;
 
   /// Masses by slot; 0: pinned. They take effect at the next assembly.
   S mass(std::size_t node) const { return masses_[slotOf(node)]; }

@@ -249,21 +249,21 @@ const S* CorotatedTets<S>::corners(S alpha, const S* points, ParallelFor* thread
 }
 
 template <class S>
-bool CorotatedTets<S>::visitState(StateStream& stream, S alpha, bool ofMatrix) {
+bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   forBoth([&](auto& packed) { stream.plain(packed.rotations.data(), packed.rotations.size()); });
   if (!ofMatrix) return false;
   const S flatAlpha = flatAlpha_;
   stream(flatAlpha_);
   bool changed = flatAlpha != flatAlpha_;
-  forBoth([&](auto& packed) { changed |= visitAssembled(stream, packed); });
-  if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= visitAlphas(stream, alpha, packed); });
+  forBoth([&](auto& packed) { changed |= serializeAssembled(stream, packed); });
+  if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= serializeAlphas(stream, alpha, packed); });
   return changed;
 }
 
 /// After an assembly, the rotations are those of the matrix.
 template <class S>
 template <class Pack>
-bool CorotatedTets<S>::visitAssembled(StateStream& stream, Packed<Pack>& packed) {
+bool CorotatedTets<S>::serializeAssembled(StateStream& stream, Packed<Pack>& packed) {
   bool same = haveSameBits(packed.rotations, packed.assembled);
   stream(same);
   if (stream.saving()) {
@@ -280,7 +280,7 @@ bool CorotatedTets<S>::visitAssembled(StateStream& stream, Packed<Pack>& packed)
 /// Few tets are flat, if any.
 template <class S>
 template <class Pack>
-bool CorotatedTets<S>::visitAlphas(StateStream& stream, S alpha, Packed<Pack>& packed) {
+bool CorotatedTets<S>::serializeAlphas(StateStream& stream, S alpha, Packed<Pack>& packed) {
   std::vector<std::uint32_t> flat;
   for (std::size_t k = 0; stream.saving() && k < packed.alphas.size(); ++k) {
     if (packed.alphas[k] == flatAlpha_) flat.push_back(static_cast<std::uint32_t>(k));

@@ -54,7 +54,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// alpha     of the matrix
   /// ofMatrix  false: without those of the matrix, which will be assembled anew
   /// Returns   true if reading has changed the data from which the matrix is assembled
-  bool visitState(StateStream& stream, S alpha, bool ofMatrix);
+  bool serialize(StateStream& stream, S alpha, bool ofMatrix);
   /// lambda / mu, for BlockMatrix::assemble.
   S ratio() const { return ratio_; }
 
@@ -83,9 +83,9 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   template <class Pack>
   kernels::TetWork<S, Pack> work(Packed<Pack>& packed, std::size_t task);
   template <class Pack>
-  bool visitAssembled(StateStream& stream, Packed<Pack>& packed);
+  bool serializeAssembled(StateStream& stream, Packed<Pack>& packed);
   template <class Pack>
-  bool visitAlphas(StateStream& stream, S alpha, Packed<Pack>& packed);
+  bool serializeAlphas(StateStream& stream, S alpha, Packed<Pack>& packed);
   const S* corners(S alpha, const S* points, ParallelFor* threads);
   /// Calls kernel(work, its loops, number of the task) for all packs.
   template <class Kernel>

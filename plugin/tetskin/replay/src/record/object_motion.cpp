@@ -61,7 +61,7 @@ struct Target {
   btTransform place = btTransform::getIdentity();
 };
 
-void visitTargets(WorldStream& stream, std::vector<Target>& targets) {
+void serializeTargets(WorldStream& stream, std::vector<Target>& targets) {
   stream.each(targets, [&](Target& target) { stream(target.index), stream(target.place); });
 }
 
@@ -99,10 +99,10 @@ Bytes kinematicTargets(btDeformableMultiBodyDynamicsWorld& world) {
   }
   if (targets.empty()) return {};
   WorldStream counted(world);
-  visitTargets(counted, targets);
+  serializeTargets(counted, targets);
   Bytes bytes(counted.count());
   WorldStream written(world, bytes.data(), bytes.size());
-  visitTargets(written, targets);
+  serializeTargets(written, targets);
   return bytes;
 }
 
@@ -137,7 +137,7 @@ class LedToTargets::StandIn : public btMotionState {
 LedToTargets::LedToTargets(btDeformableMultiBodyDynamicsWorld& world, const Bytes& bytes) : world_(world) {
   std::vector<Target> targets;
   WorldStream stream(world, bytes.data(), bytes.size());
-  if (!bytes.empty()) visitTargets(stream, targets);
+  if (!bytes.empty()) serializeTargets(stream, targets);
   fits_ = !stream.failed() && stream.count() == bytes.size() &&
           std::all_of(targets.begin(), targets.end(), [&](const Target& t) { return kinematicAt(world, t.index); });
   if (!fits_) return;

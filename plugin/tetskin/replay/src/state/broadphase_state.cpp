@@ -105,7 +105,7 @@ void write(const SavedBroadphase& saved, btDbvtBroadphase& broadphase, const btC
 
 }  // namespace
 
-void visitBroadphase(WorldStream& stream) {
+void serializeBroadphase(WorldStream& stream) {
   auto& broadphase = static_cast<btDbvtBroadphase&>(*stream.world().getBroadphase());
   const btCollisionObjectArray& objects = stream.world().getCollisionObjectArray();
   SavedBroadphase saved;
@@ -115,18 +115,19 @@ void visitBroadphase(WorldStream& stream) {
       return stream.refuse("a broadphase with proxies of more than this world's objects");
     }
   }
-  stream.each(saved.proxies, [&](SavedProxy& p) { visitAll(stream, p.id, p.group, p.mask, p.stage, p.low, p.high); });
+  stream.each(saved.proxies,
+              [&](SavedProxy& p) { serializeAll(stream, p.id, p.group, p.mask, p.stage, p.low, p.high); });
   for (std::vector<int>& stage : saved.stages) stream.array(stage);
-  for (SavedTree& tree : saved.trees) visitTree(stream, tree);
+  for (SavedTree& tree : saved.trees) serializeTree(stream, tree);
   if (stream.restoring()) {
     if (stream.failed() || !isWhole(saved, static_cast<std::size_t>(objects.size()))) return stream.fail();
     write(saved, broadphase, objects);
   }
   btDbvtBroadphase& b = broadphase;
-  for (btDbvt& tree : b.m_sets) visitAll(stream, tree.m_lkhd, tree.m_opath);
-  visitAll(stream, b.m_prediction, b.m_stageCurrent, b.m_fupdates, b.m_dupdates, b.m_cupdates, b.m_newpairs,
-           b.m_fixedleft, b.m_updates_call, b.m_updates_done, b.m_updates_ratio, b.m_pid, b.m_cid, b.m_gid,
-           b.m_deferedcollide, b.m_needcleanup);
+  for (btDbvt& tree : b.m_sets) serializeAll(stream, tree.m_lkhd, tree.m_opath);
+  serializeAll(stream, b.m_prediction, b.m_stageCurrent, b.m_fupdates, b.m_dupdates, b.m_cupdates, b.m_newpairs,
+               b.m_fixedleft, b.m_updates_call, b.m_updates_done, b.m_updates_ratio, b.m_pid, b.m_cid, b.m_gid,
+               b.m_deferedcollide, b.m_needcleanup);
   // This is the index of the list into which each step puts objects.
   if (b.m_stageCurrent < 0 || b.m_stageCurrent >= kFixedStage) {
     b.m_stageCurrent = 0;

@@ -12,40 +12,40 @@
 
 namespace tetskin::bullet_detail {
 
-/// A number, a vector, an array of these; or a struct that has its own visitState.
+/// A number, a vector, an array of these; or a struct that has its own serialize.
 template <class T>
-void visitMember(WorldStream& stream, T& member) {
+void serializeMember(WorldStream& stream, T& member) {
   if constexpr (std::is_array_v<T>) {
-    for (auto& element : member) visitMember(stream, element);
+    for (auto& element : member) serializeMember(stream, element);
   } else if constexpr (std::is_invocable_v<WorldStream&, T&>) {
     stream(member);
   } else {
-    visitState(stream, member);
+    serialize(stream, member);
   }
 }
 
 template <class... Members>
-void visitAll(WorldStream& stream, Members&... members) {
-  (visitMember(stream, members), ...);
+void serializeAll(WorldStream& stream, Members&... members) {
+  (serializeMember(stream, members), ...);
 }
 
 template <class Object>
 struct MembersOf {
-  friend void visitOpened(MembersOf, WorldStream& stream, Object& object);
+  friend void serializeOpened(MembersOf, WorldStream& stream, Object& object);
 };
 
 /// In a source,
 ///     template struct Visited<Object, &Object::m_hidden, ...>;
-/// defines what `visitMembers` writes or reads of that class.
+/// defines what `serializeMembers` writes or reads of that class.
 template <class Object, auto... members>
 struct Visited {
-  friend void visitOpened(MembersOf<Object>, WorldStream& stream, Object& object) {
-    visitAll(stream, object.*members...);
+  friend void serializeOpened(MembersOf<Object>, WorldStream& stream, Object& object) {
+    serializeAll(stream, object.*members...);
   }
 };
 template <class Object>
-void visitMembers(WorldStream& stream, Object& object) {
-  visitOpened(MembersOf<Object>(), stream, object);
+void serializeMembers(WorldStream& stream, Object& object) {
+  serializeOpened(MembersOf<Object>(), stream, object);
 }
 
 }  // namespace tetskin::bullet_detail

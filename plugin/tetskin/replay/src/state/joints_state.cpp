@@ -22,32 +22,33 @@
 
 namespace tetskin::bullet_detail {
 
-void visitState(WorldStream& stream, btAngularLimit& limit);
-void visitState(WorldStream& stream, btConstraintSetting& s) {
-  visitAll(stream, s.m_tau, s.m_damping, s.m_impulseClamp);
+void serialize(WorldStream& stream, btAngularLimit& limit);
+void serialize(WorldStream& stream, btConstraintSetting& s) {
+  serializeAll(stream, s.m_tau, s.m_damping, s.m_impulseClamp);
 }
-void visitState(WorldStream& stream, btRotationalLimitMotor& m) {
-  visitAll(stream, m.m_loLimit, m.m_hiLimit, m.m_targetVelocity, m.m_maxMotorForce, m.m_maxLimitForce, m.m_damping,
-           m.m_limitSoftness, m.m_normalCFM, m.m_stopERP, m.m_stopCFM, m.m_bounce, m.m_enableMotor,
-           m.m_currentLimitError, m.m_currentPosition, m.m_currentLimit, m.m_accumulatedImpulse);
+void serialize(WorldStream& stream, btRotationalLimitMotor& m) {
+  serializeAll(stream, m.m_loLimit, m.m_hiLimit, m.m_targetVelocity, m.m_maxMotorForce, m.m_maxLimitForce, m.m_damping,
+               m.m_limitSoftness, m.m_normalCFM, m.m_stopERP, m.m_stopCFM, m.m_bounce, m.m_enableMotor,
+               m.m_currentLimitError, m.m_currentPosition, m.m_currentLimit, m.m_accumulatedImpulse);
 }
-void visitState(WorldStream& stream, btTranslationalLimitMotor& m) {
-  visitAll(stream, m.m_lowerLimit, m.m_upperLimit, m.m_accumulatedImpulse, m.m_limitSoftness, m.m_damping,
-           m.m_restitution, m.m_normalCFM, m.m_stopERP, m.m_stopCFM, m.m_enableMotor, m.m_targetVelocity,
-           m.m_maxMotorForce, m.m_currentLimitError, m.m_currentLinearDiff, m.m_currentLimit);
+void serialize(WorldStream& stream, btTranslationalLimitMotor& m) {
+  serializeAll(stream, m.m_lowerLimit, m.m_upperLimit, m.m_accumulatedImpulse, m.m_limitSoftness, m.m_damping,
+               m.m_restitution, m.m_normalCFM, m.m_stopERP, m.m_stopCFM, m.m_enableMotor, m.m_targetVelocity,
+               m.m_maxMotorForce, m.m_currentLimitError, m.m_currentLinearDiff, m.m_currentLimit);
 }
-void visitState(WorldStream& stream, btRotationalLimitMotor2& m) {
-  visitAll(stream, m.m_loLimit, m.m_hiLimit, m.m_bounce, m.m_stopERP, m.m_stopCFM, m.m_motorERP, m.m_motorCFM,
-           m.m_enableMotor, m.m_targetVelocity, m.m_maxMotorForce, m.m_servoMotor, m.m_servoTarget, m.m_enableSpring,
-           m.m_springStiffness, m.m_springStiffnessLimited, m.m_springDamping, m.m_springDampingLimited,
-           m.m_equilibriumPoint, m.m_currentLimitError, m.m_currentLimitErrorHi, m.m_currentPosition, m.m_currentLimit);
+void serialize(WorldStream& stream, btRotationalLimitMotor2& m) {
+  serializeAll(stream, m.m_loLimit, m.m_hiLimit, m.m_bounce, m.m_stopERP, m.m_stopCFM, m.m_motorERP, m.m_motorCFM,
+               m.m_enableMotor, m.m_targetVelocity, m.m_maxMotorForce, m.m_servoMotor, m.m_servoTarget,
+               m.m_enableSpring, m.m_springStiffness, m.m_springStiffnessLimited, m.m_springDamping,
+               m.m_springDampingLimited, m.m_equilibriumPoint, m.m_currentLimitError, m.m_currentLimitErrorHi,
+               m.m_currentPosition, m.m_currentLimit);
 }
-void visitState(WorldStream& stream, btTranslationalLimitMotor2& m) {
-  visitAll(stream, m.m_lowerLimit, m.m_upperLimit, m.m_bounce, m.m_stopERP, m.m_stopCFM, m.m_motorERP, m.m_motorCFM,
-           m.m_enableMotor, m.m_servoMotor, m.m_enableSpring, m.m_servoTarget, m.m_springStiffness,
-           m.m_springStiffnessLimited, m.m_springDamping, m.m_springDampingLimited, m.m_equilibriumPoint,
-           m.m_targetVelocity, m.m_maxMotorForce, m.m_currentLimitError, m.m_currentLimitErrorHi, m.m_currentLinearDiff,
-           m.m_currentLimit);
+void serialize(WorldStream& stream, btTranslationalLimitMotor2& m) {
+  serializeAll(stream, m.m_lowerLimit, m.m_upperLimit, m.m_bounce, m.m_stopERP, m.m_stopCFM, m.m_motorERP, m.m_motorCFM,
+               m.m_enableMotor, m.m_servoMotor, m.m_enableSpring, m.m_servoTarget, m.m_springStiffness,
+               m.m_springStiffnessLimited, m.m_springDamping, m.m_springDampingLimited, m.m_equilibriumPoint,
+               m.m_targetVelocity, m.m_maxMotorForce, m.m_currentLimitError, m.m_currentLimitErrorHi,
+               m.m_currentLinearDiff, m.m_currentLimit);
 }
 
 using AnyJoint = btTypedConstraint;
@@ -58,8 +59,8 @@ template struct Visited<AnyJoint, &AnyJoint::m_isEnabled, &AnyJoint::m_breakingI
 using AngularLimit = btAngularLimit;
 template struct Visited<AngularLimit, &AngularLimit::m_center, &AngularLimit::m_halfRange, &AngularLimit::m_softness,
                         &AngularLimit::m_biasFactor, &AngularLimit::m_relaxationFactor>;
-void visitState(WorldStream& stream, btAngularLimit& limit) {
-  visitMembers(stream, limit);
+void serialize(WorldStream& stream, btAngularLimit& limit) {
+  serializeMembers(stream, limit);
 }
 
 using BallJoint = btPoint2PointConstraint;
@@ -166,12 +167,12 @@ namespace {
 
 /// The member functions for this class and its bases.
 template <class Joint, class... Bases>
-void visitAs(WorldStream& stream, btTypedConstraint& joint) {
-  (visitMembers(stream, static_cast<Bases&>(static_cast<Joint&>(joint))), ...);
+void serializeAs(WorldStream& stream, btTypedConstraint& joint) {
+  (serializeMembers(stream, static_cast<Bases&>(static_cast<Joint&>(joint))), ...);
 }
 template <class Joint>
-void visitAs(WorldStream& stream, btMultiBodyConstraint& joint) {
-  visitMembers(stream, static_cast<Joint&>(joint));
+void serializeAs(WorldStream& stream, btMultiBodyConstraint& joint) {
+  serializeMembers(stream, static_cast<Joint&>(joint));
 }
 
 /// One of Bullet's classes, represented by an object of it.
@@ -199,19 +200,19 @@ const JointClasses& jointClasses() {
     const auto add = [all](btTypedConstraint* sample, void (*visit)(WorldStream&, btTypedConstraint&)) {
       all->push_back({std::unique_ptr<btTypedConstraint>(sample), visit});
     };
-    add(new BallJoint(body, body, origin, origin), visitAs<BallJoint, BallJoint>);
-    add(new HingeJoint(body, body, frame, frame), visitAs<HingeJoint, HingeJoint>);
+    add(new BallJoint(body, body, origin, origin), serializeAs<BallJoint, BallJoint>);
+    add(new HingeJoint(body, body, frame, frame), serializeAs<HingeJoint, HingeJoint>);
     using Turns = btHingeAccumulatedAngleConstraint;
-    add(new Turns(body, body, frame, frame), visitAs<Turns, HingeJoint, Turns>);
-    add(new ConeJoint(body, body, frame, frame), visitAs<ConeJoint, ConeJoint>);
-    add(new SliderJoint(body, body, frame, frame, false), visitAs<SliderJoint, SliderJoint>);
-    add(new SixDofJoint(body, body, frame, frame, false), visitAs<SixDofJoint, SixDofJoint>);
-    add(new btUniversalConstraint(body, body, origin, x, y), visitAs<btUniversalConstraint, SixDofJoint>);
-    add(new SpringJoint(body, body, frame, frame, false), visitAs<SpringJoint, SixDofJoint, SpringJoint>);
-    add(new SpringJoint2(body, body, frame, frame), visitAs<SpringJoint2, SpringJoint2>);
-    add(new btHinge2Constraint(body, body, origin, x, y), visitAs<btHinge2Constraint, SpringJoint2>);
-    add(new btFixedConstraint(body, body, frame, frame), visitAs<btFixedConstraint, SpringJoint2>);
-    add(new GearJoint(body, body, x, y), visitAs<GearJoint, GearJoint>);
+    add(new Turns(body, body, frame, frame), serializeAs<Turns, HingeJoint, Turns>);
+    add(new ConeJoint(body, body, frame, frame), serializeAs<ConeJoint, ConeJoint>);
+    add(new SliderJoint(body, body, frame, frame, false), serializeAs<SliderJoint, SliderJoint>);
+    add(new SixDofJoint(body, body, frame, frame, false), serializeAs<SixDofJoint, SixDofJoint>);
+    add(new btUniversalConstraint(body, body, origin, x, y), serializeAs<btUniversalConstraint, SixDofJoint>);
+    add(new SpringJoint(body, body, frame, frame, false), serializeAs<SpringJoint, SixDofJoint, SpringJoint>);
+    add(new SpringJoint2(body, body, frame, frame), serializeAs<SpringJoint2, SpringJoint2>);
+    add(new btHinge2Constraint(body, body, origin, x, y), serializeAs<btHinge2Constraint, SpringJoint2>);
+    add(new btFixedConstraint(body, body, frame, frame), serializeAs<btFixedConstraint, SpringJoint2>);
+    add(new GearJoint(body, body, x, y), serializeAs<GearJoint, GearJoint>);
     return all;
   }();
   return *classes;
@@ -230,30 +231,30 @@ const BodyJointClasses& bodyJointClasses() {
     const auto add = [all](btMultiBodyConstraint* sample, void (*visit)(WorldStream&, btMultiBodyConstraint&)) {
       all->push_back({std::unique_ptr<btMultiBodyConstraint>(sample), visit});
     };
-    add(new LinkMotor(&body, 0, 0, 0), visitAs<LinkMotor>);
-    add(new btMultiBodyJointLimitConstraint(&body, 0, 0, 0), visitAs<btMultiBodyJointLimitConstraint>);
-    add(new LinkWeld(&body, 0, &body, -1, origin, origin, frame, frame), visitAs<LinkWeld>);
-    add(new btMultiBodyPoint2Point(&body, 0, &body, -1, origin, origin), visitAs<btMultiBodyPoint2Point>);
-    add(new LinkSlider(&body, 0, &body, -1, origin, origin, frame, frame, x), visitAs<LinkSlider>);
-    add(new LinkGear(&body, 0, &body, -1, origin, origin, frame, frame), visitAs<LinkGear>);
-    add(new BallMotor(&body, 0, 0), visitAs<BallMotor>);
-    add(new BallLimit(&body, 0, 0, 0, 0, 0), visitAs<BallLimit>);
+    add(new LinkMotor(&body, 0, 0, 0), serializeAs<LinkMotor>);
+    add(new btMultiBodyJointLimitConstraint(&body, 0, 0, 0), serializeAs<btMultiBodyJointLimitConstraint>);
+    add(new LinkWeld(&body, 0, &body, -1, origin, origin, frame, frame), serializeAs<LinkWeld>);
+    add(new btMultiBodyPoint2Point(&body, 0, &body, -1, origin, origin), serializeAs<btMultiBodyPoint2Point>);
+    add(new LinkSlider(&body, 0, &body, -1, origin, origin, frame, frame, x), serializeAs<LinkSlider>);
+    add(new LinkGear(&body, 0, &body, -1, origin, origin, frame, frame), serializeAs<LinkGear>);
+    add(new BallMotor(&body, 0, 0), serializeAs<BallMotor>);
+    add(new BallLimit(&body, 0, 0, 0, 0, 0), serializeAs<BallLimit>);
     return all;
   }();
   return *classes;
 }
 
-void visitFeedback(WorldStream& stream, btTypedConstraint& joint) {
+void serializeFeedback(WorldStream& stream, btTypedConstraint& joint) {
   bool measured = joint.getJointFeedback();
   stream(measured);
   if (!measured) return;
   btJointFeedback none;
   btJointFeedback& f = joint.getJointFeedback() ? *joint.getJointFeedback() : none;
-  visitAll(stream, f.m_appliedForceBodyA, f.m_appliedTorqueBodyA, f.m_appliedForceBodyB, f.m_appliedTorqueBodyB);
+  serializeAll(stream, f.m_appliedForceBodyA, f.m_appliedTorqueBodyA, f.m_appliedForceBodyB, f.m_appliedTorqueBodyB);
 }
 
 /// A joint has no memory for its impulses before its first step.
-void visitImpulses(WorldStream& stream, btMultiBodyConstraint& joint) {
+void serializeImpulses(WorldStream& stream, btMultiBodyConstraint& joint) {
   auto& data = joint.*memberOf(JointData());
   for (int row = 0; row < joint.getNumRows(); ++row) {
     btScalar impulse = row < data.size() ? data[row] : 0;
@@ -279,18 +280,18 @@ int classOfJoint(const btTypedConstraint& joint) {
   return static_cast<int>(found - jointClasses().data());
 }
 
-void visitJoints(WorldStream& stream) {
+void serializeJoints(WorldStream& stream) {
   btDeformableMultiBodyDynamicsWorld& world = stream.world();
   for (int k = 0; k < world.getNumConstraints(); ++k) {
     btTypedConstraint& joint = *world.getConstraint(k);
-    visitMembers(stream, joint);
-    visitFeedback(stream, joint);
+    serializeMembers(stream, joint);
+    serializeFeedback(stream, joint);
     classOf(jointClasses(), joint)->visit(stream, joint);
   }
   for (int k = 0; k < world.getNumMultiBodyConstraints(); ++k) {
     btMultiBodyConstraint& joint = *world.getMultiBodyConstraint(k);
-    visitMembers(stream, joint);
-    visitImpulses(stream, joint);
+    serializeMembers(stream, joint);
+    serializeImpulses(stream, joint);
     classOf(bodyJointClasses(), joint)->visit(stream, joint);
   }
 }

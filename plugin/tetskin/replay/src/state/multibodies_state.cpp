@@ -9,7 +9,7 @@ namespace tetskin::bullet_detail {
 
 /// A cache that Bullet keeps between steps; the body determines its length.
 template <class T>
-void visitState(WorldStream& stream, btAlignedObjectArray<T>& cache) {
+void serialize(WorldStream& stream, btAlignedObjectArray<T>& cache) {
   if (stream.length(static_cast<std::size_t>(cache.size())) != static_cast<std::size_t>(cache.size())) {
     return stream.fail();
   }
@@ -20,8 +20,8 @@ void visitState(WorldStream& stream, btAlignedObjectArray<T>& cache) {
   }
 }
 
-void visitState(WorldStream& stream, btSpatialMotionVector& vector) {
-  visitAll(stream, vector.m_topVec, vector.m_bottomVec);
+void serialize(WorldStream& stream, btSpatialMotionVector& vector) {
+  serializeAll(stream, vector.m_topVec, vector.m_bottomVec);
 }
 
 using AnyMultiBody = btMultiBody;
@@ -42,30 +42,30 @@ template struct Visited<
 
 namespace {
 
-void visitLink(WorldStream& stream, btMultibodyLink& l) {
-  visitAll(stream, l.m_mass, l.m_inertiaLocal, l.m_zeroRotParentToThis, l.m_dVector, l.m_eVector,
-           l.m_absFrameTotVelocity, l.m_absFrameLocVelocity, l.m_axes, l.m_cachedRotParentToThis, l.m_cachedRVector,
-           l.m_cachedRotParentToThis_interpolate, l.m_cachedRVector_interpolate, l.m_appliedForce, l.m_appliedTorque,
-           l.m_appliedConstraintForce, l.m_appliedConstraintTorque, l.m_jointPos, l.m_jointPos_interpolate,
-           l.m_jointTorque, l.m_flags, l.m_cachedWorldTransform, l.m_jointDamping, l.m_jointFriction,
-           l.m_jointLowerLimit, l.m_jointUpperLimit, l.m_jointMaxForce, l.m_jointMaxVelocity);
+void serializeLink(WorldStream& stream, btMultibodyLink& l) {
+  serializeAll(stream, l.m_mass, l.m_inertiaLocal, l.m_zeroRotParentToThis, l.m_dVector, l.m_eVector,
+               l.m_absFrameTotVelocity, l.m_absFrameLocVelocity, l.m_axes, l.m_cachedRotParentToThis, l.m_cachedRVector,
+               l.m_cachedRotParentToThis_interpolate, l.m_cachedRVector_interpolate, l.m_appliedForce,
+               l.m_appliedTorque, l.m_appliedConstraintForce, l.m_appliedConstraintTorque, l.m_jointPos,
+               l.m_jointPos_interpolate, l.m_jointTorque, l.m_flags, l.m_cachedWorldTransform, l.m_jointDamping,
+               l.m_jointFriction, l.m_jointLowerLimit, l.m_jointUpperLimit, l.m_jointMaxForce, l.m_jointMaxVelocity);
   bool measured = l.m_jointFeedback;
   stream(measured);
   if (!measured) return;
   btMultiBodyJointFeedback none;
   btMultiBodyJointFeedback& feedback = l.m_jointFeedback ? *l.m_jointFeedback : none;
   btSpatialForceVector& forces = feedback.m_reactionForces;
-  visitAll(stream, forces.m_topVec, forces.m_bottomVec);
+  serializeAll(stream, forces.m_topVec, forces.m_bottomVec);
 }
 
 }  // namespace
 
-void visitMultiBodies(WorldStream& stream) {
+void serializeMultiBodies(WorldStream& stream) {
   btDeformableMultiBodyDynamicsWorld& world = stream.world();
   for (int k = 0; k < world.getNumMultibodies(); ++k) {
     btMultiBody& body = *world.getMultiBody(k);
-    visitMembers(stream, body);
-    for (int link = 0; link < body.getNumLinks(); ++link) visitLink(stream, body.getLink(link));
+    serializeMembers(stream, body);
+    for (int link = 0; link < body.getNumLinks(); ++link) serializeLink(stream, body.getLink(link));
   }
 }
 

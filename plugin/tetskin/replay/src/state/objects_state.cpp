@@ -45,7 +45,7 @@ template struct Visited<World, &World::m_localTime, &World::m_fixedTimeStep, &Wo
 namespace {
 
 /// Some may be in no world, or no longer exist: their pointers are only compared, and kept as they are.
-void visitIgnored(WorldStream& stream, btCollisionObject& object) {
+void serializeIgnored(WorldStream& stream, btCollisionObject& object) {
   auto& ignored = object.*memberOf(PassesThrough());
   const btCollisionObjectArray& objects = stream.world().getCollisionObjectArray();
   std::vector<int> indices;
@@ -64,29 +64,29 @@ void visitIgnored(WorldStream& stream, btCollisionObject& object) {
   }
 }
 
-void visitSettings(WorldStream& stream, btContactSolverInfoData& s) {
-  visitAll(stream, s.m_tau, s.m_damping, s.m_friction, s.m_timeStep, s.m_restitution, s.m_numIterations,
-           s.m_maxErrorReduction, s.m_sor, s.m_erp, s.m_erp2, s.m_deformable_erp, s.m_deformable_cfm,
-           s.m_deformable_maxErrorReduction, s.m_globalCfm, s.m_frictionERP, s.m_frictionCFM, s.m_splitImpulse,
-           s.m_splitImpulsePenetrationThreshold, s.m_splitImpulseTurnErp, s.m_linearSlop, s.m_warmstartingFactor,
-           s.m_articulatedWarmstartingFactor, s.m_solverMode, s.m_restingContactRestitutionThreshold,
-           s.m_minimumSolverBatchSize, s.m_maxGyroscopicForce, s.m_singleAxisRollingFrictionThreshold,
-           s.m_leastSquaresResidualThreshold, s.m_restitutionVelocityThreshold, s.m_jointFeedbackInWorldSpace,
-           s.m_jointFeedbackInJointFrame, s.m_reportSolverAnalytics, s.m_numNonContactInnerIterations);
+void serializeSettings(WorldStream& stream, btContactSolverInfoData& s) {
+  serializeAll(stream, s.m_tau, s.m_damping, s.m_friction, s.m_timeStep, s.m_restitution, s.m_numIterations,
+               s.m_maxErrorReduction, s.m_sor, s.m_erp, s.m_erp2, s.m_deformable_erp, s.m_deformable_cfm,
+               s.m_deformable_maxErrorReduction, s.m_globalCfm, s.m_frictionERP, s.m_frictionCFM, s.m_splitImpulse,
+               s.m_splitImpulsePenetrationThreshold, s.m_splitImpulseTurnErp, s.m_linearSlop, s.m_warmstartingFactor,
+               s.m_articulatedWarmstartingFactor, s.m_solverMode, s.m_restingContactRestitutionThreshold,
+               s.m_minimumSolverBatchSize, s.m_maxGyroscopicForce, s.m_singleAxisRollingFrictionThreshold,
+               s.m_leastSquaresResidualThreshold, s.m_restitutionVelocityThreshold, s.m_jointFeedbackInWorldSpace,
+               s.m_jointFeedbackInJointFrame, s.m_reportSolverAnalytics, s.m_numNonContactInnerIterations);
 }
 
-void visitSettings(WorldStream& stream, btDispatcherInfo& s) {
-  visitAll(stream, s.m_timeStep, s.m_stepCount, s.m_dispatchFunc, s.m_timeOfImpact, s.m_useContinuous,
-           s.m_enableSatConvex, s.m_enableSPU, s.m_useEpa, s.m_allowedCcdPenetration,
-           s.m_useConvexConservativeDistanceUtil, s.m_convexConservativeDistanceThreshold,
-           s.m_deterministicOverlappingPairs);
+void serializeSettings(WorldStream& stream, btDispatcherInfo& s) {
+  serializeAll(stream, s.m_timeStep, s.m_stepCount, s.m_dispatchFunc, s.m_timeOfImpact, s.m_useContinuous,
+               s.m_enableSatConvex, s.m_enableSPU, s.m_useEpa, s.m_allowedCcdPenetration,
+               s.m_useConvexConservativeDistanceUtil, s.m_convexConservativeDistanceThreshold,
+               s.m_deterministicOverlappingPairs);
 }
 
-void visitClock(WorldStream& stream) {
+void serializeClock(WorldStream& stream) {
   World& world = stream.world();
-  visitMembers(stream, world);
-  visitSettings(stream, world.getSolverInfo());
-  visitSettings(stream, world.getDispatchInfo());
+  serializeMembers(stream, world);
+  serializeSettings(stream, world.getSolverInfo());
+  serializeSettings(stream, world.getDispatchInfo());
   // The solver takes rows in random order, if the application wants that.
   auto& solver = static_cast<btSequentialImpulseConstraintSolver&>(*world.getConstraintSolver());
   unsigned long seed = solver.getRandSeed();
@@ -97,16 +97,16 @@ void visitClock(WorldStream& stream) {
 
 }  // namespace
 
-void visitObjects(WorldStream& stream) {
+void serializeObjects(WorldStream& stream) {
   World& world = stream.world();
-  visitClock(stream);
+  serializeClock(stream);
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
   for (int k = 0; k < objects.size(); ++k) {
-    visitMembers(stream, *objects[k]);
-    visitIgnored(stream, *objects[k]);
-    if (btRigidBody* body = btRigidBody::upcast(objects[k])) visitMembers(stream, *body);
+    serializeMembers(stream, *objects[k]);
+    serializeIgnored(stream, *objects[k]);
+    if (btRigidBody* body = btRigidBody::upcast(objects[k])) serializeMembers(stream, *body);
   }
-  visitMultiBodies(stream);
+  serializeMultiBodies(stream);
   if (!stream.restoring()) return;
   for (int k = 0; k < objects.size(); ++k) {
     btRigidBody* body = btRigidBody::upcast(objects[k]);

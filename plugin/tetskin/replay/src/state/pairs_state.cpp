@@ -163,7 +163,7 @@ class PairVisitor {
   }
 
   /// The manifolds in the order of the dispatcher's list, and their points.
-  void visitCaches() {
+  void serializeCaches() {
     int count = dispatcher_.getNumManifolds();
     stream_(count);
     btPersistentManifold** list = dispatcher_.getInternalManifoldPointer();
@@ -173,7 +173,7 @@ class PairVisitor {
     } else if (!putInOrder(count, list)) {
       return stream_.fail();
     }
-    for (int k = 0; k < count; ++k) visitCache(*list[k]);
+    for (int k = 0; k < count; ++k) serializeCache(*list[k]);
   }
 
  private:
@@ -204,11 +204,12 @@ class PairVisitor {
     if (stream_.restoring() && !make(algorithm, kind != AlgorithmKind::None && !stream_.failed(), first, second))
       return;
     if (kindNow() != kind) return stream_.fail();
-    if (kind == AlgorithmKind::Convex) visitConvex(*algorithm, first, second);
+    if (kind == AlgorithmKind::Convex) serializeConvex(*algorithm, first, second);
     if (kind == AlgorithmKind::Compound || kind == AlgorithmKind::TwoCompounds) {
-      visitCompound(static_cast<CompoundAlgorithm&>(*algorithm), first, second);
+      serializeCompound(static_cast<CompoundAlgorithm&>(*algorithm), first, second);
     }
-    if (kind == AlgorithmKind::TwoCompounds) visitTwo(static_cast<TwoCompoundsAlgorithm&>(*algorithm), first, second);
+    if (kind == AlgorithmKind::TwoCompounds)
+      serializeTwo(static_cast<TwoCompoundsAlgorithm&>(*algorithm), first, second);
   }
 
   /// Creates or destroys the algorithm as wanted. Returns false if there is none afterwards.
@@ -224,14 +225,14 @@ class PairVisitor {
     return algorithm;
   }
 
-  void visitConvex(btCollisionAlgorithm& algorithm, const btCollisionObjectWrapper& first,
-                   const btCollisionObjectWrapper& second) {
+  void serializeConvex(btCollisionAlgorithm& algorithm, const btCollisionObjectWrapper& first,
+                       const btCollisionObjectWrapper& second) {
     const PointCache cache = BulletClasses::get().cacheOfConvex(algorithm);
     btPersistentManifold*& manifold = *cache.manifold;
     const btCollisionObject *a = first.getCollisionObject(), *b = second.getCollisionObject();
     bool has = manifold, swapped = manifold && manifold->getBody0() == b;
     int index = has ? manifold->m_index1a : 0;
-    visitAll(stream_, has, swapped, index);
+    serializeAll(stream_, has, swapped, index);
     if (stream_.restoring() && cache.owned) {
       if (has && !manifold) {
         manifold = dispatcher_.getNewManifold(a, b);
@@ -251,8 +252,8 @@ class PairVisitor {
     return static_cast<const btCompoundShape&>(*object.getCollisionShape());
   }
 
-  void visitCompound(CompoundAlgorithm& algorithm, const btCollisionObjectWrapper& first,
-                     const btCollisionObjectWrapper& second) {
+  void serializeCompound(CompoundAlgorithm& algorithm, const btCollisionObjectWrapper& first,
+                         const btCollisionObjectWrapper& second) {
     const bool swapped = algorithm.*memberOf(IsSwappedMember());
     const btCollisionObjectWrapper &whole = swapped ? second : first, &other = swapped ? first : second;
     auto& children = algorithm.*memberOf(ChildrenMember());
@@ -269,8 +270,8 @@ class PairVisitor {
     }
   }
 
-  void visitTwo(TwoCompoundsAlgorithm& algorithm, const btCollisionObjectWrapper& first,
-                const btCollisionObjectWrapper& second) {
+  void serializeTwo(TwoCompoundsAlgorithm& algorithm, const btCollisionObjectWrapper& first,
+                    const btCollisionObjectWrapper& second) {
     btHashedSimplePairCache& pairs = *(algorithm.*memberOf(ChildPairsMember()));
     const auto count = static_cast<int>(stream_.length(static_cast<std::size_t>(pairs.getNumOverlappingPairs()), 9));
     for (int k = 0; k < count; ++k) {
@@ -282,7 +283,7 @@ class PairVisitor {
         b = pair.m_indexB;
         child = static_cast<btCollisionAlgorithm*>(pair.m_userPointer);
       }
-      visitAll(stream_, a, b);
+      serializeAll(stream_, a, b);
       const btCompoundShape &shapeA = shapeOf(first), &shapeB = shapeOf(second);
       if (a < 0 || a >= shapeA.getNumChildShapes() || b < 0 || b >= shapeB.getNumChildShapes()) return stream_.fail();
       const btTransform placeA = first.getWorldTransform() * shapeA.getChildTransform(a);
@@ -311,28 +312,28 @@ class PairVisitor {
     return true;
   }
 
-  void visitCache(btPersistentManifold& m) {
+  void serializeCache(btPersistentManifold& m) {
     int points = m.getNumContacts();
     btScalar breaking = m.getContactBreakingThreshold(), processing = m.getContactProcessingThreshold();
-    visitAll(stream_, points, breaking, processing, m.m_companionIdA, m.m_companionIdB);
+    serializeAll(stream_, points, breaking, processing, m.m_companionIdA, m.m_companionIdB);
     if (stream_.restoring()) {
       if (points < 0 || points > MANIFOLD_CACHE_SIZE) return stream_.fail();
       m.setContactBreakingThreshold(breaking);
       m.setContactProcessingThreshold(processing);
       m.setNumContacts(points);
     }
-    for (int k = 0; k < points; ++k) visitPoint(m.getContactPoint(k));
+    for (int k = 0; k < points; ++k) serializePoint(m.getContactPoint(k));
   }
 
   /// `m_userPersistentData` belongs to the application, and is lost.
-  void visitPoint(btManifoldPoint& p) {
+  void serializePoint(btManifoldPoint& p) {
     if (stream_.restoring()) p.m_userPersistentData = nullptr;
-    visitAll(stream_, p.m_localPointA, p.m_localPointB, p.m_positionWorldOnB, p.m_positionWorldOnA, p.m_normalWorldOnB,
-             p.m_distance1, p.m_combinedFriction, p.m_combinedRollingFriction, p.m_combinedSpinningFriction,
-             p.m_combinedRestitution, p.m_partId0, p.m_partId1, p.m_index0, p.m_index1, p.m_contactPointFlags,
-             p.m_appliedImpulse, p.m_prevRHS, p.m_appliedImpulseLateral1, p.m_appliedImpulseLateral2,
-             p.m_contactMotion1, p.m_contactMotion2, p.m_contactCFM, p.m_contactERP, p.m_frictionCFM, p.m_lifeTime,
-             p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
+    serializeAll(stream_, p.m_localPointA, p.m_localPointB, p.m_positionWorldOnB, p.m_positionWorldOnA,
+                 p.m_normalWorldOnB, p.m_distance1, p.m_combinedFriction, p.m_combinedRollingFriction,
+                 p.m_combinedSpinningFriction, p.m_combinedRestitution, p.m_partId0, p.m_partId1, p.m_index0,
+                 p.m_index1, p.m_contactPointFlags, p.m_appliedImpulse, p.m_prevRHS, p.m_appliedImpulseLateral1,
+                 p.m_appliedImpulseLateral2, p.m_contactMotion1, p.m_contactMotion2, p.m_contactCFM, p.m_contactERP,
+                 p.m_frictionCFM, p.m_lifeTime, p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
   }
 
   WorldStream& stream_;
@@ -362,7 +363,7 @@ bool isBulletsDispatcher(const btDispatcher& dispatcher) {
   return isOfSameClass(dispatcher, BulletClasses::get().dispatcher());
 }
 
-void visitPairs(WorldStream& stream) {
+void serializePairs(WorldStream& stream) {
   btOverlappingPairCache& cache = *stream.world().getPairCache();
   const btCollisionObjectArray& objects = stream.world().getCollisionObjectArray();
   const auto count = static_cast<int>(stream.length(static_cast<std::size_t>(cache.getNumOverlappingPairs()), 9));
@@ -375,7 +376,7 @@ void visitPairs(WorldStream& stream) {
       ends[0] = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject)->getWorldArrayIndex();
       ends[1] = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject)->getWorldArrayIndex();
     }
-    visitAll(stream, ends);
+    serializeAll(stream, ends);
     if (stream.restoring()) {
       const auto exists = [&](int index) { return index >= 0 && index < objects.size(); };
       if (!exists(ends[0]) || !exists(ends[1]) || ends[0] == ends[1] || stream.failed()) return stream.fail();
@@ -385,7 +386,7 @@ void visitPairs(WorldStream& stream) {
     }
     visitor.visit(cache.getOverlappingPairArray()[k]);
   }
-  visitor.visitCaches();
+  visitor.serializeCaches();
 }
 
 void removePairs(WorldStream& stream) {

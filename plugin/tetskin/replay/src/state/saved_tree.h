@@ -26,8 +26,8 @@ void readTree(const btDbvtNode* node, const ItemOf& itemOf, SavedTree& to) {
   for (int k = 0; k < 2 && node->isinternal(); ++k) readTree(node->childs[k], itemOf, to);
 }
 
-inline void visitTree(WorldStream& stream, SavedTree& tree) {
-  stream.each(tree, [&](SavedNode& node) { visitAll(stream, node.item, node.low, node.high); });
+inline void serializeTree(WorldStream& stream, SavedTree& tree) {
+  stream.each(tree, [&](SavedNode& node) { serializeAll(stream, node.item, node.low, node.high); });
 }
 
 /// True if this is exactly one tree, and takes(item) is true for each leaf.

@@ -30,14 +30,14 @@ constexpr std::uint32_t kByteLayout = 4;               ///< increases with every
 using VisitPart = void (*)(WorldStream&, DeformableSolver&);
 /// In the order of their dependences.
 constexpr VisitPart kParts[] = {
-    [](WorldStream& s, DeformableSolver&) { visitObjects(s); },
-    [](WorldStream& s, DeformableSolver&) { visitSoftBodies(s); },
-    [](WorldStream& s, DeformableSolver&) { visitJoints(s); },
-    [](WorldStream& s, DeformableSolver&) { visitBroadphase(s); },
-    [](WorldStream& s, DeformableSolver&) { visitPairs(s); },
-    [](WorldStream& s, DeformableSolver& solver) { visitSolver(s, solver); },
-    [](WorldStream& s, DeformableSolver&) { visitContactSearch(s); },
-    [](WorldStream& s, DeformableSolver& solver) { visitForces(s, solver); },
+    [](WorldStream& s, DeformableSolver&) { serializeObjects(s); },
+    [](WorldStream& s, DeformableSolver&) { serializeSoftBodies(s); },
+    [](WorldStream& s, DeformableSolver&) { serializeJoints(s); },
+    [](WorldStream& s, DeformableSolver&) { serializeBroadphase(s); },
+    [](WorldStream& s, DeformableSolver&) { serializePairs(s); },
+    [](WorldStream& s, DeformableSolver& solver) { serializeSolver(s, solver); },
+    [](WorldStream& s, DeformableSolver&) { serializeContactSearch(s); },
+    [](WorldStream& s, DeformableSolver& solver) { serializeForces(s, solver); },
 };
 /// Number of these parts.
 constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];

@@ -12,13 +12,14 @@ namespace {
 
 using Node = btSoftBody::Node;
 
-void visitSettings(WorldStream& stream, btSoftBody& body) {
+void serializeSettings(WorldStream& stream, btSoftBody& body) {
   btSoftBody::Config& c = body.m_cfg;
-  visitAll(stream, c.aeromodel, c.kVCF, c.kDP, c.kDG, c.kLF, c.kPR, c.kVC, c.kDF, c.kMT, c.kCHR, c.kKHR, c.kSHR, c.kAHR,
-           c.kSRHR_CL, c.kSKHR_CL, c.kSSHR_CL, c.kSR_SPLT_CL, c.kSK_SPLT_CL, c.kSS_SPLT_CL, c.maxvolume, c.timescale,
-           c.viterations, c.piterations, c.diterations, c.citerations, c.collisions, c.drag, c.m_maxStress);
-  visitAll(stream, body.m_dampingCoefficient, body.m_sleepingThreshold, body.m_repulsionStiffness, body.m_gravityFactor,
-           body.m_useSelfCollision, body.m_softSoftCollision, body.m_windVelocity);
+  serializeAll(stream, c.aeromodel, c.kVCF, c.kDP, c.kDG, c.kLF, c.kPR, c.kVC, c.kDF, c.kMT, c.kCHR, c.kKHR, c.kSHR,
+               c.kAHR, c.kSRHR_CL, c.kSKHR_CL, c.kSSHR_CL, c.kSR_SPLT_CL, c.kSK_SPLT_CL, c.kSS_SPLT_CL, c.maxvolume,
+               c.timescale, c.viterations, c.piterations, c.diterations, c.citerations, c.collisions, c.drag,
+               c.m_maxStress);
+  serializeAll(stream, body.m_dampingCoefficient, body.m_sleepingThreshold, body.m_repulsionStiffness,
+               body.m_gravityFactor, body.m_useSelfCollision, body.m_softSoftCollision, body.m_windVelocity);
   const BodyWithTrees* own = bodyWithTrees(body);
   btScalar margin = own ? own->margin() : body.getCollisionShape()->getMargin();
   stream(margin);
@@ -26,14 +27,14 @@ void visitSettings(WorldStream& stream, btSoftBody& body) {
 }
 
 /// Results of the last step.
-void visitStep(WorldStream& stream, btSoftBody& body) {
+void serializeStep(WorldStream& stream, btSoftBody& body) {
   btSoftBody::SolverState& s = body.m_sst;
-  visitAll(stream, s.sdt, s.isdt, s.velmrg, s.radmrg, s.updmrg);
-  visitAll(stream, body.m_timeacc, body.m_bounds[0], body.m_bounds[1], body.m_maxSpeedSquared, body.m_bUpdateRtCst);
+  serializeAll(stream, s.sdt, s.isdt, s.velmrg, s.radmrg, s.updmrg);
+  serializeAll(stream, body.m_timeacc, body.m_bounds[0], body.m_bounds[1], body.m_maxSpeedSquared, body.m_bUpdateRtCst);
 }
 
 /// Objects in no world may have been destroyed; their pointers are only compared, and kept as they are.
-void visitIgnored(WorldStream& stream, btSoftBody& body) {
+void serializeIgnored(WorldStream& stream, btSoftBody& body) {
   auto& ignored = body.m_collisionDisabledObjects;
   std::vector<const btCollisionObject*> inWorld, others;
   for (int k = 0; k < ignored.size(); ++k) (stream.has(ignored[k]) ? inWorld : others).push_back(ignored[k]);
@@ -51,14 +52,14 @@ bool hasMore(const Node& node) {
   return node.m_q != node.m_x || node.m_vn != node.m_v || !node.m_f.isZero() || node.m_battach != 0;
 }
 
-void visitMore(WorldStream& stream, Node& node) {
-  visitAll(stream, node.m_q, node.m_vn, node.m_f);
+void serializeMore(WorldStream& stream, Node& node) {
+  serializeAll(stream, node.m_q, node.m_vn, node.m_f);
   int attached = node.m_battach;
   stream(attached);
   if (stream.restoring()) node.m_battach = attached != 0 ? -1 : 0;
 }
 
-void visitNodes(WorldStream& stream, btSoftBody& body) {
+void serializeNodes(WorldStream& stream, btSoftBody& body) {
   std::vector<int> more;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     Node& node = body.m_nodes[n];
@@ -75,22 +76,22 @@ void visitNodes(WorldStream& stream, btSoftBody& body) {
   stream.array(more);
   for (const int n : more) {
     if (n < 0 || n >= body.m_nodes.size()) return stream.fail();
-    visitMore(stream, body.m_nodes[n]);
+    serializeMore(stream, body.m_nodes[n]);
   }
 }
 
 /// Nodes may be pinned, or given other masses, at any time.
-void visitMasses(WorldStream& stream, btSoftBody& body) {
+void serializeMasses(WorldStream& stream, btSoftBody& body) {
   for (int n = 0; n < body.m_nodes.size(); ++n) stream(body.m_nodes[n].m_im);
 }
 
-void visitBody(WorldStream& stream, btSoftBody& body) {
-  visitSettings(stream, body);
-  visitStep(stream, body);
-  visitIgnored(stream, body);
-  visitNodes(stream, body);
-  visitMasses(stream, body);
-  if (BodyWithTrees* own = bodyWithTrees(body)) own->visitState(stream);
+void serializeBody(WorldStream& stream, btSoftBody& body) {
+  serializeSettings(stream, body);
+  serializeStep(stream, body);
+  serializeIgnored(stream, body);
+  serializeNodes(stream, body);
+  serializeMasses(stream, body);
+  if (BodyWithTrees* own = bodyWithTrees(body)) own->serialize(stream);
   if (!stream.restoring()) return;
   destroyAll(body.m_nodeRigidContacts);
   destroyAll(body.m_faceRigidContacts);
@@ -100,9 +101,9 @@ void visitBody(WorldStream& stream, btSoftBody& body) {
 
 }  // namespace
 
-void visitSoftBodies(WorldStream& stream) {
+void serializeSoftBodies(WorldStream& stream) {
   btAlignedObjectArray<btSoftBody*>& bodies = stream.world().getSoftBodyArray();
-  for (int b = 0; b < bodies.size(); ++b) visitBody(stream, *bodies[b]);
+  for (int b = 0; b < bodies.size(); ++b) serializeBody(stream, *bodies[b]);
 }
 
 }  // namespace tetskin::bullet_detail

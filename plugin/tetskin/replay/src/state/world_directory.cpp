@@ -195,7 +195,7 @@ WorldDirectory::WorldDirectory(World& world) {
 }
 
 void WorldDirectory::visit(WorldStream& stream) {
-  stream.each(objects_, [&](Object& o) { visitAll(stream, o.id, o.type, o.userIndex, o.fingerprint); });
+  stream.each(objects_, [&](Object& o) { serializeAll(stream, o.id, o.type, o.userIndex, o.fingerprint); });
   stream.array(moving_);
   stream.array(softs_);
   for (auto* keys : {&multibodies_, &joints_, &bodyJoints_}) {

@@ -12,24 +12,24 @@ namespace tetskin::bullet_detail {
 
 /// Motion and settings of rigid bodies, links, multibodies and other objects; the btCollisionObject part of soft
 /// bodies; the world's clock, gravity and settings, and its solver's seed. objects_state.cpp, multibodies_state.cpp
-void visitObjects(WorldStream& stream);
-void visitMultiBodies(WorldStream& stream);
+void serializeObjects(WorldStream& stream);
+void serializeMultiBodies(WorldStream& stream);
 /// Joints of rigid bodies and of multibodies. joints_state.cpp
-void visitJoints(WorldStream& stream);
+void serializeJoints(WorldStream& stream);
 /// False for classes other than Bullet's own.
 bool isSaved(const btTypedConstraint& joint);
 bool isSaved(const btMultiBodyConstraint& joint);
 /// Number of the joint's class. `isSaved(joint)` must be true.
 int classOfJoint(const btTypedConstraint& joint);
 /// Boxes, trees and ids of the broadphase. broadphase_state.cpp
-void visitBroadphase(WorldStream& stream);
+void serializeBroadphase(WorldStream& stream);
 /// Overlapping pairs with what their algorithms remember: manifolds with impulses. pairs_state.cpp
-void visitPairs(WorldStream& stream);
+void serializePairs(WorldStream& stream);
 /// Call it before all others when restoring: pairs are found by ids, which change. pairs_state.cpp
 void removePairs(WorldStream& stream);
 /// True if it is of Bullet's own class, and not of a derived one.
 bool isBulletsDispatcher(const btDispatcher& dispatcher);
 /// Nodes of a soft body, and what Bullet remembers of it. soft_bodies_state.cpp
-void visitSoftBodies(WorldStream& stream);
+void serializeSoftBodies(WorldStream& stream);
 
 }  // namespace tetskin::bullet_detail

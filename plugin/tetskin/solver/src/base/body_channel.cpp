@@ -21,7 +21,7 @@ void BodyChannel::returnToStart() {
   dropStep();
 }
 
-void BodyChannel::visitState(WorldStream& stream) {
+void BodyChannel::serialize(WorldStream& stream) {
   stream(reach_);
 }
 

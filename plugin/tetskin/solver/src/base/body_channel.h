@@ -71,7 +71,7 @@ class TETSKIN_SOLVER_API BodyChannel final : public BodyCompanion {
   void dropStep() override;
   void returnToStart() override;
   /// Writes or reads the state that the last step has left.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   btScalar reach_ = -1, speculation_ = 0;

@@ -91,13 +91,13 @@ void BodyGravity::reinitialize(bool) {
 }
 
 /// A change of gravity wakes the body; restoring it does not.
-void BodyGravity::visitState(WorldStream& stream) {
+void BodyGravity::serialize(WorldStream& stream) {
   bool isSet = own_.has_value();
   stream(isSet);
   if (stream.restoring()) own_ = isSet ? std::optional<btVector3>(m_gravity) : std::nullopt;
   if (isSet) stream(*own_);
   stream(m_gravity);
-  owner_.visitState(stream);
+  owner_.serialize(stream);
 }
 
 /// Explicit worlds do not ask for gravity.

@@ -41,7 +41,7 @@ class TETSKIN_SOLVER_API InactiveForce : public btDeformableLagrangianForce {
   btDeformableLagrangianForceType getForceType() override { return kOwnForceType; }
 
   /// Writes or reads, for snapshots, what the force remembers from step to step.
-  virtual void visitState(WorldStream& /*stream*/) {}
+  virtual void serialize(WorldStream& /*stream*/) {}
   /// Writes what a snapshot relies on; when reading, refuses a world that differs.
   virtual void checkState(WorldStream& /*stream*/) {}
   /// Forgets what it remembers of a body's earlier steps: the body was moved elsewhere, or reset to its initial state.
@@ -92,7 +92,7 @@ class OwnForce : public Force {
 class BodyOwner {
  public:
   /// Writes or reads the owner's own data of the body, beside Bullet's state.
-  virtual void visitState(WorldStream& stream) = 0;
+  virtual void serialize(WorldStream& stream) = 0;
 
  protected:
   ~BodyOwner() = default;
@@ -115,7 +115,7 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
 
   /// Writes or reads the gravity, and its owner's other data of the body.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
   btDeformableLagrangianForceType getForceType() override;
   /// Called for any body: Bullet tells the forces before the body leaves the world.

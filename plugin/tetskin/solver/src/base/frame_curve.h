@@ -37,7 +37,7 @@ struct FrameCurve {
   }
 
   template <class Stream>
-  void visitState(Stream& stream) {
+  void serialize(Stream& stream) {
     stream(way, early, late);
   }
 };
@@ -73,7 +73,7 @@ struct FrameMotion {
   }
 
   template <class Stream>
-  void visitState(Stream& stream) {
+  void serialize(Stream& stream) {
     stream(velocity, mean, before, seconds, secondsBefore);
   }
 

@@ -30,7 +30,7 @@ class NodeLoads : public RowSource {
   void dropAllBut(const btAlignedObjectArray<btSoftBody*>& world);
 
   std::vector<PointJoint>* joints(btScalar seconds) override;
-  void visitState(WorldStream& stream) override;
+  void serialize(WorldStream& stream) override;
 
  private:
   struct Load {

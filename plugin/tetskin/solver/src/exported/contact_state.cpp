@@ -10,28 +10,28 @@ namespace tetskin::bullet_detail {
 namespace {
 
 /// A body has none before its first step, for instance in a world that was newly built.
-void visitNodeContacts(WorldStream& stream, BodyWithTrees& body, BodyChannel& channel) {
+void serializeNodeContacts(WorldStream& stream, BodyWithTrees& body, BodyChannel& channel) {
   btScalar size = channel.nodeContacts() ? channel.contactSize() : btScalar(0);
   const btScalar now = size;
   stream(size);
   if (stream.restoring() && size != now) {
     channel.setNodeContacts(size > 0 ? makeNodeContacts(body, size) : nullptr, size);
   }
-  if (size > 0) channel.nodeContacts()->visitState(stream);
+  if (size > 0) channel.nodeContacts()->serialize(stream);
 }
 
 }  // namespace
 
-void visitContactSearch(WorldStream& stream) {
+void serializeContactSearch(WorldStream& stream) {
   btAlignedObjectArray<btSoftBody*>& bodies = stream.world().getSoftBodyArray();
   for (int b = 0; b < bodies.size(); ++b) {
     BodyWithTrees* body = bodyWithTrees(*bodies[b]);
     if (!body) continue;
     BodyChannel& channel = BodyChannel::of(*body);
-    channel.visitState(stream);
-    visitNodeContacts(stream, *body, channel);
+    channel.serialize(stream);
+    serializeNodeContacts(stream, *body, channel);
     // `checkForces` has found that both worlds have it, or neither.
-    if (const std::shared_ptr<BodyContacts> atSurface = channel.surfaceContacts().lock()) atSurface->visitState(stream);
+    if (const std::shared_ptr<BodyContacts> atSurface = channel.surfaceContacts().lock()) atSurface->serialize(stream);
     if (stream.failed()) return;
   }
 }

@@ -119,42 +119,42 @@ void checkForces(WorldStream& stream, DeformableSolver& solver) {
   }
 }
 
-void visitForces(WorldStream& stream, DeformableSolver& solver) {
+void serializeForces(WorldStream& stream, DeformableSolver& solver) {
   for (btDeformableLagrangianForce* force : forcesOf(solver)) {
-    if (BodyGravity* gravity = gravityOf(force)) gravity->visitState(stream);
-    if (InactiveForce* own = inactiveForce(force)) own->visitState(stream);
+    if (BodyGravity* gravity = gravityOf(force)) gravity->serialize(stream);
+    if (InactiveForce* own = inactiveForce(force)) own->serialize(stream);
   }
 }
 
 /// A record that exists now but did not then begins anew; one that existed only then is skipped.
-void visitRecord(WorldStream& stream, const std::weak_ptr<RecordedForces>& inSolver) {
+void serializeRecord(WorldStream& stream, const std::weak_ptr<RecordedForces>& inSolver) {
   const std::shared_ptr<RecordedForces> recorded = inSolver.lock();
   bool wasThere = recorded != nullptr && stream.withRecords();
   stream(wasThere);
   if (wasThere) {
     RecordedForces unused(stream.world());
-    (recorded ? *recorded : unused).visitState(stream);
+    (recorded ? *recorded : unused).serialize(stream);
   } else if (recorded) {
     recorded->clear();
   }
 }
 
-void visitSolver(WorldStream& stream, DeformableSolver& solver) {
+void serializeSolver(WorldStream& stream, DeformableSolver& solver) {
   auto& impl = Access<DeformableSolver>::impl(solver);
   if (stream.saving()) impl.forgetRemovedObjects(&stream.world());
-  impl.visitFlags(stream);
-  impl.bodies.visitState(stream);
-  impl.rows.visitState(stream);
-  impl.driven.visitState(stream);
-  impl.loads.visitState(stream);
-  impl.sleepers.visitState(stream);
-  impl.stillness.visitState(stream);
-  impl.rigids.paths().visitState(stream);
-  visitRecord(stream, impl.recorded);
+  impl.serializeFlags(stream);
+  impl.bodies.serialize(stream);
+  impl.rows.serialize(stream);
+  impl.driven.serialize(stream);
+  impl.loads.serialize(stream);
+  impl.sleepers.serialize(stream);
+  impl.stillness.serialize(stream);
+  impl.rigids.paths().serialize(stream);
+  serializeRecord(stream, impl.recorded);
   if (stream.restoring()) impl.objects.note(&stream.world());
 }
 
-void visitSolverSettings(WorldStream& stream, DeformableSolver& solver) {
+void serializeSolverSettings(WorldStream& stream, DeformableSolver& solver) {
   auto& impl = Access<DeformableSolver>::impl(solver);
   stream(impl.deterministic);
   stream(impl.nodeNormals);
@@ -165,7 +165,7 @@ void visitSolverSettings(WorldStream& stream, DeformableSolver& solver) {
 
 namespace tetskin {
 
-void DeformableSolver::Impl::visitFlags(WorldStream& stream) {
+void DeformableSolver::Impl::serializeFlags(WorldStream& stream) {
   stream(solver.m_dt);
   stream(solver.m_useProjection);
   stream(solver.m_lineSearch);

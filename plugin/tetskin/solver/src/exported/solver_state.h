@@ -14,16 +14,16 @@ namespace tetskin::bullet_detail {
 
 // Each of these serves both directions. Data that is only prepared, or recomputed in each step, is in none of them.
 /// What the solver remembers from step to step.
-TETSKIN_SOLVER_API void visitSolver(WorldStream& stream, DeformableSolver& solver);
+TETSKIN_SOLVER_API void serializeSolver(WorldStream& stream, DeformableSolver& solver);
 /// The application's settings of the solver: not part of a snapshot.
-TETSKIN_SOLVER_API void visitSolverSettings(WorldStream& stream, DeformableSolver& solver);
+TETSKIN_SOLVER_API void serializeSolverSettings(WorldStream& stream, DeformableSolver& solver);
 /// The entries of the solver's list of forces: elasticity, soft contacts, joints at surfaces.
-TETSKIN_SOLVER_API void visitForces(WorldStream& stream, DeformableSolver& solver);
+TETSKIN_SOLVER_API void serializeForces(WorldStream& stream, DeformableSolver& solver);
 /// Call it before the others: checks the solver's bodies and forces. Refuses what cannot be saved and, while a snapshot
 /// is restored, a world that differs.
 TETSKIN_SOLVER_API void checkForces(WorldStream& stream, DeformableSolver& solver);
 /// State of the search for contacts of soft bodies with rigid objects.
-TETSKIN_SOLVER_API void visitContactSearch(WorldStream& stream);
+TETSKIN_SOLVER_API void serializeContactSearch(WorldStream& stream);
 
 /// True for the broadphase, and for the dispatcher, of a `DeformableWorld`.
 TETSKIN_SOLVER_API bool isWatched(const btBroadphaseInterface& broadphase);

@@ -57,8 +57,8 @@ double ElasticForce::totalElasticEnergy(btScalar) {
   return body_.dynamics->energy(std::move(probe), nullptr);
 }
 
-void ElasticForce::visitState(WorldStream& stream) {
-  body_.visitState(stream);
+void ElasticForce::serialize(WorldStream& stream) {
+  body_.serialize(stream);
 }
 
 void ElasticForce::checkState(WorldStream& stream) {

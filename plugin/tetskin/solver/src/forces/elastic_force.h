@@ -37,7 +37,7 @@ class ElasticForce : public InactiveForce {
   void reinitialize(bool nodeUpdated) override;
   double totalElasticEnergy(btScalar dt) override;
 
-  void visitState(WorldStream& stream) override;
+  void serialize(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
 
  private:

@@ -181,7 +181,7 @@ bool ForcedBody::hasItsRestShapes() const {
 }
 
 /// A body that was scaled or got nodes since the last step gets new dynamics at the beginning of the next.
-void ForcedBody::visitState(WorldStream& stream) {
+void ForcedBody::serialize(WorldStream& stream) {
   bool isCurrent = hasItsRestShapes();
   stream(isCurrent);
   if (!isCurrent) {
@@ -204,7 +204,7 @@ void ForcedBody::visitState(WorldStream& stream) {
       continues &= !(node.m_im > 0) || dynamics->continues(at, node.m_x, node.m_vn);
     }
   }
-  dynamics->visitState(stream, outdated, continues, [&](std::size_t n, btScalar(&velocity)[3]) {
+  dynamics->serialize(stream, outdated, continues, [&](std::size_t n, btScalar(&velocity)[3]) {
     const btSoftBody::Node& node = body->m_nodes[static_cast<int>(n)];
     btVector3 reached = node.m_vn;
     if (node.m_im == 0) {

@@ -78,7 +78,7 @@ struct ForcedBody {
 
   /// Writes or reads what the dynamics remember from step to step. When reading, the nodes and the material are already
   /// the snapshot's.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 };
 
 }  // namespace tetskin::bullet_detail

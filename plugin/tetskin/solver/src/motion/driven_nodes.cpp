@@ -166,15 +166,15 @@ void DrivenNodes::end(const btAlignedObjectArray<btSoftBody*>& awake, btScalar d
   }
 }
 
-void DrivenNodes::visitState(WorldStream& stream) {
+void DrivenNodes::serialize(WorldStream& stream) {
   stream.byObject(bodies_, [&](const btSoftBody& body, Nodes& nodes) {
     stream.each(nodes, [&](DrivenNode& driven) {
       stream(driven.node);
       if (driven.node < 0 || driven.node >= body.m_nodes.size()) stream.fail();
       stream(driven.position, driven.target, driven.velocity, driven.sinceMoved, driven.interval, driven.left,
              driven.from, driven.done);
-      driven.curve.visitState(stream);
-      driven.motion.visitState(stream);
+      driven.curve.serialize(stream);
+      driven.motion.serialize(stream);
     });
   });
 }

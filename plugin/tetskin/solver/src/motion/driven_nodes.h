@@ -55,7 +55,7 @@ class DrivenNodes {
   void end(const btAlignedObjectArray<btSoftBody*>& awake, btScalar dt);
 
   /// Writes or reads the nodes that are being moved.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   using Nodes = std::vector<DrivenNode>;

@@ -44,7 +44,7 @@ std::vector<PointJoint>* NodeLoads::joints(btScalar seconds) {
   return &joints_;
 }
 
-void NodeLoads::visitState(WorldStream& stream) {
+void NodeLoads::serialize(WorldStream& stream) {
   stream.each(loads_, [&](Load& load) {
     stream.object(load.body);
     stream(load.left);

@@ -134,7 +134,7 @@ void seeItself(RestingBody& sleeper) {
 }
 
 /// The shape is the object's, unless the application has replaced it since.
-void visitState(WorldStream& stream, Neighbour& neighbour) {
+void serialize(WorldStream& stream, Neighbour& neighbour) {
   stream.object(neighbour.object);
   stream(neighbour.isSoft, neighbour.isObstacle, neighbour.stands, neighbour.transform, neighbour.friction,
          neighbour.low, neighbour.high);
@@ -262,12 +262,12 @@ void Sleepers::forget(const std::unordered_set<const btCollisionObject*>& gone) 
   }
 }
 
-void Sleepers::visitState(WorldStream& stream) {
+void Sleepers::serialize(WorldStream& stream) {
   stream.byObject(resting_, [&](const btCollisionObject&, RestingBody& sleeper) {
     stream.object(sleeper.body);
     if (!sleeper.body) return stream.fail();
     stream(sleeper.steps);
-    stream.each(sleeper.neighbours, [&](Neighbour& neighbour) { bullet_detail::visitState(stream, neighbour); });
+    stream.each(sleeper.neighbours, [&](Neighbour& neighbour) { bullet_detail::serialize(stream, neighbour); });
     bool isStored = sleeper.before.has_value();
     stream(isStored);
     if (stream.restoring() && isStored) sleeper.before.emplace();

@@ -78,7 +78,7 @@ class Sleepers {
   void forget(const std::unordered_set<const btCollisionObject*>& gone);
 
   /// Writes or reads the state of bodies at rest.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   void listResting(const btAlignedObjectArray<btSoftBody*>& bodies);

@@ -199,7 +199,7 @@ void Stillness::shift(const btVector3& by) {
 }
 
 /// All of them have waited in the last step.
-void Stillness::visitState(WorldStream& stream) {
+void Stillness::serialize(WorldStream& stream) {
   stream.byObject(waits_, [&](const btSoftBody&, Wait& wait) {
     stream.each(wait.positions, [&](btVector3& position) { stream(position); });
     stream(wait.velocity, wait.displacement, wait.speed);

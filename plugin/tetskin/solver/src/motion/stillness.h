@@ -30,7 +30,7 @@ class Stillness {
   void forget(const btSoftBody& body) { waits_.erase(&body); }
 
   /// Writes or reads which bodies wait.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   /// A body that waits to fall asleep.

@@ -27,7 +27,7 @@ class ContactRows {
   /// `setStiffness`.
   btScalar likeUsual(btScalar seconds) const;
   /// Writes or reads the state that is not in the bodies.
-  void visitState(StateStream& stream) { stream(usualStep_); }
+  void serialize(StateStream& stream) { stream(usualStep_); }
   /// Adds any other row, such as one between rigid bodies.
   void add(const ContactRow& row, const RowOrigin& origin);
   /// Stores what the next step starts with, and reports the impulses to the contacts.

@@ -296,7 +296,7 @@ void SolverBodies::forget(const std::unordered_set<const btCollisionObject*>& go
 }
 
 /// Everything else is made anew by the next step, whose list of bodies counts as another one.
-void SolverBodies::visitState(WorldStream& stream) {
+void SolverBodies::serialize(WorldStream& stream) {
   if (stream.restoring()) {
     clear();
     dropped_ = true;

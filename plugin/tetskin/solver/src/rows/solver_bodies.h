@@ -154,7 +154,7 @@ class SolverBodies {
   /// Forgets where points have stuck to objects that are gone.
   void forget(const std::unordered_set<const btCollisionObject*>& gone);
   /// Writes or reads what is known of bodies from the step before.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   void countNodes();

@@ -295,7 +295,7 @@ ShapeProbe* BodyContacts::probeOf(const btCollisionShape& shape, KnownShape& kno
 }
 
 /// Shapes are sorted by number, because the map's order may differ in another run.
-void BodyContacts::visitState(WorldStream& stream) {
+void BodyContacts::serialize(WorldStream& stream) {
   if (stream.restoring()) {
     waiting_.clear();
     remembered_ = 0;
@@ -308,11 +308,11 @@ void BodyContacts::visitState(WorldStream& stream) {
     for (const auto& [number, shape] : object.shapes) numbers.push_back(number);
     std::sort(numbers.begin(), numbers.end());
     stream.array(numbers);
-    for (const std::uint64_t number : numbers) visitShape(stream, object.shapes[number]);
+    for (const std::uint64_t number : numbers) serializeShape(stream, object.shapes[number]);
   });
 }
 
-void BodyContacts::visitShape(WorldStream& stream, KnownShape& shape) {
+void BodyContacts::serializeShape(WorldStream& stream, KnownShape& shape) {
   stream(shape.key.low);
   stream(shape.key.high);
   stream(shape.lastStep);

@@ -64,7 +64,7 @@ class BodyContacts {
   void shift(const btVector3& by);
 
   /// Writes or reads which points have touched. Clearances are found again, with the same result.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
   BodyWithTrees& body() const { return body_; }
   const PointCollider& search() const { return search_; }
@@ -88,7 +88,7 @@ class BodyContacts {
   ShapeMemory& memoryOf(KnownShape& known);
   ShapeProbe* probeOf(const btCollisionShape& shape, KnownShape& known);
   void forgetUnused(KnownObject& object);
-  void visitShape(WorldStream& stream, KnownShape& shape);
+  void serializeShape(WorldStream& stream, KnownShape& shape);
 
   const btDispatcher* dispatcher_;
   BodyWithTrees& body_;

@@ -186,11 +186,11 @@ void KinematicPaths::forget(const std::unordered_set<const btCollisionObject*>& 
 }
 
 /// The rest of a path is set when the next step begins.
-void KinematicPaths::visitState(WorldStream& stream) {
+void KinematicPaths::serialize(WorldStream& stream) {
   stream.byObject(paths_, [&](const btRigidBody&, KinematicPath& path) {
     stream(path.from, path.to, path.steps, path.done, path.last);
-    for (FrameCurve* curve : {&path.moves, &path.turns}) curve->visitState(stream);
-    for (FrameMotion* motion : {&path.motion, &path.turning}) motion->visitState(stream);
+    for (FrameCurve* curve : {&path.moves, &path.turns}) curve->serialize(stream);
+    for (FrameMotion* motion : {&path.motion, &path.turning}) motion->serialize(stream);
     if (path.steps < 1 || path.done < 1) stream.fail();
     if (stream.restoring()) path.seen = step_;
   });

@@ -61,7 +61,7 @@ class KinematicPaths {
   void shift(const btVector3& by);
 
   /// Writes or reads the paths of bodies.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   /// A body that is not where the application has put it.

@@ -242,7 +242,7 @@ bool RecordedForces::isPresent(const Participant& participant) const {
 
 // ---- snapshots
 
-void visitState(WorldStream& stream, std::array<AppliedForces, 2>& ofPair) {
+void serialize(WorldStream& stream, std::array<AppliedForces, 2>& ofPair) {
   for (AppliedForces& forces : ofPair) {
     for (Wrench* wrench : {&forces.contact, &forces.friction, &forces.joints, &forces.anchors}) {
       stream(wrench->force, wrench->torque);
@@ -258,7 +258,7 @@ void RecordedForces::clear() {
 }
 
 /// Only pairs whose objects are in the world: others are not reported.
-void RecordedForces::visitState(WorldStream& stream) {
+void RecordedForces::serialize(WorldStream& stream) {
   stream(mark_, seconds_, secondsBefore_);
   std::vector<Pair> present;
   for (const Pair& pair : pairs_) {
@@ -273,8 +273,8 @@ void RecordedForces::visitState(WorldStream& stream) {
       participant.soft = participant.object ? btSoftBody::upcast(participant.object) : nullptr;
       participant.id = participant.object ? idInWorld(*participant.object) : 0;
     }
-    bullet_detail::visitState(stream, pair.impulses);
-    bullet_detail::visitState(stream, pair.before);
+    bullet_detail::serialize(stream, pair.impulses);
+    bullet_detail::serialize(stream, pair.before);
     stream(pair.asleep, pair.sleeps);
   });
   if (!stream.restoring()) return;

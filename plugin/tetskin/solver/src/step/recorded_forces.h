@@ -38,7 +38,7 @@ class RecordedForces {
     for (Point& point : points_) point.position += by;
   }
   /// Writes or reads the forces, but not the drawn points.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
  private:
   /// An object that may have been destroyed; the id tells it from a later object at the same address.

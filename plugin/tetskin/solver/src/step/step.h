@@ -76,7 +76,7 @@ struct DeformableSolver::Impl {
   void endStep(const btAlignedObjectArray<btSoftBody*>& world);
 
   /// Writes or reads the settings of Bullet's world that the last step was solved with.
-  void visitFlags(WorldStream& stream);
+  void serializeFlags(WorldStream& stream);
 
   // What the application moves between steps.
   /// Forgets a body's contacts and its sleep history; implemented in step_placed.cpp.

@@ -208,7 +208,7 @@ void Joint::shift(const btVector3& by) {
   if ((now.getOrigin() - anchorBefore_.getOrigin()).length() <= rounding) anchorBefore_.setOrigin(now.getOrigin());
 }
 
-void Joint::visitState(WorldStream& stream) {
+void Joint::serialize(WorldStream& stream) {
   stream(anchor_.frame, anchorBefore_, settings_.stiffness, settings_.damping, settings_.maxForce, nodeMass_, force_,
          torque_);
 }

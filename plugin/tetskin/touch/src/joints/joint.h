@@ -65,7 +65,7 @@ class Joint {
   void finish(btScalar seconds, const PointJoint* joints);
   void shift(const btVector3& by);
   /// Writes or reads, for snapshots, what changes.
-  void visitState(WorldStream& stream);
+  void serialize(WorldStream& stream);
   /// Writes what does not change, and must be the same in the world in which a snapshot is restored.
   void checkState(WorldStream& stream);
 

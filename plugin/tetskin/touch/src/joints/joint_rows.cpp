@@ -86,9 +86,9 @@ void SurfaceJointRows::shift(const btVector3& by) {
   }
 }
 
-void SurfaceJointRows::visitState(WorldStream& stream) {
+void SurfaceJointRows::serialize(WorldStream& stream) {
   for (const auto& joint : active_) {
-    if (joint->isInWorld()) joint->visitState(stream);
+    if (joint->isInWorld()) joint->serialize(stream);
   }
 }
 

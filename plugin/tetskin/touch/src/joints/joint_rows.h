@@ -35,7 +35,7 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
   void finish(btScalar seconds) override;
   void removeSoftBody(btSoftBody* body) override;
   void shift(const btVector3& by) override;
-  void visitState(WorldStream& stream) override;
+  void serialize(WorldStream& stream) override;
   void checkState(WorldStream& stream) override;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: the stream to and from a snapshot. One function per struct, `visitState`, serves both
+// Between the libraries: the stream to and from a snapshot. One function per struct, `serialize`, serves both
 // directions, so that they cannot differ.
 #pragma once
 
