@@ -56,15 +56,16 @@ class TETSKIN_WORLD_API World {
  public:
   /// A rigid body. Its shape may be shared with others.
   struct RigidBody {
-    std::shared_ptr<btCollisionShape> shape;
-    std::unique_ptr<btDefaultMotionState> motion;
-    std::unique_ptr<btRigidBody> body;
-    bool removed = false;  ///< it has left the world for good
+    std::shared_ptr<btCollisionShape> shape;       ///< of the body, kept as long as it
+    std::unique_ptr<btDefaultMotionState> motion;  ///< moves a kinematic body, see `setPose`
+    std::unique_ptr<btRigidBody> body;             ///< never null
+    bool removed = false;                          ///< it has left the world for good
   };
 
   /// A joint between two rigid bodies, or of one to space.
   struct Joint {
-    std::shared_ptr<RigidBody> first, second;  ///< second: null for space
+    std::shared_ptr<RigidBody> first;          ///< never null
+    std::shared_ptr<RigidBody> second;         ///< null for space
     std::unique_ptr<btTypedConstraint> joint;  ///< null once it has been removed
   };
 
@@ -91,16 +92,16 @@ class TETSKIN_WORLD_API World {
 
   /// A spring or a weld between a surface and something else. Both are null once it has been released.
   struct Touch {
-    std::shared_ptr<Body> body;
-    std::shared_ptr<RigidBody> rigid;  ///< the body that it is fixed to; null: space
-    std::unique_ptr<SurfaceSpring> spring;
-    std::unique_ptr<SurfaceWeld> weld;
+    std::shared_ptr<Body> body;             ///< whose surface it is attached to
+    std::shared_ptr<RigidBody> rigid;       ///< the body that it is fixed to; null: space
+    std::unique_ptr<SurfaceSpring> spring;  ///< null for a weld
+    std::unique_ptr<SurfaceWeld> weld;      ///< null for a spring
   };
 
   /// Where a ray has hit a surface.
   struct RayHit {
     std::shared_ptr<Body> body;  ///< null if it hits none
-    SurfaceHit hit;
+    SurfaceHit hit;              ///< where it hits the body's surface
   };
 
   /// An empty world.
@@ -183,11 +184,11 @@ class TETSKIN_WORLD_API World {
   /// Keeps a spring or weld, with the objects that it is attached to.
   std::shared_ptr<Touch> add(Touch&& touch);
 
-  /// Remove an object, and everything attached to it. Does nothing if it has already been removed.
+  /// Removes an object, and everything attached to it. Does nothing if it has already been removed.
   void remove(RigidBody& rigid);
-  void remove(Joint& joint);
-  void remove(Body& body);
-  void remove(Touch& touch);
+  void remove(Joint& joint);  ///< likewise
+  void remove(Body& body);    ///< likewise
+  void remove(Touch& touch);  ///< likewise
 
   /// Places a rigid body: a kinematic one in the next step, which gives it the velocity of the motion. Does nothing if
   /// it has been removed.
