@@ -241,6 +241,25 @@ TEST(BodyDynamics, ABodyThatTurnsOutToBeTouchedTakesBackwardEulersStepAndSomeMor
   EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * kDamping);
 }
 
+#ifndef NDEBUG
+TEST(BodyDynamicsDeathTest, CallsInAnotherOrderAreAsserted) {
+  const AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  ConjugateGradient<double> gradient;
+  const double still[3] = {};
+  BodyDynamics<double> dynamics = dynamicsOf(body, VectorXd::Zero(static_cast<Eigen::Index>(3 * body.nodes.size())));
+  EXPECT_DEATH(dynamics.findResidual(nullptr), "stage_");
+  EXPECT_DEATH(dynamics.advance(0, kSeconds, still), "stage_");
+  dynamics.predict({kSeconds}, nullptr);
+  EXPECT_DEATH(dynamics.solve(gradient, {}, 1, nullptr), "stage_");
+  dynamics.findResidual(nullptr);
+  dynamics.beTouched(nullptr);
+  EXPECT_DEATH(dynamics.remember(SolvedWith::ElasticityAlone, nullptr), "stage_") << "the right side is another one";
+  dynamics.findResidual(nullptr);
+  dynamics.remember(SolvedWith::ElasticityAlone, nullptr);
+  EXPECT_DEATH(dynamics.remember(SolvedWith::ElasticityAlone, nullptr), "stage_") << "once is enough";
+}
+#endif
+
 TYPED_TEST(BodyDynamicsOf, GivesASolutionTheMomentumThatTheStepBeganWithAndChangesNothingElse) {
   AssembledBody<TypeParam> body(cageForDynamics());
   for (const double speed : {0.0, 1.0, 20.0}) {  // the last is beyond a turn of 90 degrees per step
