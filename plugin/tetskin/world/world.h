@@ -56,15 +56,16 @@ class TETSKIN_WORLD_API World {
  public:
   /// A rigid body. Its shape may be shared with others.
   struct RigidBody {
-    std::shared_ptr<btCollisionShape> shape;
-    std::unique_ptr<btDefaultMotionState> motion;
-    std::unique_ptr<btRigidBody> body;
-    bool removed = false;  ///< it has left the world for good
+    std::shared_ptr<btCollisionShape> shape;       ///< never null
+    std::unique_ptr<btDefaultMotionState> motion;  ///< where Bullet reads and writes its pose
+    std::unique_ptr<btRigidBody> body;             ///< never null
+    bool removed = false;                          ///< it has left the world for good
   };
 
   /// A joint between two rigid bodies, or of one to space.
   struct Joint {
-    std::shared_ptr<RigidBody> first, second;  ///< second: null for space
+    std::shared_ptr<RigidBody> first;          ///< never null
+    std::shared_ptr<RigidBody> second;         ///< null for space
     std::unique_ptr<btTypedConstraint> joint;  ///< null once it has been removed
   };
 
@@ -91,16 +92,16 @@ class TETSKIN_WORLD_API World {
 
   /// A spring or a weld between a surface and something else. Both are null once it has been released.
   struct Touch {
-    std::shared_ptr<Body> body;
-    std::shared_ptr<RigidBody> rigid;  ///< what it is fixed to; null: space
-    std::unique_ptr<SurfaceSpring> spring;
-    std::unique_ptr<SurfaceWeld> weld;
+    std::shared_ptr<Body> body;             ///< whose surface it holds
+    std::shared_ptr<RigidBody> rigid;       ///< what it is fixed to; null: space
+    std::unique_ptr<SurfaceSpring> spring;  ///< or null
+    std::unique_ptr<SurfaceWeld> weld;      ///< or null
   };
 
   /// Where a ray has met a surface.
   struct RayHit {
     std::shared_ptr<Body> body;  ///< null: it meets none
-    SurfaceHit hit;
+    SurfaceHit hit;              ///< where on it
   };
 
   /// An empty world.
@@ -182,11 +183,12 @@ class TETSKIN_WORLD_API World {
   /// Keeps a spring or weld, with what it is attached to.
   std::shared_ptr<Touch> add(Touch&& touch);
 
-  /// Remove a thing, and all that is attached to it. Nothing happens to one that has been removed.
+  /// Removes a rigid body, with its joints, springs and welds. Nothing happens to one that has been removed.
   void remove(RigidBody& rigid);
-  void remove(Joint& joint);
+  void remove(Joint& joint);  ///< removes a joint, likewise; what it joined wakes
+  /// Removes a soft body, with its contacts, springs and welds, likewise.
   void remove(Body& body);
-  void remove(Touch& touch);
+  void remove(Touch& touch);  ///< releases a spring or a weld, likewise
 
   /// Puts a rigid body somewhere: a kinematic one in the next step, which gives it the velocity of the motion. Nothing
   /// happens to one that has been removed.
