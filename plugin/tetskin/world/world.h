@@ -56,8 +56,8 @@ class TETSKIN_WORLD_API World {
  public:
   /// A rigid body. Its shape may be shared with others.
   struct RigidBody {
-    std::shared_ptr<btCollisionShape> shape;       ///< of the body, kept as long as it
-    std::unique_ptr<btDefaultMotionState> motion;  ///< moves a kinematic body, see `setPose`
+    std::shared_ptr<btCollisionShape> shape;       ///< never null
+    std::unique_ptr<btDefaultMotionState> motion;  ///< where Bullet reads and writes its pose
     std::unique_ptr<btRigidBody> body;             ///< never null
     bool removed = false;                          ///< it has left the world for good
   };
@@ -184,11 +184,12 @@ class TETSKIN_WORLD_API World {
   /// Keeps a spring or weld, with the objects that it is attached to.
   std::shared_ptr<Touch> add(Touch&& touch);
 
-  /// Removes an object, and everything attached to it. Does nothing if it has already been removed.
+  /// Removes a rigid body, with its joints, springs and welds. Nothing happens to one that has been removed.
   void remove(RigidBody& rigid);
-  void remove(Joint& joint);  ///< likewise
-  void remove(Body& body);    ///< likewise
-  void remove(Touch& touch);  ///< likewise
+  void remove(Joint& joint);  ///< removes a joint, likewise; what it joined wakes
+  /// Removes a soft body, with its contacts, springs and welds, likewise.
+  void remove(Body& body);
+  void remove(Touch& touch);  ///< releases a spring or a weld, likewise
 
   /// Places a rigid body: a kinematic one in the next step, which gives it the velocity of the motion. Does nothing if
   /// it has been removed.
