@@ -246,7 +246,7 @@ void BodyWithTrees::returnToStart() {
   updateBounds();
 }
 
-void BodyWithTrees::serialize(WorldStream& stream) {
+void BodyWithTrees::serializeShift(WorldStream& stream) {
   stream(shifted_);
   if (!stream.restoring()) return;
   countMove();

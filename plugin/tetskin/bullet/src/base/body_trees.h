@@ -97,7 +97,7 @@ class TETSKIN_BULLET_API BodyWithTrees : public btSoftBody {
   btScalar margin() const;
 
   /// Writes or reads how far it was shifted; drops the results of the last step.
-  void serialize(WorldStream& stream);
+  void serializeShift(WorldStream& stream);
 
   /// Also called by transformTo, translate and rotate.
   void transform(const btTransform& transform) override;

@@ -91,7 +91,7 @@ void serializeBody(WorldStream& stream, btSoftBody& body) {
   serializeIgnored(stream, body);
   serializeNodes(stream, body);
   serializeMasses(stream, body);
-  if (BodyWithTrees* own = bodyWithTrees(body)) own->serialize(stream);
+  if (BodyWithTrees* own = bodyWithTrees(body)) own->serializeShift(stream);
   if (!stream.restoring()) return;
   destroyAll(body.m_nodeRigidContacts);
   destroyAll(body.m_faceRigidContacts);
