@@ -6,7 +6,8 @@
 //   tetskin_attach [MESH NODE_FILE ELE_FILE]
 //
 // The files are a mesh, and TetGen's tets around it, numbered from 0 (tetgen -z), as Bullet wants them; without them, a
-// tube in a bar. The left end is held. Writes out/attach/frame_0000.obj, frame_0020.obj, ... In a project of yours:
+// tube in a bar. The left end is held. Writes out/attach/frame_0000.obj, frame_0020.obj, ..., in the folder in which it
+// is called. In a project of yours:
 // find_package(tetskin REQUIRED COMPONENTS bullet io), and link tetskin::bullet and tetskin::io.
 #include <BulletSoftBody/btSoftBodyHelpers.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
@@ -19,7 +20,10 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
 namespace {
 
@@ -64,6 +68,7 @@ std::string textOf(const char* path) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  if (argc != 1 && argc != 4) throw std::runtime_error("usage: tetskin_attach [MESH NODE_FILE ELE_FILE]");
   std::string nodes, tets;
   tetskin::TriangleMesh mesh;
   if (argc == 4) {
@@ -91,6 +96,8 @@ int main(int argc, char** argv) try {
     if (body->m_nodes[i].m_x.x() < left + btScalar(0.2) * (right - left)) body->setMass(i, 0);
   }
   world.addSoftBody(body.get());
+  const auto leave = [&world](btSoftBody* added) { world.removeSoftBody(added); };
+  const std::unique_ptr<btSoftBody, decltype(leave)> inWorld(body.get(), leave);
 
   // The mesh on it.
   tetskin::SoftBodySkin attached;
@@ -103,9 +110,8 @@ int main(int argc, char** argv) try {
       std::printf("%s: lowest point at y = %.3f\n", files.framePath(frame).c_str(), attached.bounds().min().y());
     }
     world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
-    if (attached.update() == tetskin::StatusCode::NonFinite) return 1;
+    if (attached.update() == tetskin::StatusCode::NonFinite) throw std::runtime_error("the body has exploded");
   }
-  world.removeSoftBody(body.get());
 } catch (const std::exception& fault) {  // value() of a failed result: what, where, and the cure
   return std::puts(fault.what()), 2;
 }

@@ -71,7 +71,7 @@ class TETSKIN_WORLD_API World {
 
   /// A soft body, and its surface if it was added with a mesh.
   struct Body {
-    std::shared_ptr<const Cage> cage;          ///< at rest, where it was placed
+    std::shared_ptr<const Cage> cage;          ///< as it was given, in the rest space of the mesh
     std::shared_ptr<const TriangleMesh> mesh;  ///< null if the body has no surface
     /// Shared by all bodies of one cage, mesh and options; null likewise.
     std::shared_ptr<const SoftBodyBinding> binding;
@@ -144,7 +144,7 @@ class TETSKIN_WORLD_API World {
     return made;
   }
   /// Makes the next step of a recorded run, and updates all visible surfaces.
-  /// Returns  false at its end, without a step
+  /// Returns  false without a step: at its end, or after an error, see `Replay::status`; restore a snapshot then
   /// Errors   those of `step`
   Result<bool> step(Replay& replay);
   /// Whether a step is being made. Within it, `step`, `restore` and `replay` are refused with InvalidOption.
@@ -159,9 +159,9 @@ class TETSKIN_WORLD_API World {
   Result<std::unique_ptr<Replay>> replay(const std::string& path);
 
   /// Adds a soft body.
-  /// cage       in the rest space of the mesh; kept
+  /// cage       in the rest space of the mesh; kept; not null
   /// mesh       kept; null: no surface, and contact at the cage's nodes
-  /// placement  of the rest space in the world: a rotation and a translation
+  /// placement  of the rest space in the world: a rotation and a translation; not checked
   /// Cost       `DeformableBody::add`, and `SoftBodyBinding::create` for the first body of its cage, mesh and binding's
   ///            options; soft and self contact `ContactShape::create` likewise: a second for 20,000 triangles
   /// Errors     those of the calls named; Unbound: contact at the surface of a body without one; IndexOutOfRange:
@@ -170,6 +170,7 @@ class TETSKIN_WORLD_API World {
                                         const WorldBodyOptions& options = {},
                                         const Eigen::Affine3d& placement = Eigen::Affine3d::Identity());
   /// Adds a rigid body.
+  /// shape      kept; not null
   /// mass       0: fixed
   /// kinematic  moved by `setPose`; mass 0
   /// Errors     InvalidOption: a mass or friction that is negative or not finite, a mass for a plane, a mesh or a
@@ -177,7 +178,8 @@ class TETSKIN_WORLD_API World {
   Result<std::shared_ptr<RigidBody>> addRigidBody(std::shared_ptr<btCollisionShape> shape, double mass,
                                                   const btTransform& pose, double friction = 0.5,
                                                   bool kinematic = false);
-  /// Adds a joint made for these bodies; second: null for space. It wakes them.
+  /// Adds a joint made for these bodies, which are in this world, and wakes them.
+  /// first, joint  not null;  second  null for space
   /// collide  the two bodies still touch each other
   std::shared_ptr<Joint> addJoint(std::shared_ptr<RigidBody> first, std::shared_ptr<RigidBody> second,
                                   std::unique_ptr<btTypedConstraint> joint, bool collide = false);
@@ -201,13 +203,14 @@ class TETSKIN_WORLD_API World {
   /// Like tetskin::shiftOrigin, with all surfaces.
   Status shiftOrigin(const btVector3& origin);
 
-  /// The tree of a body's surface, for points and rays; made by the first call, see `SurfaceTree::create`. Errors:
+  /// The tree of a body's surface, for points and rays; made by the first call, see `SurfaceTree::create`; it
+  /// lives as long as the body. Errors:
   /// Unbound, the body has no surface; BodyDeleted, it has been removed.
   Result<const SurfaceTree*> treeOf(Body& body);
   /// The first intersection of a segment with the body's surface. Errors: those of `treeOf` and of
   /// `SurfaceTree::raycast`, except NoHit.
   Result<RayHit> raycast(const std::shared_ptr<Body>& body, const btVector3& from, const btVector3& to);
-  /// The first intersection of a segment with any surface.
+  /// The first intersection of a segment with any surface. Errors: those of a single body, of the first that has one.
   Result<RayHit> raycast(const btVector3& from, const btVector3& to);
 
   ForceRecord* forces() { return record_.get(); }       ///< of the last step; null without `recordForces`

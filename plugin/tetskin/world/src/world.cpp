@@ -4,6 +4,7 @@
 #include <tetskin/world/world.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace tetskin {
@@ -32,7 +33,7 @@ void forget(std::vector<std::shared_ptr<Thing>>& all, const Thing& thing) {
 
 bool same(const BindingOptions& a, const BindingOptions& b) {
   return a.interpolation == b.interpolation && a.normals == b.normals && a.outside == b.outside &&
-         a.maxDistance == b.maxDistance;
+         a.maxDistance == b.maxDistance && a.order == b.order && a.hardEdgeDegrees == b.hardEdgeDegrees;
 }
 
 btHingeConstraint* hingeOf(const World::Joint& joint) {
@@ -91,6 +92,7 @@ btScalar World::substepOf(double dt, int substeps) {
 
 World::Within::Within(World& world, btScalar substep) : world_(world) {
   world.torques_.clear();
+  world.torques_.reserve(world.joints_.size());  // from here on, nothing fails
   for (const auto& joint : world.joints_) {
     btHingeConstraint* hinge = hingeOf(*joint);
     if (!hinge || substep == 0) continue;
@@ -179,6 +181,7 @@ Status World::updateTeleported() {
 Result<std::shared_ptr<World::RigidBody>> World::addRigidBody(std::shared_ptr<btCollisionShape> shape, double mass,
                                                               const btTransform& pose, double friction,
                                                               bool kinematic) {
+  assert(shape);
   if (!(mass >= 0.0 && mass < Limits::kMaxCoordinate)) return invalid("mass: must be 0 or more, and finite");
   if (!(friction >= 0.0 && friction < 1e6)) return invalid("friction: must be 0 or more, and finite");
   if (shape->isConcave() && mass > 0.0)
@@ -228,10 +231,12 @@ void World::remove(RigidBody& rigid) {
 
 std::shared_ptr<World::Joint> World::addJoint(std::shared_ptr<RigidBody> first, std::shared_ptr<RigidBody> second,
                                               std::unique_ptr<btTypedConstraint> joint, bool collide) {
+  assert(first && joint && !first->removed && !(second && second->removed));
   auto added = std::make_shared<Joint>(Joint{std::move(first), std::move(second), std::move(joint)});
   joints_.push_back(added);
   world_->addConstraint(added->joint.get(), !collide);
   added->first->body->activate(true);
+  if (added->second) added->second->body->activate(true);
   return added;
 }
 
@@ -240,6 +245,8 @@ void World::remove(Joint& joint) {
   world_->removeConstraint(joint.joint.get());
   joint.first->body->activate(true);
   if (joint.second) joint.second->body->activate(true);
+  const auto isOfIt = [&](const auto& motor) { return motor.first == joint.joint.get(); };  // within a step
+  torques_.erase(std::remove_if(torques_.begin(), torques_.end(), isOfIt), torques_.end());
   joint.joint.reset();
   forget(joints_, joint);
 }
@@ -300,11 +307,12 @@ Status World::touchOthers(Body& body, Shared& shared, bool itself) {
 Result<std::shared_ptr<World::Body>> World::addBody(std::shared_ptr<const Cage> cage,
                                                     std::shared_ptr<const TriangleMesh> mesh,
                                                     const WorldBodyOptions& options, const Eigen::Affine3d& placement) {
+  assert(cage);
   if (!mesh && (options.softContact || options.selfContact))
     return Status{StatusCode::Unbound, "a body without a mesh has no surface to be in contact with others"};
   for (const int node : options.pinned) {
     if (node < 0 || static_cast<std::size_t>(node) >= cage->mesh.nodeCount())
-      return Status{StatusCode::IndexOutOfRange, "nodes: there is no node " + std::to_string(node)};
+      return Status{StatusCode::IndexOutOfRange, "pinned: there is no node " + std::to_string(node)};
   }
   Cage placed = *cage;
   // Not in place: Emscripten 3.1.6 would overwrite the last of an odd number before it has been read.
@@ -382,6 +390,7 @@ Result<const SurfaceTree*> World::treeOf(Body& body) {
 }
 
 Result<World::RayHit> World::raycast(const std::shared_ptr<Body>& body, const btVector3& from, const btVector3& to) {
+  assert(body);
   const Result<const SurfaceTree*> tree = treeOf(*body);
   if (!tree.ok()) return tree.status();
   const SurfaceHit hit = tree.value()->raycast(body->skin, from, to);
