@@ -191,7 +191,7 @@ TEST(Bvh, WhatIsNotANumberExtendsNoBox) {
   int visited = 0;
   const auto count = [&](int, double&) { ++visited; };
   tree.bvh.visitNear(tree.nodes, Vector3d(0, 0, 0), 1.0, count);
-  serializePairs(
+  visitPairs(
       tree.bvh, tree.bvh, [&](int a, int b) { return tree.nodes[size_t(a)].collides(tree.nodes[size_t(b)]); },
       [&](const Bvh::Node&, const Bvh::Node&) { ++visited; });
   EXPECT_EQ(visited, 0);
@@ -330,7 +330,7 @@ TEST(Bvh, FindsThePairsOfTwoTreesThatTestingAllFinds) {
     const auto meet = [&](int i, int j) {
       return a.nodes[static_cast<std::size_t>(i)].collides(b.nodes[static_cast<std::size_t>(j)]);
     };
-    serializePairs(a.bvh, b.bvh, meet, [&](const Bvh::Node& left, const Bvh::Node& right) {
+    visitPairs(a.bvh, b.bvh, meet, [&](const Bvh::Node& left, const Bvh::Node& right) {
       for (int i = left.first; i < left.last; ++i) {
         for (int j = right.first; j < right.last; ++j) {
           const int first = a.bvh.item(i), second = b.bvh.item(j);
@@ -349,7 +349,7 @@ TEST(Bvh, FindsThePairsOfTwoTreesThatTestingAllFinds) {
     EXPECT_EQ(found.empty(), offset > 2.0);
   }
   const Bvh none;
-  serializePairs(
+  visitPairs(
       none, none, [](int, int) { return true; }, [](const auto&, const auto&) { FAIL(); });
 }
 

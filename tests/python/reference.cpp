@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // The drop of test_drop.py, in C++ with the same Bullet: its positions must be the same to the bit. Also the cost of
-// test_overhead.py's calls here.
+// overhead.py's calls here.
 //   tetskin_reference MESH TETS FRAMES POSITIONS   writes the surface after FRAMES as floats; prints microseconds
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/io/files.h>

@@ -121,5 +121,34 @@ TEST(SolverWithOthers, BodiesComeAndGo) {
   EXPECT_GT(lowest(third->body()), -0.01);
 }
 
+TEST(SolverWithOthers, ANegativeOrUndefinedStepOfBulletsWorldMovesNothing) {
+  TetskinWorld scene;
+  const auto body = added(scene, makeBox({2, 2, 2}, {0.5, 0.5, 0.5}).mesh);
+  for (int k = 0; k < 10; ++k) scene.deformable().stepSimulation(btScalar(0.01), 0);
+  const std::vector<btVector3> before = nodesOf(body->body());
+  for (const btScalar dt : {btScalar(-0.01), std::numeric_limits<btScalar>::quiet_NaN()}) {
+    scene.deformable().stepSimulation(dt, 0);
+    const std::vector<btVector3> after = nodesOf(body->body());
+    for (std::size_t n = 0; n < before.size(); ++n) EXPECT_EQ(after[n], before[n]) << dt;
+  }
+  scene.deformable().stepSimulation(btScalar(0.01), 0);
+  EXPECT_LT(nodesOf(body->body())[0].y(), before[0].y());
+}
+
+/// Bullet calls it after the prediction, before the solve.
+void stepOnce(btDynamicsWorld* world, btScalar) {
+  world->setInternalTickCallback(nullptr, nullptr, true);
+  world->stepSimulation(btScalar(0.01), 0);
+}
+
+TEST(SolverWithOthers, ACallbackMayMakeAStepWithinAStep) {
+  TetskinWorld scene;
+  const auto body = added(scene, makeBox({2, 2, 2}, {0.5, 0.5, 0.5}).mesh);
+  scene.deformable().setInternalTickCallback(stepOnce, nullptr, true);
+  for (int k = 0; k < 100; ++k) scene.deformable().stepSimulation(btScalar(0.01), 0);
+  EXPECT_GT(lowest(body->body()), -0.1);
+  EXPECT_LT(fastestOf(body->body()), 5);
+}
+
 }  // namespace
 }  // namespace tetskin::test

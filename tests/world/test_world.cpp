@@ -117,6 +117,24 @@ TEST(World, BodiesOfOneCageAndMeshShareTheirBinding) {
   WorldBodyOptions smooth;
   smooth.binding.interpolation = Interpolation::Quadratic;
   EXPECT_NE(crowd.world.addBody(crowd.cage, crowd.mesh, smooth, at(5, 5)).value()->binding, crowd.first->binding);
+  WorldBodyOptions hard;
+  hard.binding.hardEdgeDegrees = 10;
+  EXPECT_NE(crowd.world.addBody(crowd.cage, crowd.mesh, hard, at(5, 8)).value()->binding, crowd.first->binding);
+  WorldBodyOptions sorted;
+  sorted.binding.order = VertexOrder::ByTet;
+  EXPECT_NE(crowd.world.addBody(crowd.cage, crowd.mesh, sorted, at(5, 11)).value()->binding, crowd.first->binding);
+}
+
+TEST(World, AJointMayBeRemovedWithinAStep) {
+  OwnedCrowd crowd;
+  const auto inside = [&](btScalar whole, int count, btScalar substep) {
+    const int made = crowd.world.bullet().stepSimulation(whole, count, substep);
+    crowd.world.remove(*crowd.joint);
+    return made;
+  };
+  EXPECT_EQ(crowd.world.step(kFrame, 4, inside).value(), 4);
+  EXPECT_FALSE(crowd.joint->joint);
+  crowd.run(1);
 }
 
 TEST(World, WhatIsRemovedTakesAlongWhatIsAttachedToIt) {

@@ -105,9 +105,9 @@ class TETSKIN_CONTACT_API SoftContacts {
   /// shape.
   /// body    of this world, created from the shape's cage: the same nodes and tets in the same order, at any positions
   /// shape   shared
-  /// self    whether it collides with itself. Regions can touch that are more than two cage edges apart at rest, or
-  ///         somewhat more along the body. So fingers that the cage keeps apart collide; if they are nearer than that,
-  ///         only from a depth of 1.5 cells of the shape's grid
+  /// self    whether it collides with itself: regions collide that are more than two cage edges apart at rest, or
+  ///         somewhat more along the body. Fingers that the cage keeps apart therefore collide; if they are nearer than
+  ///         that, only from a depth of 1.5 cells of the shape's grid
   /// Errors  Empty without a shape; SizeMismatch: the body has another number of nodes or tets; InvalidOption: it is in
   ///         another world, or in other SoftContacts
   Status add(btSoftBody& body, std::shared_ptr<const ContactShape> shape, bool self = false);

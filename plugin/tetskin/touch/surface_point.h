@@ -74,7 +74,7 @@ class TETSKIN_TOUCH_API SurfacePoint {
   /// impulse  world space, mass times velocity
   /// Errors   InvalidOption for reduced bodies; those of `status`; NonFinite
   StatusCode applyImpulse(const btVector3& impulse);
-  /// Applies a force during Bullet's next steps, as part of their solve. Wakes the body.
+  /// Applies a force during Bullet's next `steps` steps, as part of their solve. Wakes the body.
   /// force   world space, mass times length / s^2; forces add up
   /// steps   number of Bullet's steps, that is substeps, 1 or more
   /// Errors  NotInWorld; InvalidOption in a world without a `DeformableSolver`, or for steps below 1; those of

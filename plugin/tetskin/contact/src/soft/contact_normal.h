@@ -12,7 +12,7 @@ namespace tetskin::contact_detail {
 struct PairDirection {
   btVector3 apart{0, 0, 0};  ///< direction in which the first is to leave the second, where it is deep in it; or 0
   btScalar deep = 0;         ///< depth from which on it applies; world space
-  btScalar cube = 0;         ///< of the second body's grid; world space
+  btScalar cube = 0;         ///< of the second body's grid, in rest units
 };
 
 /// The surface of the first body at one of its samples.

@@ -38,7 +38,7 @@ struct TouchedSample {
 class NodeTouches {
  public:
   /// body     the samples', which must stay as it is until `remember`
-  /// cube     of the other body's grid, world space
+  /// cube     of the other body's grid, in rest units
   /// touched  samples that have touched in the steps before, ascending; taken away
   /// touches  is cleared, and filled by `keep`
   void begin(const ContactBody& body, btScalar cube, std::vector<TouchedSample>& touched, std::vector<Touch>& touches);

@@ -134,9 +134,11 @@ bool PairMemory::fits(const ContactBody& first, const ContactBody& second, const
   const auto samples = static_cast<int>(first.data().samples.size()),
              tets = static_cast<int>(second.data().tets.size());
   const auto isSample = [&](int sample) { return sample >= 0 && sample < samples; };
+  const auto isBefore = [](const TouchedSample& a, const TouchedSample& b) { return a.sample < b.sample; };
   const bool havePositions = !first.positions.empty() && !second.positions.empty();
   return (havePositions || !motion.goesOn(first, second)) &&  // else the next step measures motion from no positions
-         std::all_of(pierced.begin(), pierced.end(), isSample) &&
+         std::all_of(pierced.begin(), pierced.end(), isSample) && std::is_sorted(pierced.begin(), pierced.end()) &&
+         std::is_sorted(touched.begin(), touched.end(), isBefore) &&
          std::all_of(touched.begin(), touched.end(), [&](const TouchedSample& t) { return isSample(t.sample); }) &&
          std::all_of(touches.begin(), touches.end(),
                      [&](const Touch& t) { return isSample(t.sample) && t.tet >= 0 && t.tet < tets; });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to SoftContacts: the rigid motion shared by parts of two bodies. It changes no distance: two points approach
-// each other by at most the sum of their deviations from it.
+// Internal to SoftContacts: the rigid motion of a part of a body, against which two bodies are measured. It changes no
+// distance: two points approach each other by at most the sum of their deviations from it.
 #pragma once
 
 #include <LinearMath/btMatrix3x3.h>

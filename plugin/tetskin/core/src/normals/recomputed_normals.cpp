@@ -30,7 +30,7 @@ constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 /// Rounding of the cosine of an angle between two directions given as floats.
 constexpr double kRounding = 1e-12;
 
-/// The direction of the rest normal, whatever its length; zero if there is none.
+/// The direction of the rest normal, whatever its length; zero if there is none, or it has no direction.
 Eigen::Vector3d restDirection(const TriangleMesh& mesh, std::uint32_t v) {
   if (mesh.normals.size() != mesh.vertexCount()) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d normal = mesh.normals[v].cast<double>();

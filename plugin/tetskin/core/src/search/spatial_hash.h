@@ -78,7 +78,7 @@ class SpatialHash {
   std::uint32_t wrapped(std::int64_t cell, int axis) const;
   Span spanOf(std::int64_t lo, std::int64_t hi, int axis) const;
   template <class Visit>
-  void serializeRow(std::size_t row, const Span& span, Visit&& visit) const;
+  void visitRow(std::size_t row, const Span& span, Visit&& visit) const;
 
   Box3 box_;
   Frame frame_;
@@ -114,7 +114,7 @@ inline SpatialHash::Span SpatialHash::spanOf(std::int64_t lo, std::int64_t hi, i
 }
 
 template <class Visit>
-void SpatialHash::serializeRow(std::size_t row, const Span& span, Visit&& visit) const {
+void SpatialHash::visitRow(std::size_t row, const Span& span, Visit&& visit) const {
   const auto range = [&](std::size_t first, std::size_t last) {
     const std::uint32_t begin = cellStart_[row + first], end = cellStart_[row + last];
     if (begin != end) visit(begin, end);
@@ -134,7 +134,7 @@ void SpatialHash::query(const Box3& box, Visit&& visit) const {
     const std::uint32_t atZ = z.first + k < table_[2] ? z.first + k : z.first + k - table_[2];
     for (std::uint32_t j = 0; j < y.count; ++j) {
       const std::uint32_t atY = y.first + j < table_[1] ? y.first + j : y.first + j - table_[1];
-      serializeRow((std::size_t{atZ} * table_[1] + atY) * table_[0], x, visit);
+      visitRow((std::size_t{atZ} * table_[1] + atY) * table_[0], x, visit);
     }
   }
 }

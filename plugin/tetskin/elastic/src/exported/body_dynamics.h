@@ -101,7 +101,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// True if the last step is remembered for the next one.
   bool remembers() const { return history_.isKnown(); }
 
-  // ---- A step. Each function asserts that those before it have been called.
+  // ---- A step. `beTouched`, `findResidual`, `solve` and `remember` assert the stage that they need; the others, that
+  // a first step has begun.
 
   /// The beginning of a step: computes the rigid motion, the forces at the points that it reaches, the matrix if it
   /// must change, and the right side. The solution is a velocity relative to the rigid motion; it begins with its last

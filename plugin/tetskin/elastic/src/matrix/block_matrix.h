@@ -20,7 +20,7 @@
 
 namespace tetskin::elastic_detail {
 
-/// True if it pays to divide a matrix of this many slots among threads: see kChunksPerTask in block_pattern.cpp.
+/// True if it pays to divide a matrix of this many slots among threads: see kChunksPerRange in block_pattern.cpp.
 constexpr bool isDivisible(std::size_t slots) {
   return slots >= 4096;
 }

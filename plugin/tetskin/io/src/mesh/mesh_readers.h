@@ -16,7 +16,7 @@ namespace tetskin::io {
 ///   clipping ears (see `appendPolygon`);
 /// - groups are the runs of faces with the same name (of the last `g` or `o`) and the same `usemtl`;
 /// - texcoords (and normals, normalised) are given if every vertex in a face has exactly one value, otherwise left
-///   empty; vertices in no face get 0, as do values that are not finite. References to missing ones are ignored.
+///   empty; vertices in no face get 0, as do values that are not finite. A reference to a missing one is no value.
 /// Lines, points, faces of fewer than three corners, curves and unknown statements are skipped.
 /// report  counts faces that were not read as they are
 /// Cost: linear, about 20 ms for 60,000 triangles.

@@ -27,7 +27,7 @@ std::uint64_t hashOfChunk(std::uint32_t kind, const Bytes& bytes) {
 
 }  // namespace
 
-void StepChunk::visit(StateStream& stream) {
+void StepChunk::serialize(StateStream& stream) {
   stream(seconds, maxSubSteps, fixedTimeStep);
   stream.array(change);
   stream.array(kinematic);
@@ -35,16 +35,16 @@ void StepChunk::visit(StateStream& stream) {
 }
 Bytes StepChunk::toBytes() {
   StateStream counted;
-  visit(counted);
+  serialize(counted);
   Bytes bytes(counted.count());
   StateStream written(bytes.data(), bytes.size());
-  visit(written);
+  serialize(written);
   return bytes;
 }
 std::optional<StepChunk> StepChunk::fromBytes(const Bytes& bytes) {
   StepChunk chunk;
   StateStream read(bytes.data(), bytes.size());
-  chunk.visit(read);
+  chunk.serialize(read);
   if (read.failed() || read.count() != bytes.size()) return {};
   return chunk;
 }

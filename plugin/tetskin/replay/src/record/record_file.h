@@ -38,10 +38,10 @@ struct StepChunk {
   std::int32_t maxSubSteps = 0;
   double fixedTimeStep = 0;
   Bytes change;                       ///< difference from the snapshot after the last step to the one before this step
-  Bytes kinematic;                    ///< see KinematicTargets
+  Bytes kinematic;                    ///< see LedToTargets
   std::vector<std::uint32_t> motion;  ///< by object: a hash of its motion after the step
 
-  void visit(StateStream& stream);
+  void serialize(StateStream& stream);
   Bytes toBytes();
   /// Empty if the bytes are not such a chunk.
   static std::optional<StepChunk> fromBytes(const Bytes& bytes);

@@ -35,10 +35,10 @@ struct MembersOf {
 };
 
 /// In a source,
-///     template struct Visited<Object, &Object::m_hidden, ...>;
+///     template struct Serialized<Object, &Object::m_hidden, ...>;
 /// defines what `serializeMembers` writes or reads of that class.
 template <class Object, auto... members>
-struct Visited {
+struct Serialized {
   friend void serializeOpened(MembersOf<Object>, WorldStream& stream, Object& object) {
     serializeAll(stream, object.*members...);
   }

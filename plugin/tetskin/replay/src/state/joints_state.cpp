@@ -52,40 +52,40 @@ void serialize(WorldStream& stream, btTranslationalLimitMotor2& m) {
 }
 
 using AnyJoint = btTypedConstraint;
-template struct Visited<AnyJoint, &AnyJoint::m_isEnabled, &AnyJoint::m_breakingImpulseThreshold,
-                        &AnyJoint::m_needsFeedback, &AnyJoint::m_overrideNumSolverIterations,
-                        &AnyJoint::m_appliedImpulse>;
+template struct Serialized<AnyJoint, &AnyJoint::m_isEnabled, &AnyJoint::m_breakingImpulseThreshold,
+                           &AnyJoint::m_needsFeedback, &AnyJoint::m_overrideNumSolverIterations,
+                           &AnyJoint::m_appliedImpulse>;
 
 using AngularLimit = btAngularLimit;
-template struct Visited<AngularLimit, &AngularLimit::m_center, &AngularLimit::m_halfRange, &AngularLimit::m_softness,
-                        &AngularLimit::m_biasFactor, &AngularLimit::m_relaxationFactor>;
+template struct Serialized<AngularLimit, &AngularLimit::m_center, &AngularLimit::m_halfRange, &AngularLimit::m_softness,
+                           &AngularLimit::m_biasFactor, &AngularLimit::m_relaxationFactor>;
 void serialize(WorldStream& stream, btAngularLimit& limit) {
   serializeMembers(stream, limit);
 }
 
 using BallJoint = btPoint2PointConstraint;
-template struct Visited<BallJoint, &BallJoint::m_pivotInA, &BallJoint::m_pivotInB, &BallJoint::m_flags,
-                        &BallJoint::m_erp, &BallJoint::m_cfm, &BallJoint::m_setting,
-                        &BallJoint::m_useSolveConstraintObsolete>;
+template struct Serialized<BallJoint, &BallJoint::m_pivotInA, &BallJoint::m_pivotInB, &BallJoint::m_flags,
+                           &BallJoint::m_erp, &BallJoint::m_cfm, &BallJoint::m_setting,
+                           &BallJoint::m_useSolveConstraintObsolete>;
 
 using HingeJoint = btHingeConstraint;
-template struct Visited<HingeJoint, &HingeJoint::m_rbAFrame, &HingeJoint::m_rbBFrame,
-                        &HingeJoint::m_motorTargetVelocity, &HingeJoint::m_maxMotorImpulse,
+template struct Serialized<HingeJoint, &HingeJoint::m_rbAFrame, &HingeJoint::m_rbBFrame,
+                           &HingeJoint::m_motorTargetVelocity, &HingeJoint::m_maxMotorImpulse,
 #ifdef _BT_USE_CENTER_LIMIT_
-                        &HingeJoint::m_limit,
+                           &HingeJoint::m_limit,
 #else
-                        &HingeJoint::m_lowerLimit, &HingeJoint::m_upperLimit, &HingeJoint::m_limitSoftness,
-                        &HingeJoint::m_biasFactor, &HingeJoint::m_relaxationFactor,
+                           &HingeJoint::m_lowerLimit, &HingeJoint::m_upperLimit, &HingeJoint::m_limitSoftness,
+                           &HingeJoint::m_biasFactor, &HingeJoint::m_relaxationFactor,
 #endif
-                        &HingeJoint::m_referenceSign, &HingeJoint::m_angularOnly, &HingeJoint::m_enableAngularMotor,
-                        &HingeJoint::m_useSolveConstraintObsolete, &HingeJoint::m_useOffsetForConstraintFrame,
-                        &HingeJoint::m_useReferenceFrameA, &HingeJoint::m_flags, &HingeJoint::m_normalCFM,
-                        &HingeJoint::m_normalERP, &HingeJoint::m_stopCFM, &HingeJoint::m_stopERP>;
+                           &HingeJoint::m_referenceSign, &HingeJoint::m_angularOnly, &HingeJoint::m_enableAngularMotor,
+                           &HingeJoint::m_useSolveConstraintObsolete, &HingeJoint::m_useOffsetForConstraintFrame,
+                           &HingeJoint::m_useReferenceFrameA, &HingeJoint::m_flags, &HingeJoint::m_normalCFM,
+                           &HingeJoint::m_normalERP, &HingeJoint::m_stopCFM, &HingeJoint::m_stopERP>;
 
-template struct Visited<btHingeAccumulatedAngleConstraint, &btHingeAccumulatedAngleConstraint::m_accumulatedAngle>;
+template struct Serialized<btHingeAccumulatedAngleConstraint, &btHingeAccumulatedAngleConstraint::m_accumulatedAngle>;
 
 using ConeJoint = btConeTwistConstraint;
-template struct Visited<
+template struct Serialized<
     ConeJoint, &ConeJoint::m_rbAFrame, &ConeJoint::m_rbBFrame, &ConeJoint::m_limitSoftness, &ConeJoint::m_biasFactor,
     &ConeJoint::m_relaxationFactor, &ConeJoint::m_damping, &ConeJoint::m_swingSpan1, &ConeJoint::m_swingSpan2,
     &ConeJoint::m_twistSpan, &ConeJoint::m_fixThresh, &ConeJoint::m_twistAngle, &ConeJoint::m_angularOnly,
@@ -94,7 +94,7 @@ template struct Visited<
     &ConeJoint::m_linCFM, &ConeJoint::m_linERP, &ConeJoint::m_angCFM>;
 
 using SliderJoint = btSliderConstraint;
-template struct Visited<
+template struct Serialized<
     SliderJoint, &SliderJoint::m_useSolveConstraintObsolete, &SliderJoint::m_useOffsetForConstraintFrame,
     &SliderJoint::m_frameInA, &SliderJoint::m_frameInB, &SliderJoint::m_useLinearReferenceFrameA,
     &SliderJoint::m_lowerLinLimit, &SliderJoint::m_upperLinLimit, &SliderJoint::m_lowerAngLimit,
@@ -112,56 +112,57 @@ template struct Visited<
     &SliderJoint::m_maxAngMotorForce, &SliderJoint::m_accumulatedAngMotorImpulse>;
 
 using SixDofJoint = btGeneric6DofConstraint;
-template struct Visited<SixDofJoint, &SixDofJoint::m_frameInA, &SixDofJoint::m_frameInB, &SixDofJoint::m_linearLimits,
-                        &SixDofJoint::m_angularLimits, &SixDofJoint::m_useLinearReferenceFrameA,
-                        &SixDofJoint::m_useOffsetForConstraintFrame, &SixDofJoint::m_flags>;
+template struct Serialized<SixDofJoint, &SixDofJoint::m_frameInA, &SixDofJoint::m_frameInB,
+                           &SixDofJoint::m_linearLimits, &SixDofJoint::m_angularLimits,
+                           &SixDofJoint::m_useLinearReferenceFrameA, &SixDofJoint::m_useOffsetForConstraintFrame,
+                           &SixDofJoint::m_flags>;
 
 using SpringJoint = btGeneric6DofSpringConstraint;
-template struct Visited<SpringJoint, &SpringJoint::m_springEnabled, &SpringJoint::m_equilibriumPoint,
-                        &SpringJoint::m_springStiffness, &SpringJoint::m_springDamping>;
+template struct Serialized<SpringJoint, &SpringJoint::m_springEnabled, &SpringJoint::m_equilibriumPoint,
+                           &SpringJoint::m_springStiffness, &SpringJoint::m_springDamping>;
 
 using SpringJoint2 = btGeneric6DofSpring2Constraint;
-template struct Visited<SpringJoint2, &SpringJoint2::m_frameInA, &SpringJoint2::m_frameInB,
-                        &SpringJoint2::m_linearLimits, &SpringJoint2::m_angularLimits, &SpringJoint2::m_rotateOrder,
-                        &SpringJoint2::m_flags>;
+template struct Serialized<SpringJoint2, &SpringJoint2::m_frameInA, &SpringJoint2::m_frameInB,
+                           &SpringJoint2::m_linearLimits, &SpringJoint2::m_angularLimits, &SpringJoint2::m_rotateOrder,
+                           &SpringJoint2::m_flags>;
 
 using GearJoint = btGearConstraint;
-template struct Visited<GearJoint, &GearJoint::m_axisInA, &GearJoint::m_axisInB, &GearJoint::m_useFrameA,
-                        &GearJoint::m_ratio>;
+template struct Serialized<GearJoint, &GearJoint::m_axisInA, &GearJoint::m_axisInB, &GearJoint::m_useFrameA,
+                           &GearJoint::m_ratio>;
 
 using BodyJoint = btMultiBodyConstraint;
-template struct Visited<BodyJoint, &BodyJoint::m_maxAppliedImpulse, &BodyJoint::m_isUnilateral>;
+template struct Serialized<BodyJoint, &BodyJoint::m_maxAppliedImpulse, &BodyJoint::m_isUnilateral>;
 /// Its data begin with the impulses with which the next step starts; Jacobians, recomputed in each step, follow.
 using JointData = Hidden<BodyJoint, btAlignedObjectArray<btScalar>>;
 template struct Opened<JointData, &BodyJoint::m_data>;
 
 using LinkMotor = btMultiBodyJointMotor;
-template struct Visited<LinkMotor, &LinkMotor::m_desiredVelocity, &LinkMotor::m_desiredPosition, &LinkMotor::m_kd,
-                        &LinkMotor::m_kp, &LinkMotor::m_erp, &LinkMotor::m_rhsClamp>;
-template struct Visited<btMultiBodyJointLimitConstraint, &btMultiBodyJointLimitConstraint::m_lowerBound,
-                        &btMultiBodyJointLimitConstraint::m_upperBound>;
+template struct Serialized<LinkMotor, &LinkMotor::m_desiredVelocity, &LinkMotor::m_desiredPosition, &LinkMotor::m_kd,
+                           &LinkMotor::m_kp, &LinkMotor::m_erp, &LinkMotor::m_rhsClamp>;
+template struct Serialized<btMultiBodyJointLimitConstraint, &btMultiBodyJointLimitConstraint::m_lowerBound,
+                           &btMultiBodyJointLimitConstraint::m_upperBound>;
 using LinkWeld = btMultiBodyFixedConstraint;
-template struct Visited<LinkWeld, &LinkWeld::m_pivotInA, &LinkWeld::m_pivotInB, &LinkWeld::m_frameInA,
-                        &LinkWeld::m_frameInB>;
-template struct Visited<btMultiBodyPoint2Point, &btMultiBodyPoint2Point::m_pivotInA,
-                        &btMultiBodyPoint2Point::m_pivotInB>;
+template struct Serialized<LinkWeld, &LinkWeld::m_pivotInA, &LinkWeld::m_pivotInB, &LinkWeld::m_frameInA,
+                           &LinkWeld::m_frameInB>;
+template struct Serialized<btMultiBodyPoint2Point, &btMultiBodyPoint2Point::m_pivotInA,
+                           &btMultiBodyPoint2Point::m_pivotInB>;
 using LinkSlider = btMultiBodySliderConstraint;
-template struct Visited<LinkSlider, &LinkSlider::m_pivotInA, &LinkSlider::m_pivotInB, &LinkSlider::m_frameInA,
-                        &LinkSlider::m_frameInB, &LinkSlider::m_jointAxis>;
+template struct Serialized<LinkSlider, &LinkSlider::m_pivotInA, &LinkSlider::m_pivotInB, &LinkSlider::m_frameInA,
+                           &LinkSlider::m_frameInB, &LinkSlider::m_jointAxis>;
 using LinkGear = btMultiBodyGearConstraint;
-template struct Visited<LinkGear, &LinkGear::m_pivotInA, &LinkGear::m_pivotInB, &LinkGear::m_frameInA,
-                        &LinkGear::m_frameInB, &LinkGear::m_gearRatio, &LinkGear::m_gearAuxLink, &LinkGear::m_erp,
-                        &LinkGear::m_relativePositionTarget>;
+template struct Serialized<LinkGear, &LinkGear::m_pivotInA, &LinkGear::m_pivotInB, &LinkGear::m_frameInA,
+                           &LinkGear::m_frameInB, &LinkGear::m_gearRatio, &LinkGear::m_gearAuxLink, &LinkGear::m_erp,
+                           &LinkGear::m_relativePositionTarget>;
 using BallMotor = btMultiBodySphericalJointMotor;
-template struct Visited<BallMotor, &BallMotor::m_desiredVelocity, &BallMotor::m_desiredPosition,
-                        &BallMotor::m_use_multi_dof_params, &BallMotor::m_kd, &BallMotor::m_kp, &BallMotor::m_erp,
-                        &BallMotor::m_rhsClamp, &BallMotor::m_maxAppliedImpulseMultiDof, &BallMotor::m_damping>;
+template struct Serialized<BallMotor, &BallMotor::m_desiredVelocity, &BallMotor::m_desiredPosition,
+                           &BallMotor::m_use_multi_dof_params, &BallMotor::m_kd, &BallMotor::m_kp, &BallMotor::m_erp,
+                           &BallMotor::m_rhsClamp, &BallMotor::m_maxAppliedImpulseMultiDof, &BallMotor::m_damping>;
 using BallLimit = btMultiBodySphericalJointLimit;
-template struct Visited<BallLimit, &BallLimit::m_desiredVelocity, &BallLimit::m_desiredPosition,
-                        &BallLimit::m_use_multi_dof_params, &BallLimit::m_kd, &BallLimit::m_kp, &BallLimit::m_erp,
-                        &BallLimit::m_rhsClamp, &BallLimit::m_maxAppliedImpulseMultiDof, &BallLimit::m_pivotA,
-                        &BallLimit::m_pivotB, &BallLimit::m_swingxRange, &BallLimit::m_swingyRange,
-                        &BallLimit::m_twistRange>;
+template struct Serialized<BallLimit, &BallLimit::m_desiredVelocity, &BallLimit::m_desiredPosition,
+                           &BallLimit::m_use_multi_dof_params, &BallLimit::m_kd, &BallLimit::m_kp, &BallLimit::m_erp,
+                           &BallLimit::m_rhsClamp, &BallLimit::m_maxAppliedImpulseMultiDof, &BallLimit::m_pivotA,
+                           &BallLimit::m_pivotB, &BallLimit::m_swingxRange, &BallLimit::m_swingyRange,
+                           &BallLimit::m_twistRange>;
 
 namespace {
 

@@ -25,7 +25,7 @@ void serialize(WorldStream& stream, btSpatialMotionVector& vector) {
 }
 
 using AnyMultiBody = btMultiBody;
-template struct Visited<
+template struct Serialized<
     AnyMultiBody, &AnyMultiBody::m_basePos, &AnyMultiBody::m_basePos_interpolate, &AnyMultiBody::m_baseQuat,
     &AnyMultiBody::m_baseQuat_interpolate, &AnyMultiBody::m_baseMass, &AnyMultiBody::m_baseInertia,
     &AnyMultiBody::m_baseForce, &AnyMultiBody::m_baseTorque, &AnyMultiBody::m_baseConstraintForce,

@@ -7,7 +7,7 @@
 
 namespace tetskin::bullet_detail {
 
-template struct Visited<
+template struct Serialized<
     btCollisionObject, &btCollisionObject::m_worldTransform, &btCollisionObject::m_interpolationWorldTransform,
     &btCollisionObject::m_interpolationLinearVelocity, &btCollisionObject::m_interpolationAngularVelocity,
     &btCollisionObject::m_anisotropicFriction, &btCollisionObject::m_hasAnisotropicFriction,
@@ -23,7 +23,7 @@ template struct Visited<
 using PassesThrough = Hidden<btCollisionObject, btAlignedObjectArray<const btCollisionObject*>>;
 template struct Opened<PassesThrough, &btCollisionObject::m_objectsWithoutCollisionCheck>;
 
-template struct Visited<
+template struct Serialized<
     btRigidBody, &btRigidBody::m_linearVelocity, &btRigidBody::m_angularVelocity, &btRigidBody::m_inverseMass,
     &btRigidBody::m_linearFactor, &btRigidBody::m_gravity, &btRigidBody::m_gravity_acceleration,
     &btRigidBody::m_invInertiaLocal, &btRigidBody::m_invInertiaTensorWorld, &btRigidBody::m_totalForce,
@@ -37,10 +37,11 @@ template struct Visited<
 
 /// The world's clock and settings.
 using World = btDeformableMultiBodyDynamicsWorld;
-template struct Visited<World, &World::m_localTime, &World::m_fixedTimeStep, &World::m_internalTime, &World::m_gravity,
-                        &World::m_synchronizeAllMotionStates, &World::m_latencyMotionStateInterpolation,
-                        &World::m_applySpeculativeContactRestitution, &World::m_forceUpdateAllAabbs,
-                        &World::m_ccdIterations, &World::m_implicit, &World::m_lineSearch, &World::m_useProjection>;
+template struct Serialized<World, &World::m_localTime, &World::m_fixedTimeStep, &World::m_internalTime,
+                           &World::m_gravity, &World::m_synchronizeAllMotionStates,
+                           &World::m_latencyMotionStateInterpolation, &World::m_applySpeculativeContactRestitution,
+                           &World::m_forceUpdateAllAabbs, &World::m_ccdIterations, &World::m_implicit,
+                           &World::m_lineSearch, &World::m_useProjection>;
 
 namespace {
 

@@ -50,13 +50,13 @@ struct Header {
   std::uint64_t hash = 0;                   ///< at kHashAt
   std::uint64_t ends[kPartCount + 1] = {};  ///< ends of the directory and of each part, from the payload's beginning
 
-  void visit(StateStream& stream) {
+  void serialize(StateStream& stream) {
     stream(magic, layout, library, scalarBytes, byteOrder, length, hash);
     stream.plain(ends, kPartCount + 1);
   }
   static std::size_t bytes() {
     StateStream stream;
-    Header().visit(stream);
+    Header().serialize(stream);
     return stream.count();
   }
 };
@@ -71,7 +71,7 @@ Status unsupported(const std::string& what) {
 /// Reads the header, and checks that the bytes are unchanged and were written by a compatible library.
 Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) {
   StateStream stream(bytes, size);
-  header.visit(stream);
+  header.serialize(stream);
   if (stream.failed()) return malformed("it has " + std::to_string(size) + " bytes, less than its header");
   const Header own;
   if (header.magic != own.magic) return malformed("it does not begin like a snapshot");
@@ -102,7 +102,7 @@ Result<std::size_t> save(World& saved, void* buffer, std::size_t size, bool with
   WorldStream stream = bytes ? WorldStream(saved, bytes + (room > 0 ? begin : 0), room) : WorldStream(saved);
   if (!withRecords) stream.leaveOutRecords();
   Header header;
-  WorldDirectory(saved).visit(stream);
+  WorldDirectory(saved).serialize(stream);
   checkForces(stream, *solver);
   header.ends[0] = stream.count();
   for (std::size_t k = 0; k < kPartCount; ++k) {
@@ -118,7 +118,7 @@ Result<std::size_t> save(World& saved, void* buffer, std::size_t size, bool with
                   "the buffer has " + std::to_string(size) + " bytes, and the snapshot " + std::to_string(needed)};
   }
   StateStream front(bytes, begin);
-  header.visit(front);
+  header.serialize(front);
   header.hash = snapshotHash(bytes + kHashedFrom, needed - kHashedFrom);
   std::memcpy(bytes + kHashAt, &header.hash, sizeof header.hash);
   return needed;
@@ -140,7 +140,7 @@ Status restoreSnapshot(World& world, const void* snapshot, std::size_t size) {
   if (!status.ok()) return status;
   WorldStream stream(world, bytes + Header::bytes(), static_cast<std::size_t>(header.length));
   WorldDirectory directory;
-  directory.visit(stream);
+  directory.serialize(stream);
   if (stream.failed()) return malformed("its list of objects does not end");
   WorldDirectory now(world);
   status = directory.find(now);
@@ -183,7 +183,7 @@ bool areOfOneWorld(const std::vector<unsigned char>& a, const std::vector<unsign
   const auto directoryEnd = [](const std::vector<unsigned char>& snapshot) {
     Header header;
     StateStream stream(snapshot.data(), snapshot.size());
-    header.visit(stream);
+    header.serialize(stream);
     assert(!stream.failed());
     return static_cast<std::ptrdiff_t>(Header::bytes() + header.ends[0]);
   };

@@ -194,7 +194,7 @@ WorldDirectory::WorldDirectory(World& world) {
   }
 }
 
-void WorldDirectory::visit(WorldStream& stream) {
+void WorldDirectory::serialize(WorldStream& stream) {
   stream.each(objects_, [&](Object& o) { serializeAll(stream, o.id, o.type, o.userIndex, o.fingerprint); });
   stream.array(moving_);
   stream.array(softs_);

@@ -19,7 +19,7 @@ class WorldDirectory {
   WorldDirectory() = default;
   explicit WorldDirectory(btDeformableMultiBodyDynamicsWorld& world);
 
-  void visit(WorldStream& stream);
+  void serialize(WorldStream& stream);
 
   /// Finds its objects among those of a world: by their ids if all are there, otherwise by their order.
   /// now     the world's directory

@@ -106,6 +106,7 @@ void DeformableSolver::updateSoftBodies() {
 }
 
 void DeformableSolver::predictMotion(btScalar dt) {
+  if (!(dt > 0)) return;  // as of a world that is stepped by a negative time: there is no step
   Impl& impl = *impl_;
   impl.clock.restart();
   if (impl.solving != ownSolveActive()) {
@@ -161,6 +162,7 @@ void DeformableSolver::setLagrangeMultiplier() {
 }
 
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
+  if (!(dt > 0)) return;
   Impl& impl = *impl_;
   impl.clock.restart();
   if (impl.solving) {
@@ -177,6 +179,7 @@ void DeformableSolver::solveDeformableConstraints(btScalar dt) {
 }
 
 void DeformableSolver::applyTransforms(btScalar dt) {
+  if (!(dt > 0)) return;
   Impl& impl = *impl_;
   impl.hidden.show(m_softBodies);
   // A body that has fallen asleep since the step began was not solved for: its velocities must not be used.

@@ -302,6 +302,7 @@ void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
 // ---- assemble
 
 void DeformableSolver::Impl::assemble() {
+  if (stage == Stage::Between) stage = Stage::Predict;  // a callback has made a whole step within this one
   enter(Stage::Assemble);
   assert(solver.m_dv.size() >= bodies.awakeCount() && solver.m_backupVelocity.size() >= bodies.awakeCount());
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
@@ -376,7 +377,8 @@ void DeformableSolver::Impl::solve() {
 
 void DeformableSolver::Impl::solveSystem(SolvedSystem& system, ParallelFor* inner) {
   assert(stage == Stage::Solve && !system.bodies.empty());
-  bool alone = system.forces.empty() && system.rows.empty();
+  // Several bodies without a force are those of one that has left within the step.
+  bool alone = system.bodies.size() == 1 && system.forces.empty() && system.rows.empty();
   for (const std::size_t b : system.bodies) {
     const SolvedBody& body = bodies.bodies()[b];
     alone &= body.acted.fixed.empty() && !body.acted.changed;

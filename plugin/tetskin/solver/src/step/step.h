@@ -38,8 +38,8 @@ using namespace bullet_detail;
 struct DeformableSolver::Impl {
   explicit Impl(DeformableSolver& ofSolver) : solver(ofSolver) {}
 
-  /// The stage that has begun last: each of the calls below asserts that the one before it has been made. A step that
-  /// something has ended early stays where it was until `endStep`, or the next `gather`.
+  /// The stage that has begun last. Each of the calls below, except `gather` and `finishContacts`, asserts that it was
+  /// the one before. A step that something has ended early stays where it was until `endStep`, or the next `gather`.
   enum class Stage { Between, Gather, Predict, Assemble, Solve, WriteBack };
 
   // The stages of a step that is solved here; implemented in step.cpp.

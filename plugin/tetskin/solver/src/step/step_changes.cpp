@@ -72,7 +72,6 @@ void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>
 
 void DeformableSolver::Impl::numberAnew() {
   bodies.number(*solver.m_objective);
-  assert(solver.m_objective->m_nodes.size() == bodies.nodeCount());
   solver.m_numNodes = bodies.nodeCount();
   for (VectorStack* v : {&solver.m_dv, &solver.m_ddv, &solver.m_residual, &solver.m_backupVelocity}) {
     v->resize(bodies.nodeCount(), btVector3(0, 0, 0));

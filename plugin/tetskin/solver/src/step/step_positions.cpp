@@ -58,7 +58,6 @@ void DeformableSolver::Impl::refinePositions(btScalar dt) {
   assert(stage == Stage::WriteBack && dt > 0);
   for (const SolvedBody& solved : bodies.bodies()) {
     if (!solved.elastic || !hasItsNodes(solved)) continue;
-    assert(std::is_sorted(solved.positions.foreign.begin(), solved.positions.foreign.end()));
     auto foreign = solved.positions.foreign.begin();
     for (int n = 0; n < solved.body->m_nodes.size(); ++n) {
       if (foreign != solved.positions.foreign.end() && *foreign == n) {

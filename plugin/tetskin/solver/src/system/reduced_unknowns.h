@@ -38,7 +38,7 @@ class ReducedUnknowns {
   /// The velocity that they give a row, and that a change of them gives it.
   btVector3 velocity(std::size_t row) const { return velocityBy(row, unknowns_); }
   btVector3 velocityBy(std::size_t row, const Vector& change) const;
-  /// The square of a component's velocities, with respect to the masses, since the pass began.
+  /// The square of a component's velocities, with respect to the masses, when the pass began.
   double squaredByMasses(const ComponentUnknown& component) const;
   Slope slopeOfRigids() const;
   void addSlopeOfComponents(Slope& to) const;

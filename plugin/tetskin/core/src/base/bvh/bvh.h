@@ -159,18 +159,18 @@ void Bvh::visitAlong(const std::vector<Box>& boxes, const Eigen::Vector3d& start
 /// Calls visit(leafA, leafB) for those pairs of leaves of two trees for which meet(nodeA, nodeB), called with numbers
 /// of nodes, is true, as it must be for all their ancestors, too.
 template <class Meet, class Visit>
-void serializePairs(const Bvh& a, const Bvh& b, const Meet& meet, Visit&& visit, int nodeA = 0, int nodeB = 0) {
+void visitPairs(const Bvh& a, const Bvh& b, const Meet& meet, Visit&& visit, int nodeA = 0, int nodeB = 0) {
   if (a.empty() || b.empty() || !meet(nodeA, nodeB)) return;
   const Bvh::Node& first = a.nodes()[static_cast<std::size_t>(nodeA)];
   const Bvh::Node& second = b.nodes()[static_cast<std::size_t>(nodeB)];
   if (first.isLeaf() && second.isLeaf()) return visit(first, second);
   // Splits the one with more items.
   if (second.isLeaf() || (!first.isLeaf() && first.last - first.first > second.last - second.first)) {
-    serializePairs(a, b, meet, visit, nodeA + 1, nodeB);
-    serializePairs(a, b, meet, visit, first.right, nodeB);
+    visitPairs(a, b, meet, visit, nodeA + 1, nodeB);
+    visitPairs(a, b, meet, visit, first.right, nodeB);
   } else {
-    serializePairs(a, b, meet, visit, nodeA, nodeB + 1);
-    serializePairs(a, b, meet, visit, nodeA, second.right);
+    visitPairs(a, b, meet, visit, nodeA, nodeB + 1);
+    visitPairs(a, b, meet, visit, nodeA, second.right);
   }
 }
 
