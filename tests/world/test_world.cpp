@@ -121,7 +121,7 @@ TEST(World, BodiesOfOneCageAndMeshShareTheirBinding) {
   hard.binding.hardEdgeDegrees = 10;
   EXPECT_NE(crowd.world.addBody(crowd.cage, crowd.mesh, hard, at(5, 8)).value()->binding, crowd.first->binding);
   WorldBodyOptions sorted;
-  sorted.binding.order = VertexOrder::ByTet;
+  sorted.binding.order = VertexOrder::Sorted;
   EXPECT_NE(crowd.world.addBody(crowd.cage, crowd.mesh, sorted, at(5, 11)).value()->binding, crowd.first->binding);
 }
 
