@@ -177,9 +177,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
 /// Calls visit(slot, first scalar in wide vectors) for all slots.
 template <class Visit>
 void bySlots(std::size_t slots, Visit&& visit) {
-  constexpr std::size_t kGroup = kernels::kGroup;
-  for (std::size_t chunk = 0; chunk < slots / kGroup; ++chunk) {
-    for (std::size_t lane = 0; lane < kGroup; ++lane) visit(kGroup * chunk + lane, kernels::kWideVector * chunk + lane);
+  constexpr std::size_t lanes = kernels::kGroup;
+  for (std::size_t chunk = 0; chunk < slots / lanes; ++chunk) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) visit(lanes * chunk + lane, kernels::kWideVector * chunk + lane);
   }
 }
 
