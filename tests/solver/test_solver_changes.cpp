@@ -123,7 +123,7 @@ TEST(SolverWithOthers, BodiesComeAndGo) {
 
 TEST(SolverWithOthers, ANegativeOrUndefinedStepOfBulletsWorldMovesNothing) {
   TetskinWorld scene;
-  const auto body = added(scene, makeBox({2, 2, 2}, {0.5, 0.5, 0.5}).mesh);
+  const auto body = added(scene, smallCageAbove(50));
   for (int k = 0; k < 10; ++k) scene.deformable().stepSimulation(btScalar(0.01), 0);
   const std::vector<btVector3> before = nodesOf(body->body());
   for (const btScalar dt : {btScalar(-0.01), std::numeric_limits<btScalar>::quiet_NaN()}) {
@@ -143,7 +143,7 @@ void stepOnce(btDynamicsWorld* world, btScalar) {
 
 TEST(SolverWithOthers, ACallbackMayMakeAStepWithinAStep) {
   TetskinWorld scene;
-  const auto body = added(scene, makeBox({2, 2, 2}, {0.5, 0.5, 0.5}).mesh);
+  const auto body = added(scene, smallCageAbove(50));
   scene.deformable().setInternalTickCallback(stepOnce, nullptr, true);
   for (int k = 0; k < 100; ++k) scene.deformable().stepSimulation(btScalar(0.01), 0);
   EXPECT_GT(lowest(body->body()), -0.1);
