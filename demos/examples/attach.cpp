@@ -88,7 +88,8 @@ int main(int argc, char** argv) try {
   world.getWorldInfo().m_sparsesdf.Initialize();
   const std::unique_ptr<btSoftBody> body(btSoftBodyHelpers::CreateFromTetGenData(
       world.getWorldInfo(), tets.c_str(), nullptr, nodes.c_str(), false, true, true));
-  body->m_cfg.piterations = 20;
+  body->m_cfg.piterations = 10;
+  body->m_materials[0]->m_kLST = btScalar(0.1);  // soft links
   body->setTotalMass(1);
   body->updateBounds();
   const btScalar left = body->m_bounds[0].x(), right = body->m_bounds[1].x();
