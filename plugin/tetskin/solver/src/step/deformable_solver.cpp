@@ -164,6 +164,8 @@ void DeformableSolver::setLagrangeMultiplier() {
 void DeformableSolver::solveDeformableConstraints(btScalar dt) {
   if (!(dt > 0)) return;
   Impl& impl = *impl_;
+  // A callback has made a whole step within this one, whose prediction is gone: it goes on without forces.
+  if (impl.solving && !impl.inStep()) return;
   impl.clock.restart();
   if (impl.solving) {
     impl.assemble();

@@ -302,7 +302,6 @@ void DeformableSolver::Impl::predictPositions(SolvedBody& body) {
 // ---- assemble
 
 void DeformableSolver::Impl::assemble() {
-  if (stage == Stage::Between) stage = Stage::Predict;  // a callback has made a whole step within this one
   enter(Stage::Assemble);
   assert(solver.m_dv.size() >= bodies.awakeCount() && solver.m_backupVelocity.size() >= bodies.awakeCount());
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {

@@ -54,7 +54,7 @@ void DeformableSolver::Impl::findShaken() {
 
 /// Uses the velocities that Bullet has used, because it bounds them.
 void DeformableSolver::Impl::refinePositions(btScalar dt) {
-  if (!solving) return;
+  if (!solving || !inStep()) return;
   assert(stage == Stage::WriteBack && dt > 0);
   for (const SolvedBody& solved : bodies.bodies()) {
     if (!solved.elastic || !hasItsNodes(solved)) continue;
