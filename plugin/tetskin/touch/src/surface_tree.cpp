@@ -13,7 +13,6 @@
 namespace tetskin {
 namespace {
 
-using touch_detail::dataOf;
 using touch_detail::PointData;
 
 /// By how much the sum of a hit's weights may differ from 1.
