@@ -1,28 +1,39 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""tidy.py CLANG_TIDY BUILD_FOLDER [--files LIST]: runs the checks of .clang-tidy on the library, two files at a time:
-on what was compiled, that is on many files at once where the build joins them by including them; or only on the files
-named in LIST, one per line, with the commands of a build that does not join them. A header is checked as part of a
-source that includes it.
+"""tidy.py CLANG_TIDY JOINED ALONE [--files LIST]: runs the checks of .clang-tidy on the library, two files at a time: on
+what the build folder JOINED compiles, that is on many sources at once where it joins them by including them. Some checks
+look only at the file that is compiled, and so see nothing in joined sources: these run on each source that has anything
+for them, with the commands of ALONE, a build that does not join. With a LIST of files, one per line, only on these, and
+on the sources that are joined with them. A header is checked as part of a source that includes it.
 
-The build folder's compile commands are GCC's: its default C++ is 17, clang's is not, and it has other warnings."""
+The build folders' compile commands are GCC's: its default C++ is 17, clang's is not, and it has other warnings."""
 import concurrent.futures
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LIBRARY = REPOSITORY / "plugin"
-OPTIONS = ["--quiet", "--checks=-bugprone-suspicious-include", "--extra-arg=-std=c++17",
-           "--extra-arg=-Wno-unknown-warning-option", "--extra-arg=-Wno-unused-command-line-argument"]
+OPTIONS = ["--quiet", "--extra-arg=-std=c++17", "--extra-arg=-Wno-unknown-warning-option",
+           "--extra-arg=-Wno-unused-command-line-argument"]
+JOINED_CHECKS = "--checks=-bugprone-suspicious-include"
+# Of all enabled checks, those that clang-tidy 14 does not apply to included files; and what they are about.
+ALONE_CHECKS = "--checks=-*,misc-unused-using-decls,misc-unused-alias-decls,readability-redundant-preprocessor"
+ALONE_SUBJECTS = re.compile(r"\busing\s+(?!namespace\b)[^=;]*;|\bnamespace\s+\w+\s*=|^\s*#\s*(el)?if", re.M)
 
 
 def compiled(build):
-    """The files of the library, or those that include them, that this build compiles."""
+    """By file that this build compiles for the library: the sources that it consists of."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    return sorted({Path(entry["file"]) for entry in entries if "plugin" in Path(entry["file"]).parts})
+    files = sorted({Path(entry["file"]) for entry in entries if "plugin" in Path(entry["file"]).parts})
+    if not files:
+        sys.exit(f"{build}: no compile commands of the library: look for them elsewhere")
+    joined = {file: re.findall(r'^#include "(.*)"', file.read_text(encoding="utf-8"), re.M) for file in files
+              if "Unity" in file.parts}
+    return {file: {Path(name) for name in joined.get(file, [file])} for file in files}
 
 
 def source_with(header, known):
@@ -50,28 +61,33 @@ def to_check(names, known):
 
 
 def main():
-    tidy, build = sys.argv[1], Path(sys.argv[2]).resolve()
-    files = compiled(build)
-    if not files:
-        sys.exit(f"{build}: no compile commands of the library: look for them elsewhere")
-    if len(sys.argv) == 5 and sys.argv[3] == "--files":
-        files = to_check(Path(sys.argv[4]).read_text(encoding="utf-8").splitlines(), set(files))
-        if not files:
-            sys.exit(f"{sys.argv[4]} names no file of the library that is compiled here")
-    elif len(sys.argv) != 3:
+    tidy, joined, alone = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()
+    units = compiled(joined)
+    sources = set().union(*units.values())
+    unknown = sorted(str(source) for source in sources - set(compiled(alone)))
+    if unknown:
+        sys.exit(f"{alone} does not compile {', '.join(unknown)}")
+    if len(sys.argv) == 6 and sys.argv[4] == "--files":
+        sources = set(to_check(Path(sys.argv[5]).read_text(encoding="utf-8").splitlines(), sources))
+        if not sources:
+            sys.exit(f"{sys.argv[5]} names no file of the library that is compiled here")
+    elif len(sys.argv) != 4:
         sys.exit(__doc__)
-
-    def check(file):
-        return subprocess.run([tidy, "-p", str(build), *OPTIONS, str(file)], capture_output=True, text=True, check=False)
-
+    texts = {file: file.read_text(encoding="utf-8") for file in sources}
     # The largest first: otherwise one processor waits at the end.
-    files.sort(key=lambda file: -file.read_text(encoding="utf-8").count("#include"))
+    runs = [(file, joined, JOINED_CHECKS) for file in sorted(units, key=lambda file: -len(units[file])) if units[file] & sources]
+    runs += [(file, alone, ALONE_CHECKS) for file in sorted(sources) if ALONE_SUBJECTS.search(texts[file])]
+
+    def check(run):
+        file, build, checks = run
+        return subprocess.run([tidy, "-p", str(build), *OPTIONS, checks, str(file)], capture_output=True, text=True, check=False)
+
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        done = list(zip(files, pool.map(check, files)))
-    faults = [(file, run) for file, run in done if run.returncode != 0]
+        done = list(zip(runs, pool.map(check, runs)))
+    faults = [(file, run) for (file, _, _), run in done if run.returncode != 0]
     for file, run in faults:
         print(f"{file}:\n{run.stdout}{run.stderr}")
-    print(f"{len(files) - len(faults)} of {len(files)} files have no warnings")
+    print(f"{len(done) - len(faults)} of {len(done)} files, joined ones of {len(sources)} sources and single ones, have no warnings")
     sys.exit(1 if faults else 0)
 
 

@@ -3,6 +3,7 @@
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Tests of tests/run --change and of selection.py, in a small project of this one's layout: two libraries of which one
 uses the other, and their tests, with CMake's own graph of them."""
+import json
 import os
 import shutil
 import subprocess
@@ -458,6 +459,34 @@ class Script(InASmallProject):
         self.assertEqual(done.returncode, 8, done.stdout + done.stderr)
         self.assertNotIn("Noted", done.stdout)
         self.assertIn(self.first, (self.root / "tests/last_full_run").read_text(encoding="utf-8"))
+
+
+@unittest.skipUnless(shutil.which("clang-tidy-14"), "no clang-tidy-14")
+class Tidy(unittest.TestCase):
+    """style.tidy and style.tidy_changes, in a library of three sources, of which two are joined."""
+
+    def test_both_find_what_shows_only_in_a_source_alone_and_what_shows_in_joined_ones(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder).resolve()
+            using = "namespace n { class C; }\nusing n::C;\n"
+            files = {"plugin/tetskin/core/a.cpp": using + "C* c;\n", "plugin/tetskin/core/c.cpp": "int* d = 0;\n",
+                     "plugin/tetskin/core/b.cpp": using,
+                     "joined/plugin/Unity/unity_0_cxx.cxx": "".join(f'#include "{root}/plugin/tetskin/core/{name}.cpp"\n' for name in "ab"),
+                     "changed_b": "plugin/tetskin/core/b.cpp\n", "changed_c": "plugin/tetskin/core/c.cpp\n"}
+            for name in ("tests/style/tidy.py", ".clang-tidy"):
+                files[name] = (REPOSITORY / name).read_text(encoding="utf-8")
+            sources = [root / f"plugin/tetskin/core/{name}.cpp" for name in "abc"]
+            for build, compiled in (("alone", sources), ("joined", [root / "joined/plugin/Unity/unity_0_cxx.cxx", sources[2]])):
+                files[f"{build}/compile_commands.json"] = json.dumps(
+                    [{"directory": folder, "file": str(file), "command": f"c++ -c {file}"} for file in compiled])
+            for name, text in files.items():
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text(text, encoding="utf-8")
+            check = [sys.executable, "-B", "tests/style/tidy.py", "clang-tidy-14", "joined", "alone"]
+            for more, found in (([], [True, True]), (["--files", "changed_b"], [True, False]), (["--files", "changed_c"], [False, True])):
+                said = run([*check, *more], root).stdout
+                self.assertEqual([name in said for name in ("misc-unused-using-decls", "modernize-use-nullptr")], found, said)
+                self.assertNotIn("a.cpp:", said)
 
 
 if __name__ == "__main__":
