@@ -15,10 +15,10 @@ which target uses which, is then what CMake says. In BUILD/changes:
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
-  python       only if the Python package, its demos or its tests have changed ("package"), or else the library that it is
-               built from, or a page with its programs ("library")
-  web          only if the module for JavaScript, the live page or their tests have changed ("page"), or else the library
-               that they are built from ("library")
+  read         only if nothing but pages has changed, which are read and not compiled
+  python       only if the Python package, its demos or tests, or pages that they read have changed ("package"), or else
+               the library that it is built from, or a page that its own tests read ("library")
+  web          which tests of JavaScript are run, if any: "module", "page", and "scene", one scene of the page
 """
 import datetime
 import json
@@ -46,12 +46,15 @@ MACHINERY = re.compile(r"^([.]ci|tests/tiers)/|^demos/(setup[.]sh|run)$|[.]cmake
 PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own; with what it shares
 # with the module for JavaScript.
-PYTHON = re.compile(r"^((plugin|demos/examples|tests)/python|demos/lab/peers|plugin/facade)/|^tests/platforms/common[.]sh$")
-# What else is in the package, its build or its tests: the library, what draws its pages, the programs of pages.
-IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/.*[.]md|(plugin/)?CMakeLists[.]txt|"
+PYTHON = re.compile(r"^((plugin|demos/examples|tests)/python|demos/lab/peers|plugin/facade)/|^tests/platforms/common[.]sh$|"
+                    r"^plugin/docs/(python|pybullet|many_runs)[.]md$")
+# What else is in the package, its build or its tests: the library, what draws its pages, a page with its figures.
+IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/peers[.]md|(plugin/)?CMakeLists[.]txt|"
                        r"plugin/cmake/.*|demos/setup[.]sh|tests/(configurations[.]cmake|run))$")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
 WEB = re.compile(r"^(plugin/js|plugin/facade|demos/examples/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")
+OF_MODULE_ALONE = re.compile(r"^(tests/js/|plugin/js/README[.]md$|plugin/docs/javascript[.]md$)")
+OF_PAGE_ALONE = re.compile(r"^(demos/examples/live/|tests/live/.*[.](py|js)$)")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
 
 
@@ -198,10 +201,12 @@ def is_library_source(file):
 
 
 def web_tests(files):
-    """Which tests of JavaScript and the live page a change of these files needs: "page", all; "library", a few."""
-    if any(WEB.search(file) for file in files):
-        return "page"
-    return "library" if any(file.startswith("plugin/tetskin/") and not READ.search(file) for file in files) else ""
+    """Which tests of JavaScript and the live page a change of these files needs."""
+    own = [file for file in files if WEB.search(file) or OF_MODULE_ALONE.search(file)]
+    library = any(file.startswith("plugin/tetskin/") and not READ.search(file) for file in files)
+    page = any(not OF_MODULE_ALONE.search(file) for file in own)
+    module = library or any(not OF_PAGE_ALONE.search(file) for file in own)
+    return " ".join(["module"] * module + ["page"] * page + ["scene"] * (library and not page))
 
 
 def python_tests(files):
@@ -211,11 +216,11 @@ def python_tests(files):
     return "library" if any(IN_PYTHON.search(file) for file in files) else ""
 
 
-def write(build, everything, folders, sources, page=False, python="", web=""):
+def write(build, everything, folders, sources, page=False, python="", web="", read=False):
     out = build / "changes"
     out.mkdir(parents=True, exist_ok=True)
     for name, text in (("everything", everything), ("page", PAGE if page else ""),
-                       ("python", python), ("web", web)):
+                       ("python", python), ("web", web), ("read", "only pages" if read else "")):
         (out / name).unlink(missing_ok=True)
         if text:
             (out / name).write_text(text + "\n", encoding="utf-8")
@@ -238,7 +243,8 @@ def select(build):
     everyone = graph.with_users(own)
     folders = graph.test_folders(everyone)
     sources = [file for file in files if is_library_source(file)]
-    write(build, "", folders, sources, PAGE in files, python_tests(files), web_tests(files))
+    read = bool(files) and all(file.endswith(".md") for file in files)
+    write(build, "", folders, sources, PAGE in files, python_tests(files), web_tests(files), read)
     print(f"Since {commit[:12]}, at which everything passed, {len(files)} files have changed.")
     if not changed:
         print("None of them is compiled.")

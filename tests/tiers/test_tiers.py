@@ -5,12 +5,15 @@
 uses the other, and their tests, with CMake's own graph of them."""
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+import selection
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SCRIPTS = ("tests/run", "tests/tiers/selection.py", "demos/setup.sh")
@@ -197,13 +200,13 @@ class Selection(InASmallProject):
         python = self.root / "build/changes/python"
         for name in ("plugin/python/src/skins.cpp", "plugin/facade/shapes.cpp", "plugin/python/cmake/bullet.cmake", "plugin/python/CMakeLists.txt",
                      "plugin/facade/shapes.cpp", "demos/examples/python/drop.py", "demos/examples/python/drop.ipynb", "tests/python/run",
-                     "tests/python/test_drop.py"):
+                     "tests/python/test_drop.py", "plugin/docs/python.md"):
             with self.subTest(name):
                 self.setUp()
                 self.write(name)
                 self.assertEqual(self.result(), ("", [], ""))
                 self.assertEqual(python.read_text(encoding="utf-8"), "package\n")
-        for name in ("plugin/tetskin/io/io.cpp", "plugin/tetskin/io/CMakeLists.txt", "plugin/docs/python.md",
+        for name in ("plugin/tetskin/io/io.cpp", "plugin/tetskin/io/CMakeLists.txt", "plugin/docs/peers.md",
                      "demos/view/page.html"):
             with self.subTest(name):
                 self.setUp()
@@ -216,27 +219,53 @@ class Selection(InASmallProject):
         self.result()
         self.assertFalse(python.exists())
 
-    def test_the_page_selects_its_own_tests_and_nothing_that_is_compiled(self):
+    def test_module_and_live_page_select_their_own_tests_and_nothing_that_is_compiled(self):
+        wanted = {"module page": ("plugin/js/src/bodies.cpp", "plugin/facade/shapes.cpp", "plugin/js/CMakeLists.txt", "tests/live/run"),
+                  "page": ("demos/examples/live/page.js", "demos/examples/live/serpent.cpp", "tests/live/test_page.py"),
+                  "module": ("tests/js/run", "tests/js/test.mjs", "plugin/js/README.md", "plugin/docs/javascript.md")}
         web = self.root / "build/changes/web"
-        for name in ("plugin/js/src/bodies.cpp", "plugin/facade/shapes.cpp", "plugin/js/CMakeLists.txt",
-                     "demos/examples/live/page.js", "demos/examples/live/serpent.cpp", "tests/js/run", "tests/js/test.mjs", "tests/live/run",
-                     "tests/live/test_page.py"):
-            with self.subTest(name):
-                self.setUp()
-                self.write(name)
-                self.assertEqual(self.result(), ("", [], ""))
-                self.assertEqual(web.read_text(encoding="utf-8"), "page\n")
-        self.write("plugin/tetskin/io/io.cpp")
-        self.result()
-        self.assertEqual(web.read_text(encoding="utf-8"), "page\n", "the page, and the library too")
+        for tests, names in wanted.items():
+            for name in names:
+                with self.subTest(name):
+                    self.setUp()
+                    self.write(name)
+                    self.assertEqual(self.result(), ("", [], ""))
+                    self.assertEqual(web.read_text(encoding="utf-8"), f"{tests}\n")
         self.setUp()
         self.write("plugin/tetskin/io/io.cpp")
         self.result()
-        self.assertEqual(web.read_text(encoding="utf-8"), "library\n")
+        self.assertEqual(web.read_text(encoding="utf-8"), "module scene\n")
+        self.write("demos/examples/live/page.js")
+        self.result()
+        self.assertEqual(web.read_text(encoding="utf-8"), "module page\n", "the page, and the library too")
         self.setUp()
         self.write("demos/examples/drop.cpp", "int main() { return 0; }\n")
         self.result()
         self.assertFalse(web.exists())
+
+    def test_pages_that_tests_of_a_binding_read_select_these(self):
+        for folder, suffix, chosen, wanted in (("python", "py", selection.python_tests, ("package", "library")),
+                                               ("python/beside", "py", selection.python_tests, ("package",)),
+                                               ("js", "mjs", selection.web_tests, ("module",))):
+            texts = [path.read_text(encoding="utf-8") for path in (REPOSITORY / "tests" / folder).glob(f"*.{suffix}")]
+            pages = {f"plugin/docs/{name}.md" for text in texts for name in re.findall(r'docs/(\w+)[.]md"', text)}
+            self.assertGreater(len(pages), 0)
+            for page in pages:
+                self.assertIn(chosen([page]), wanted, page)
+
+    def test_pages_alone_select_what_reads_them(self):
+        read = self.root / "build/changes/read"
+        self.write("plugin/README.md")
+        self.result()
+        self.assertTrue(read.exists())
+        for other in ("demos/view/page.html", "tests/io/test.cpp"):
+            with self.subTest(other):
+                self.write(other)
+                self.result()
+                self.assertFalse(read.exists())
+        self.setUp()
+        self.result()
+        self.assertFalse(read.exists(), "nothing has changed")
 
     ALL = "contact;core;io;threads"
 
@@ -379,7 +408,7 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
+        self.assertIn("--label-exclude ^(full)$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
                       "live[.]driver)$", self.ctest_call(calls))
         self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
         self.assertIn("consumer.readme: the first page has not changed", done.stdout)
@@ -396,6 +425,7 @@ class Script(InASmallProject):
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
                       "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^(full|unit|demo)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):
@@ -409,13 +439,18 @@ class Script(InASmallProject):
         done, calls = self.run_script("--change")
         self.assertNotIn("live[.]one_scene", self.ctest_call(calls))
         self.assertNotIn("js[.]module", self.ctest_call(calls))
-        self.assertIn("live.page: of the page, only the library below it has changed", done.stdout)
+        self.assertIn("live.page: the page has not changed", done.stdout)
         self.write("demos/examples/live/page.js")
         done, calls = self.run_script("--change")
         self.assertIn("|live[.]one_scene)$", self.ctest_call(calls))
         for name in ("live[.]page", "live[.]driver", "js[.]module"):
             self.assertNotIn(name, self.ctest_call(calls))
         self.assertNotIn("live.page: ", done.stdout)
+        self.setUp()
+        self.write("demos/examples/live/page.js")
+        done, calls = self.run_script("--change")
+        self.assertIn("|js[.]module|live[.]one_scene)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^(full)$", self.ctest_call(calls))
 
     def test_change_is_all_where_everything_counts_as_changed(self):
         self.note("0" * 40)
