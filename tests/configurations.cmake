@@ -133,7 +133,10 @@ endforeach()
 set_property(TEST live.one_scene APPEND PROPERTY LABELS change)
 set_tests_properties(js.module live.one_scene live.page PROPERTIES
   ENVIRONMENT TETSKIN_LIVE_NATIVE=$<$<TARGET_EXISTS:tetskin_live_native>:$<TARGET_FILE:tetskin_live_native>>)
-set_tests_properties(live.driver PROPERTIES TIMEOUT 300 PROCESSORS 1)
+# Of these, the page's need one processor for most of their time; begun first, others run beside them.
+set_tests_properties(live.driver live.one_scene live.page PROPERTIES PROCESSORS 1)
+set_tests_properties(live.page PROPERTIES COST 1000)
+set_tests_properties(live.driver PROPERTIES TIMEOUT 300)
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.
 set(labels_full "config;full")

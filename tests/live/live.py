@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Code shared by tests of the live page: the page, for a person or its hook `tetskinLive`; its files; its pictures."""
+import atexit
 import functools
 import http.server
 import json
@@ -79,17 +80,15 @@ class Live:
 
 
 class WithBrowser(unittest.TestCase):
-    """Tests that share a browser, and the page in it: to load it takes longer than most of them. After each test, the
-    console must be without an error."""
+    """Tests that share a browser, and the page in it, with all tests of the process: to load it takes longer than most of
+    them. After each test, the console must be without an error."""
+    browser, pages = None, {}
 
     @classmethod
     def setUpClass(cls):
-        cls.browser = chromium.Chromium()
-        cls.pages = {}
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
+        if WithBrowser.browser is None:
+            WithBrowser.browser = chromium.Chromium()
+            atexit.register(WithBrowser.browser.close)
 
     def live(self, phone=False, scene="twist", **settings):
         """The page, as if it was just loaded, with a scene: paused, at its first frame."""

@@ -15,7 +15,7 @@ which target uses which, is then what CMake says. In BUILD/changes:
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
-  read         only if nothing but pages has changed, which are read and not compiled
+  unaffected   the folders of tests/ whose programs are those that passed: where all that has changed is compiled, or is a page
   python       only if the Python package, its demos or tests, or pages that they read have changed ("package"), or else
                the library that it is built from, or a page that its own tests read ("library")
   web          which tests of JavaScript are run, if any: "module", "page", and "scene", one scene of the page
@@ -216,15 +216,16 @@ def python_tests(files):
     return "library" if any(IN_PYTHON.search(file) for file in files) else ""
 
 
-def write(build, everything, folders, sources, page=False, python="", web="", read=False):
+def write(build, everything, folders, sources, page=False, python="", web="", unaffected=()):
     out = build / "changes"
     out.mkdir(parents=True, exist_ok=True)
     for name, text in (("everything", everything), ("page", PAGE if page else ""),
-                       ("python", python), ("web", web), ("read", "only pages" if read else "")):
+                       ("python", python), ("web", web)):
         (out / name).unlink(missing_ok=True)
         if text:
             (out / name).write_text(text + "\n", encoding="utf-8")
     (out / "tests").write_text(";".join(folders), encoding="utf-8")
+    (out / "unaffected").write_text("|".join(unaffected), encoding="utf-8")
     (out / "sources").write_text("".join(f"{file}\n" for file in sources), encoding="utf-8")
 
 
@@ -243,14 +244,19 @@ def select(build):
     everyone = graph.with_users(own)
     folders = graph.test_folders(everyone)
     sources = [file for file in files if is_library_source(file)]
-    read = bool(files) and all(file.endswith(".md") for file in files)
-    write(build, "", folders, sources, PAGE in files, python_tests(files), web_tests(files), read)
+    known = bool(files) and all(file.endswith(".md") or file in graph.owners or file in sources for file in files)
+    left = set(graph.test_folders(graph.folder)) - set(folders)
+    if not any(graph.folder.get(name, "").startswith(("demos", "tests/demos")) for name in everyone):
+        left.add("demos")
+    unaffected = sorted(left) if known and not why else []
+    write(build, "", folders, sources, PAGE in files, python_tests(files), web_tests(files), unaffected)
     print(f"Since {commit[:12]}, at which everything passed, {len(files)} files have changed.")
     if not changed:
         print("None of them is compiled.")
         return
     print("changed targets:       " + ", ".join(sorted(own)))
     print("what uses them:        " + (", ".join(sorted(everyone - own)) or "nothing"))
+    print("tests left out:        " + (", ".join(unaffected) or "none"))
     print("tests with sanitizers: " + (", ".join(folders) or "none"))
     print(f"files for clang-tidy:  {len(sources)}")
 

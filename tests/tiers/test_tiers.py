@@ -253,19 +253,19 @@ class Selection(InASmallProject):
             for page in pages:
                 self.assertIn(chosen([page]), wanted, page)
 
-    def test_pages_alone_select_what_reads_them(self):
-        read = self.root / "build/changes/read"
-        self.write("plugin/README.md")
-        self.result()
-        self.assertTrue(read.exists())
-        for other in ("demos/view/page.html", "tests/io/test.cpp"):
-            with self.subTest(other):
-                self.write(other)
+    def test_tests_are_left_out_only_where_all_that_has_changed_is_known_not_to_matter_to_them(self):
+        unaffected = self.root / "build/changes/unaffected"
+        for names, wanted in ((["plugin/tetskin/contact/contact.cpp"], "core|demos|io"), (["tests/io/test.cpp"], "contact|core|demos|threads"),
+                              (["plugin/tetskin/core/listed_nowhere.h"], ""), (["demos/examples/drop.cpp"], "contact|core|io|threads"),
+                              (["plugin/README.md"], "contact|core|demos|io|threads"),
+                              (["plugin/tetskin/io/io.cpp", "tests/platforms/hashes.txt"], ""), (["demos/view/page.html"], ""),
+                              (["plugin/tetskin/io/CMakeLists.txt"], ""), (["tests/run"], ""), ([], "")):
+            with self.subTest(names):
+                self.setUp()
+                for name in names:
+                    self.write(name, (REPOSITORY / name).read_text(encoding="utf-8") + "# more" if name == "tests/run" else "//\n")
                 self.result()
-                self.assertFalse(read.exists())
-        self.setUp()
-        self.result()
-        self.assertFalse(read.exists(), "nothing has changed")
+                self.assertEqual(unaffected.read_text(encoding="utf-8"), wanted)
 
     ALL = "contact;core;io;threads"
 
@@ -408,8 +408,9 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^(full)$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
-                      "live[.]driver)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
+                      "live[.]driver|(core|demos|io)[.].*)$", self.ctest_call(calls))
+        self.assertIn("tests of core, demos, io: nothing that they use has changed", done.stdout)
         self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
         self.assertIn("consumer.readme: the first page has not changed", done.stdout)
 
@@ -417,15 +418,15 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/io/io.cpp")
         done, calls = self.run_script("--change")
         self.assertIn("--exclude-regex ^(configuration[.]thread_sanitized|consumer[.]readme_changes|python[.]beside_others|"
-                      "live[.]page|live[.]driver)$",
+                      "live[.]page|live[.]driver|(contact|core|demos|threads)[.].*)$",
                       self.ctest_call(calls))
         self.assertIn("configuration.thread_sanitized: nothing that is tested on several threads", done.stdout)
         self.setUp()
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
-                      "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|live[.]page|live[.]driver|live[.]one_scene)$", self.ctest_call(calls))
-        self.assertIn("--label-exclude ^(full|unit|demo)$", self.ctest_call(calls))
+                      "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|live[.]page|live[.]driver|live[.]one_scene|"
+                      "(contact|core|demos|io|threads)[.].*)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):
@@ -450,7 +451,7 @@ class Script(InASmallProject):
         self.write("demos/examples/live/page.js")
         done, calls = self.run_script("--change")
         self.assertIn("|js[.]module|live[.]one_scene)$", self.ctest_call(calls))
-        self.assertIn("--label-exclude ^(full)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^full$", self.ctest_call(calls))
 
     def test_change_is_all_where_everything_counts_as_changed(self):
         self.note("0" * 40)
