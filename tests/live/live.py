@@ -80,8 +80,8 @@ class Live:
 
 
 class WithBrowser(unittest.TestCase):
-    """Tests that share a browser, and the page in it, with all tests of the process: to load it takes longer than most of
-    them. After each test, the console must be without an error."""
+    """Tests that share a browser, and the page in it, with all tests of the process: to load it takes longer than most
+    of them. After each test, the console must be without an error."""
     browser, pages = None, {}
 
     @classmethod

@@ -30,7 +30,8 @@ def options_of(entry, compiler):
     for place, word in enumerate(words):
         if word == "-isystem":
             kept += words[place:place + 2]
-    return [compiler or next(word for word in words if not word.endswith("ccache")), "-std=c++17"] + kept + (CLANGS if compiler else ["-w"])
+    program = compiler or next(word for word in words if not word.endswith("ccache"))
+    return [program, "-std=c++17"] + kept + (CLANGS if compiler else ["-w"])
 
 
 def kind_of(options):

@@ -74,20 +74,22 @@ def main():
     elif len(sys.argv) != 4:
         sys.exit(__doc__)
     texts = {file: file.read_text(encoding="utf-8") for file in sources}
-    # The largest first: otherwise one processor waits at the end.
-    runs = [(file, joined, JOINED_CHECKS) for file in sorted(units, key=lambda file: -len(units[file])) if units[file] & sources]
+    # Otherwise one processor waits at the end.
+    largest_first = sorted(units, key=lambda unit: -len(units[unit]))
+    runs = [(unit, joined, JOINED_CHECKS) for unit in largest_first if units[unit] & sources]
     runs += [(file, alone, ALONE_CHECKS) for file in sorted(sources) if ALONE_SUBJECTS.search(texts[file])]
 
     def check(run):
         file, build, checks = run
-        return subprocess.run([tidy, "-p", str(build), *OPTIONS, checks, str(file)], capture_output=True, text=True, check=False)
+        return subprocess.run([tidy, "-p", str(build), *OPTIONS, checks, str(file)], capture_output=True, text=True,
+                              check=False)
 
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         done = list(zip(runs, pool.map(check, runs)))
     faults = [(file, run) for (file, _, _), run in done if run.returncode != 0]
     for file, run in faults:
         print(f"{file}:\n{run.stdout}{run.stderr}")
-    print(f"{len(done) - len(faults)} of {len(done)} files, joined ones of {len(sources)} sources and single ones, have no warnings")
+    print(f"{len(sources)} sources, joined or alone: {len(done) - len(faults)} of {len(done)} files have no warnings")
     sys.exit(1 if faults else 0)
 
 

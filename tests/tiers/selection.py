@@ -15,7 +15,8 @@ which target uses which, is then what CMake says. In BUILD/changes:
   tests        the folders of tests/ whose tests are run with sanitizers, separated by semicolons
   sources      the library's files that have changed, one per line; those that were removed are not among them
   page         only if the first page has changed, whose commands and programs are followed
-  unaffected   the folders of tests/ whose programs are those that passed: where all that has changed is compiled, or is a page
+  unaffected   the folders of tests/ whose programs are those that passed, separated by |; none, if anything has changed
+               that is neither compiled nor a page
   python       only if the Python package, its demos or tests, or pages that they read have changed ("package"), or else
                the library that it is built from, or a page that its own tests read ("library")
   web          which tests of JavaScript are run, if any: "module", "page", and "scene", one scene of the page

@@ -220,7 +220,8 @@ class Selection(InASmallProject):
         self.assertFalse(python.exists())
 
     def test_module_and_live_page_select_their_own_tests_and_nothing_that_is_compiled(self):
-        wanted = {"module page": ("plugin/js/src/bodies.cpp", "plugin/facade/shapes.cpp", "plugin/js/CMakeLists.txt", "tests/live/run"),
+        wanted = {"module page": ("plugin/js/src/bodies.cpp", "plugin/facade/shapes.cpp", "plugin/js/CMakeLists.txt",
+                                  "tests/live/run"),
                   "page": ("demos/examples/live/page.js", "demos/examples/live/serpent.cpp", "tests/live/test_page.py"),
                   "module": ("tests/js/run", "tests/js/test.mjs", "plugin/js/README.md", "plugin/docs/javascript.md")}
         web = self.root / "build/changes/web"
@@ -255,15 +256,19 @@ class Selection(InASmallProject):
 
     def test_tests_are_left_out_only_where_all_that_has_changed_is_known_not_to_matter_to_them(self):
         unaffected = self.root / "build/changes/unaffected"
-        for names, wanted in ((["plugin/tetskin/contact/contact.cpp"], "core|demos|io"), (["tests/io/test.cpp"], "contact|core|demos|threads"),
-                              (["plugin/tetskin/core/listed_nowhere.h"], ""), (["demos/examples/drop.cpp"], "contact|core|io|threads"),
+        for names, wanted in ((["plugin/tetskin/contact/contact.cpp"], "core|demos|io"),
+                              (["tests/io/test.cpp"], "contact|core|demos|threads"),
+                              (["plugin/tetskin/core/listed_nowhere.h"], ""),
+                              (["demos/examples/drop.cpp"], "contact|core|io|threads"),
                               (["plugin/README.md"], "contact|core|demos|io|threads"),
-                              (["plugin/tetskin/io/io.cpp", "tests/platforms/hashes.txt"], ""), (["demos/view/page.html"], ""),
+                              (["plugin/tetskin/io/io.cpp", "tests/platforms/hashes.txt"], ""),
+                              (["demos/view/page.html"], ""),
                               (["plugin/tetskin/io/CMakeLists.txt"], ""), (["tests/run"], ""), ([], "")):
             with self.subTest(names):
                 self.setUp()
                 for name in names:
-                    self.write(name, (REPOSITORY / name).read_text(encoding="utf-8") + "# more" if name == "tests/run" else "//\n")
+                    before = (REPOSITORY / name).read_text(encoding="utf-8") if name == "tests/run" else ""
+                    self.write(name, before + "# more\n" if before else "//\n")
                 self.result()
                 self.assertEqual(unaffected.read_text(encoding="utf-8"), wanted)
 
@@ -425,8 +430,8 @@ class Script(InASmallProject):
         self.write("README.md")
         done, calls = self.run_script("--change")
         self.assertIn("^(configuration[.]sanitized_changes|configuration[.]thread_sanitized|style[.]tidy_changes|"
-                      "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|live[.]page|live[.]driver|live[.]one_scene|"
-                      "(contact|core|demos|io|threads)[.].*)$", self.ctest_call(calls))
+                      "style[.]alone_changes|python[.]beside_others|python[.]package|python[.]wheel|js[.]module|"
+                      "live[.]page|live[.]driver|live[.]one_scene|(contact|core|demos|io|threads)[.].*)$", self.ctest_call(calls))
         self.assertIn("configuration.sanitized_in_double: no library has changed", done.stdout)
 
     def test_change_runs_the_demos_of_the_python_package_if_one_of_its_files_has_changed(self):
@@ -507,21 +512,24 @@ class Tidy(unittest.TestCase):
             using = "namespace n { class C; }\nusing n::C;\n"
             files = {"plugin/tetskin/core/a.cpp": using + "C* c;\n", "plugin/tetskin/core/c.cpp": "int* d = 0;\n",
                      "plugin/tetskin/core/b.cpp": using,
-                     "joined/plugin/Unity/unity_0_cxx.cxx": "".join(f'#include "{root}/plugin/tetskin/core/{name}.cpp"\n' for name in "ab"),
+                     "joined/plugin/Unity/unity_0_cxx.cxx": "".join(f'#include "{root}/plugin/tetskin/core/{name}.cpp"\n'
+                                                                    for name in "ab"),
                      "changed_b": "plugin/tetskin/core/b.cpp\n", "changed_c": "plugin/tetskin/core/c.cpp\n"}
             for name in ("tests/style/tidy.py", ".clang-tidy"):
                 files[name] = (REPOSITORY / name).read_text(encoding="utf-8")
             sources = [root / f"plugin/tetskin/core/{name}.cpp" for name in "abc"]
-            for build, compiled in (("alone", sources), ("joined", [root / "joined/plugin/Unity/unity_0_cxx.cxx", sources[2]])):
+            units = [root / "joined/plugin/Unity/unity_0_cxx.cxx", sources[2]]
+            for build, compiled in (("alone", sources), ("joined", units)):
                 files[f"{build}/compile_commands.json"] = json.dumps(
                     [{"directory": folder, "file": str(file), "command": f"c++ -c {file}"} for file in compiled])
             for name, text in files.items():
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text, encoding="utf-8")
             check = [sys.executable, "-B", "tests/style/tidy.py", "clang-tidy-14", "joined", "alone"]
-            for more, found in (([], [True, True]), (["--files", "changed_b"], [True, False]), (["--files", "changed_c"], [False, True])):
+            for more, found in (([], [True, True]), (["--files", "changed_b"], [True, False]),
+                                (["--files", "changed_c"], [False, True])):
                 said = run([*check, *more], root).stdout
-                self.assertEqual([name in said for name in ("misc-unused-using-decls", "modernize-use-nullptr")], found, said)
+                self.assertEqual(["unused-using" in said, "use-nullptr" in said], found, said)
                 self.assertNotIn("a.cpp:", said)
 
 
