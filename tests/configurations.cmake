@@ -91,7 +91,7 @@ tetskin_test_configuration(without_assimp LABELS full TARGET test_io TESTS ^io O
 
 # The Python package: its wheel, made once from the checkout; installed; beside the packages of its demos, which are run;
 # and, with all tests, as a wheel of a staged source package, by other Pythons, and in a system that has nothing but
-# Python. Only the wheels take both processors.
+# Python.
 set(command_wheel run --wheel ${PROJECT_BINARY_DIR}/python/made)
 set(command_package run)
 set(command_beside_others run --beside)
@@ -113,8 +113,12 @@ if(PYTHON_OF_SYSTEM AND CMAKE_GENERATOR STREQUAL "Ninja")
   add_test(NAME python.same_object COMMAND ${PYTHON_OF_SYSTEM} -B ${CMAKE_CURRENT_SOURCE_DIR}/python/same_object.py)
   set_tests_properties(python.same_object PROPERTIES LABELS "config;python" TIMEOUT 60)
 endif()
-set_tests_properties(python.wheel python.staged_package PROPERTIES PROCESSORS ${nested_parallel}
-  RESOURCE_LOCK "python_build;bullet_sources")
+set_tests_properties(python.wheel python.staged_package PROPERTIES RESOURCE_LOCK "python_build;bullet_sources")
+# ctest starts what takes several processors only when all others have ended. Then one would be idle for the minutes that
+# the tests of the wheel and the live page take: these begin first, beside short ones.
+set_tests_properties(python.staged_package PROPERTIES PROCESSORS ${nested_parallel})
+set_tests_properties(python.wheel PROPERTIES COST 2000)
+set_tests_properties(python.package python.beside_others PROPERTIES COST 900)
 
 # The module for JavaScript in Node, and the live page in headless Chromium: both are built in one folder, by one test at
 # a time, which compiles what has changed since the last one. Without Emscripten, Node or Chromium they are skipped.
@@ -126,16 +130,13 @@ set(command_live.page live/run)
 foreach(test IN ITEMS js.module live.driver live.one_scene live.page)
   list(POP_FRONT command_${test} script)
   add_test(NAME ${test} COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/${script} ${command_${test}})
-  set_tests_properties(${test} PROPERTIES LABELS "config;js" TIMEOUT 3600 PROCESSORS ${nested_parallel}
-    SKIP_RETURN_CODE 77)
+  set_tests_properties(${test} PROPERTIES LABELS "config;js" TIMEOUT 3600 SKIP_RETURN_CODE 77)
   set_property(TEST ${test} PROPERTY RESOURCE_LOCK js_build bullet_sources)
 endforeach()
 set_property(TEST live.one_scene APPEND PROPERTY LABELS change)
 set_tests_properties(js.module live.one_scene live.page PROPERTIES
   ENVIRONMENT TETSKIN_LIVE_NATIVE=$<$<TARGET_EXISTS:tetskin_live_native>:$<TARGET_FILE:tetskin_live_native>>)
-# Of these, the page's need one processor for most of their time; begun first, others run beside them.
-set_tests_properties(live.driver live.one_scene live.page PROPERTIES PROCESSORS 1)
-set_tests_properties(live.page PROPERTIES COST 1000)
+set_tests_properties(live.page live.one_scene PROPERTIES COST 1000)
 set_tests_properties(live.driver PROPERTIES TIMEOUT 300)
 
 # A project that uses the library, through the installed package and as a subdirectory; it runs what it has built.

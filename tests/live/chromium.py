@@ -386,15 +386,18 @@ def pixels(png):
 
 def unfilter(kind, row, before, channels):
     """Undoes one of PNG's five filters, in place."""
-    for i in range(len(row) if kind else 0):
-        left = row[i - channels] if i >= channels else 0
-        above, corner = before[i], before[i - channels] if i >= channels else 0
-        if kind == 1:
-            guess = left
-        elif kind == 2:
-            guess = above
-        elif kind == 3:
-            guess = (left + above) // 2
-        else:
-            guess = min((left, above, corner), key=lambda one: abs(left + above - corner - one))
-        row[i] = (row[i] + guess) & 255
+    for channel in range(channels if kind else 0):
+        left = corner = 0
+        for i in range(channel, len(row), channels):
+            above = before[i]
+            if kind == 1:
+                guess = left
+            elif kind == 2:
+                guess = above
+            elif kind == 3:
+                guess = (left + above) // 2
+            else:
+                to_left, to_above, to_corner = abs(above - corner), abs(left - corner), abs(left + above - 2 * corner)
+                guess = left if to_left <= to_above and to_left <= to_corner else above if to_above <= to_corner else corner
+            left = row[i] = (row[i] + guess) & 255
+            corner = above
