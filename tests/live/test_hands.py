@@ -27,7 +27,7 @@ class Dragging(WithBrowser):
         x, y = self.point_on_body(live, horn["screen"])
         live.page.press(x, y)
         self.addCleanup(lambda: live.page.finger and live.page.release())  # also if the test fails: others have this page
-        live.page.until("live.hands.held !== null", 30)
+        live.page.until("live.hands.held !== null", 60)
         to = (x - 60, y - 90) if phone else (x - 90, y - 120)
         for step in range(1, 7):  # time continues while the hand moves, and then
             live.page.move(*(a + (b - a) * step / 6 for a, b in zip((x, y), to)), steps=2)
@@ -65,7 +65,7 @@ class Dragging(WithBrowser):
         self.assertLess(distance(after["screen"], to), CLOSE * pixels_per_size + distance(before["screen"], start))
         self.assertGreater(distance(after["world"], before["world"]), 0.1 * after["size"], "it was dragged")
         live.page.release()
-        live.page.until("tetskinLive.state().held === null || live.hands.held === null", 10)
+        live.page.until("tetskinLive.state().held === null || live.hands.held === null", 60)
         fallen = live.step(90)
         self.assertIsNone(fallen["held"])
         self.assertLess(live.call("horn")["world"][1], after["world"][1] - 0.05 * after["size"], "and it falls again")
@@ -98,7 +98,7 @@ class Dragging(WithBrowser):
         live = self.live(False, "stack")
         x, y = live.call("onScreen", [0, 0.37, 0.3])
         live.page.press(x, y)
-        live.page.until("live.hands.held !== null", 30)
+        live.page.until("live.hands.held !== null", 60)
         eye = live.page.evaluate("live.stage.camera.position.toArray()")
         live.page.move(x + 80, y - 40)
         live.page.frame()
@@ -109,7 +109,7 @@ class Dragging(WithBrowser):
         live = self.live(True, "stack")
         x, y = live.call("onScreen", [0, 0.37, 0.3])
         live.page.press(x, y)
-        live.page.until("live.hands.held !== null", 30)
+        live.page.until("live.hands.held !== null", 60)
         eye = live.page.evaluate("live.stage.camera.position.length()")
         live.page.touch("touchStart", (x, y), (x + 40, y))
         for step in range(1, 8):
@@ -129,14 +129,14 @@ class Tools(WithBrowser):
                 still = live.step(0)
                 live.page.click_on("#tools button[data-tool=push]")
                 live.page.click(*live.call("onScreen", [0, 1.11, 0.3]))
-                live.page.until(f"tetskinLive.state().hash !== '{still['hash']}'", 20)
+                live.page.until(f"tetskinLive.state().hash !== '{still['hash']}'", 60)
 
     def test_balls_are_thrown_and_the_oldest_come_back(self):
         live = self.live(False, "stack")
         live.page.click_on("#tools button[data-tool=ball]")
         for count in range(1, 15):
             live.page.click(480, 300)
-            live.page.until(f"tetskinLive.state().balls === {min(count, 12)}", 20)
+            live.page.until(f"tetskinLive.state().balls === {min(count, 12)}", 60)
             live.step(2)
         live.page.frame()
         live.picture("balls")
@@ -150,7 +150,7 @@ class Tools(WithBrowser):
         live.call("reset")
         live.page.click_on("#tools button[data-tool=ball]")
         live.page.click(*live.call("onScreen", [0, 1.8, 0.3]))
-        live.page.until("tetskinLive.state().balls === 1", 20)
+        live.page.until("tetskinLive.state().balls === 1", 60)
         self.assertNotEqual(live.step(60)["hash"], alone)
         after = live.page.evaluate(nodes, session=live.worker())
         self.assertGreater(max(abs(a - b) for one, other in zip(before, after) for a, b in zip(one, other)), 0.05)
@@ -159,10 +159,10 @@ class Tools(WithBrowser):
         live = self.live(False, "stack")
         live.page.click_on("#tools button[data-tool=ball]")
         live.page.click(480, 300)
-        live.page.until("tetskinLive.state().balls === 1", 20)
+        live.page.until("tetskinLive.state().balls === 1", 60)
         first = live.step(30)
         live.page.click(450, 280)
-        live.page.until("tetskinLive.state().balls === 2", 20)
+        live.page.until("tetskinLive.state().balls === 2", 60)
         live.step(30)
         back = live.call("rewind", 60)
         self.assertIn(back["balls"], (0, 1))
@@ -195,29 +195,29 @@ class Controls(WithBrowser):
         page.click_on("#play")
         page.until("tetskinLive.state().playing && tetskinLive.state().frame > 3", 60)
         page.click_on("#play")
-        page.until("!tetskinLive.state().playing", 10)
+        page.until("!tetskinLive.state().playing", 60)
         frame = self.one.step(0)["frame"]
         self.browser.listen(0.3)
         self.assertEqual(self.one.state()["frame"], frame)
         page.key(" ")
         page.until(f"tetskinLive.state().frame > {frame}", 60)
         page.key(" ")
-        page.until("!tetskinLive.state().playing", 10)
+        page.until("!tetskinLive.state().playing", 60)
 
     def test_one_step(self):
         page = self.one.page
         for count in (1, 2, 3):
             page.click_on("#step")
-            page.until(f"tetskinLive.state().frame === {count}", 20)
+            page.until(f"tetskinLive.state().frame === {count}", 60)
         page.key("ArrowRight")
-        page.until("tetskinLive.state().frame === 4", 20)
+        page.until("tetskinLive.state().frame === 4", 60)
         self.assertFalse(self.one.state()["playing"])
 
     def test_from_the_start(self):
         first = self.one.state()["hash"]
         self.one.step(25)
         self.one.page.click_on("#restart")
-        self.one.page.until("tetskinLive.state().frame === 0", 20)
+        self.one.page.until("tetskinLive.state().frame === 0", 60)
         self.assertEqual(self.one.state()["hash"], first)
 
     def test_ten_seconds_back(self):
@@ -275,7 +275,7 @@ class Controls(WithBrowser):
         self.one.step(60)
         look("surface")
         self.one.choose("skin", "quadratic")
-        self.one.page.until("tetskinLive.step(0).then(() => live.state.skin === 'quadratic')", 20)
+        self.one.page.until("tetskinLive.step(0).then(() => live.state.skin === 'quadratic')", 60)
         look("quadratic")
         for cage in ("outer", "all", "tets"):
             self.one.choose("cage", cage)
@@ -296,7 +296,7 @@ class Controls(WithBrowser):
         page.frame()
         self.assertGreater(distance(page.evaluate(eye), first), 1)
         page.click_on("#view")
-        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 0.3", 10)  # the turn's last swing may follow
+        page.until(f"Math.hypot(...{eye}.map((x, k) => x - {first}[k])) < 0.3", 60)  # the turn's last swing may follow
 
     def test_figures_tell_milliseconds_of_each_stage_and_the_hash(self):
         state = self.one.step(30)
@@ -335,20 +335,20 @@ class Controls(WithBrowser):
         shown = "live.stage.arrows.filter(arrow => arrow.visible).length"
         self.assertEqual(self.one.page.evaluate(shown), len(arrows) / 6)
         self.one.page.key("a")
-        self.one.page.until(f"tetskinLive.step(0).then(() => {shown} === 0)", 10)
+        self.one.page.until(f"tetskinLive.step(0).then(() => {shown} === 0)", 60)
 
     def test_frames_per_second_are_told(self):
         self.one.call("play", True)
         self.one.page.until("/of 60<td>\\d/.test(document.getElementById('figures').innerHTML) || "
-                            "/of 60<\\/td><td>\\d/.test(document.getElementById('figures').innerHTML)", 30)
+                            "/of 60<\\/td><td>\\d/.test(document.getElementById('figures').innerHTML)", 60)
         self.one.call("play", False)
 
     def test_full_screen_and_back(self):
         page = self.one.page
         page.click_on("#full")
-        page.until("document.fullscreenElement !== null", 10)
+        page.until("document.fullscreenElement !== null", 60)
         page.key("f")
-        page.until("document.fullscreenElement === null", 10)
+        page.until("document.fullscreenElement === null", 60)
 
     def test_every_control_has_a_word_about_it(self):
         silent = self.one.page.evaluate("""[...document.querySelectorAll('button, input, select, #figures, #hash')]

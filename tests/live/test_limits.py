@@ -54,14 +54,14 @@ class LittleMemory(unittest.TestCase):
             self.assertIsNone(live.trouble, live.trouble)
             frame = live.step(10)["frame"]
             live.page.evaluate("live.settings.tets = 5000, live.change('heap')", patience=300)
-            self.assertRegex(live.notice(10), "memory.*fewer tets")
+            self.assertRegex(live.notice(60), "memory.*fewer tets")
             self.assertEqual(live.state()["scene"], "twist")
             self.assertEqual(live.step(10)["frame"], frame + 10)
             data = base64.b64encode(meshes.ply(*meshes.ball(300, 400))).decode()
             live.page.evaluate("document.getElementById('notice').hidden = true, live.settings.tets = 0")
             live.page.evaluate(f"tetskinLive.drop('large.ply', Uint8Array.from(atob('{data}'), c => c.charCodeAt(0)))",
                                patience=300)
-            self.assertRegex(live.notice(10), "large.ply.*memory.*fewer triangles")
+            self.assertRegex(live.notice(60), "large.ply.*memory.*fewer triangles")
             self.assertEqual(live.step(10)["frame"], frame + 20)
             live.picture("little_memory")
             self.assertEqual(live.page.faults, [])

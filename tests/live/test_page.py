@@ -171,7 +171,7 @@ class OtherScenes(WithBrowser):
     def test_the_address_keeps_scene_and_settings(self):
         live = self.live(scene="stack", stiffness=120.04, tets=300, elements="quadratic")
         words = "#stack&stiffness=120&tets=300&elements=quadratic&skin=linear"
-        live.page.until(f"location.hash === '{words}'", 10)
+        live.page.until(f"location.hash === '{words}'", 60)
         other = self.new_page(address=PAGE.as_uri() + words)
         self.assertEqual(other.page.evaluate("live.description.settings"),
                          {**USUAL, "stiffness": 120, "tets": 300, "elements": "quadratic"})
