@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
 """Code shared by tests of the live page: the page, for a person or its hook `tetskinLive`; its files; its pictures."""
-import atexit
 import functools
 import http.server
 import json
@@ -80,15 +79,17 @@ class Live:
 
 
 class WithBrowser(unittest.TestCase):
-    """Tests that share a browser, and the page in it, with all tests of the process: to load it takes longer than most
-    of them. After each test, the console must be without an error."""
-    browser, pages = None, {}
+    """Tests that share a browser, and the page in it: to load it takes longer than most of them. After each test, the
+    console must be without an error."""
 
     @classmethod
     def setUpClass(cls):
-        if WithBrowser.browser is None:
-            WithBrowser.browser = chromium.Chromium()
-            atexit.register(WithBrowser.browser.close)
+        cls.browser = chromium.Chromium()
+        cls.pages = {}
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
 
     def live(self, phone=False, scene="twist", **settings):
         """The page, as if it was just loaded, with a scene: paused, at its first frame."""
