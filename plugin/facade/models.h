@@ -43,10 +43,10 @@ struct Choice {
 /// Throws unless all numbers are finite, and no larger than the library supports.
 const Vec3& finite(const Vec3& vector, const char* name);
 
-/// Options from their names.
-BindingOptions bindingOptions(const Choice<Interpolation>& interpolation, const Choice<Normals>& normals,
-                              const Choice<OutsideRule>& outside, std::optional<double> maxDistance);
-Interpolation interpolationOf(const std::string& name);
+/// The value that a word stands for; throw for another word.
+Interpolation valueOf(const Choice<Interpolation>& interpolation);
+Normals valueOf(const Choice<Normals>& normals);
+OutsideRule valueOf(const Choice<OutsideRule>& outside);
 
 /// The placement of a rest space in the world.
 Eigen::Affine3d placementOf(const Vec3& position, const Quaternion& rotation);

@@ -35,6 +35,10 @@ CALLS = {
         lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2]], normals=CORNERS[:2]),
         error("SIZE_MISMATCH"),
     ),
+    "a hard edge of a negative angle": (
+        lambda t: t.w.add_body(t.c, t.m, normals="recomputed", hard_edge_degrees=-1),
+        error("INVALID_OPTION"),
+    ),
     "masses of other nodes": (lambda t: t.w.add_body(t.c, t.m, node_masses=[1.0]), error("SIZE_MISMATCH")),
     "a position of two numbers": (lambda t: t.w.add_body(t.c, t.m, position=(0, 0)), TypeError),
     # types

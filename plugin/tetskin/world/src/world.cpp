@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 
 namespace tetskin {
 namespace {
@@ -32,8 +33,11 @@ void forget(std::vector<std::shared_ptr<Thing>>& all, const Thing& thing) {
 }
 
 bool same(const BindingOptions& a, const BindingOptions& b) {
-  return a.interpolation == b.interpolation && a.normals == b.normals && a.outside == b.outside &&
-         a.maxDistance == b.maxDistance && a.order == b.order && a.hardEdgeDegrees == b.hardEdgeDegrees;
+  const auto all = [](const BindingOptions& of) {
+    const auto& [interpolation, normals, outside, maxDistance, order, hardEdgeDegrees] = of;
+    return std::tie(interpolation, normals, outside, maxDistance, order, hardEdgeDegrees);
+  };
+  return all(a) == all(b);
 }
 
 btHingeConstraint* hingeOf(const World::Joint& joint) {
