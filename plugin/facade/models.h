@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tetskin::facade {
 
@@ -33,6 +34,15 @@ struct CageModel {
 inline CageModel cageModel(Cage&& cage, std::string report = {}) {
   return {std::make_shared<const ReportedCage>(std::move(cage), std::move(report))};
 }
+
+/// As `validate`, and that normals, tangents and texture coordinates are none, or one for each vertex. Throws.
+void checkMesh(const TriangleMesh& mesh);
+/// For other workers and processes of this version of tetskin, on machines of the same kind.
+std::vector<unsigned char> bytesOf(const MeshModel& mesh);
+std::vector<unsigned char> bytesOf(const CageModel& cage);
+/// Back. Throw: Malformed, if bytes have changed or are of something else; or the error of `validate`.
+MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count);
+CageModel cageOfBytes(const unsigned char* bytes, std::size_t count);
 
 /// One of several words, for a value of this type.
 template <class Of>
