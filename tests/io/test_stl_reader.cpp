@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "loaded_texts.h"
 
-#include <tetskin/io/files.h>
 #include <tetskin/core/src/base/bytes.h>
+#include <tetskin/io/files.h>
 
 namespace tetskin::test {
 namespace {

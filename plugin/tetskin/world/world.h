@@ -79,7 +79,8 @@ class TETSKIN_WORLD_API World {
     std::unique_ptr<DeformableBody> body;     ///< never null
     SoftBodySkin skin;                        ///< updated by `step`; its targets are the arrays below
     std::unique_ptr<SurfaceContact> contact;  ///< null without `surfaceContact`
-    /// vertexCount x 3, world space, after the last step; the memory stays as long as the body.
+    /// vertexCount x 3, world space, after the last step, in the binding's `VertexOrder`; the memory stays as long as
+    /// the body.
     std::vector<float> positions;
     std::vector<float> normals;  ///< likewise, unit length; empty for Normals::None
     bool softContact = false;    ///< it is among the world's SoftContacts
