@@ -236,25 +236,22 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "changes nothing.");
 
   world
-      .def(
-          "add_body", addBody, "cage"_a, "mesh"_a.none() = nb::none(),
-          nb::kw_only() TETSKIN_BODY_OPTIONS(TETSKIN_ARGUMENT),
-          "Adds a soft body, which collides with rigid bodies at its visible surface. Without a mesh it has no "
-          "surface, and collides at its nodes.\n\n"
-          "position, rotation (x, y, z, w): of the rest space in the world. pinned: nodes, a mask of booleans or "
-          "indices. mass: total; None: from "
-          "density, mass per volume. youngs_modulus: pressure units; None: relative_stiffness x density x gravity x "
-          "size, from 30 (wobbles, sags) to "
-          "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
-          "the body's size.\n\n"
-          "interpolation, normals, outside, max_distance, hard_edge_degrees: as in Skin. visible: whether steps update "
-          "the surface. surface_contact: with rigid bodies; contact_margin: the distance kept, None: 0.2 % of the "
-          "body's "
-          "size; sample_spacing: rest units, of points on large triangles. soft_contact: with other bodies that have "
-          "it; "
-          "self_contact: with "
-          "others and itself. Both need a distance grid of the surface, made once, which takes a second for 20,000 "
-          "triangles.")
+      .def("add_body", addBody, "cage"_a, "mesh"_a.none() = nb::none(),
+           nb::kw_only() TETSKIN_BODY_OPTIONS(TETSKIN_ARGUMENT),
+           "Adds a soft body, which collides with rigid bodies at its visible surface. Without a mesh it has no "
+           "surface, and collides at its nodes.\n\n"
+           "position, rotation (x, y, z, w): of the rest space in the world. pinned: nodes, a mask of booleans or "
+           "indices. mass: total; None: from "
+           "density, mass per volume. youngs_modulus: pressure units; None: relative_stiffness x density x gravity x "
+           "size, from 30 (wobbles, sags) to "
+           "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
+           "the body's size.\n\n"
+           "interpolation, normals, outside, max_distance, hard_edge_degrees: as in Skin. visible: whether steps "
+           "update the surface. surface_contact: with rigid bodies; contact_margin: the distance kept, None: 0.2 % "
+           "of the body's size; sample_spacing: rest units, of points on large triangles. soft_contact: with other "
+           "bodies that have it; self_contact: with "
+           "others and itself. Both need a distance grid of the surface, made once, which takes a second for 20,000 "
+           "triangles.")
       .def_prop_ro("bodies", locked([](const std::shared_ptr<World>& w) {
                      std::vector<BodyHandle> all;
                      for (const auto& state : w->bodies()) all.push_back({w, state});
