@@ -182,6 +182,11 @@ TEST(World, ABodyThatIsRefusedLeavesNothing) {
   options.pinned = {3, 1000};
   EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::IndexOutOfRange);
   options.pinned = {};
+  const std::vector<char> saved = crowd.world.save().value();
+  options.binding.hardEdgeDegrees = -1;
+  EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(crowd.world.save().value(), saved);
+  options.binding = {};
   options.contactMargin = -1;
   EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
   const btTransform here = btTransform::getIdentity();

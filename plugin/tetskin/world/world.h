@@ -248,8 +248,9 @@ class TETSKIN_WORLD_API World {
   Status updateSkins();
   Status updateTeleported();
   Shared& sharedOf(const Body& body, const BindingOptions& options);
-  Status bindSurface(Body& body, const WorldBodyOptions& options);
-  Status touchOthers(Body& body, Shared& shared, bool itself);
+  /// What the surface needs of its model, in the body and, for contact with others, as the result.
+  Result<std::shared_ptr<const ContactShape>> prepareSurface(Body& body, const WorldBodyOptions& options);
+  Status bindSurface(Body& body, const WorldBodyOptions& options, std::shared_ptr<const ContactShape> shape);
   /// Removes those for which a condition holds, in order. Allocates nothing, so it works when memory is short.
   template <class Thing, class Condition>
   void removeEach(std::vector<std::shared_ptr<Thing>>& all, Condition&& condition) {
