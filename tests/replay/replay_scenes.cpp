@@ -8,7 +8,6 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
-#include <tetskin/replay/src/exported/state_hash.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
@@ -212,10 +211,6 @@ const std::vector<std::string>& replaySceneNames() {
 void ReplayScene::step(int frame) {
   act(frame);
   world_.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
-}
-
-std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
-  return bullet_detail::stateHash(world);
 }
 
 }  // namespace tetskin::test
