@@ -14,6 +14,7 @@ struct Head {
   char tag[8];
 };
 constexpr std::size_t kHashed = sizeof(Head::hash);
+constexpr char kMesh[] = "tsk-me02", kCage[] = "tsk-ca02";
 
 /// An array of numbers, or of vectors of them.
 template <class T>
@@ -54,18 +55,11 @@ void serialize(StateStream& stream, ReportedCage& cage) {
   stream.array(cage.report);
 }
 
-constexpr const char* tagOf(const TriangleMesh*) {
-  return "tsk-me02";
-}
-constexpr const char* tagOf(const ReportedCage*) {
-  return "tsk-ca02";
-}
-
 template <class Model>
-std::vector<unsigned char> written(const Model& model) {
+std::vector<unsigned char> written(const Model& model, const char* tag) {
   std::vector<unsigned char> bytes = bytesWrittenBy([&](StateStream& stream) {
     Head head;
-    std::memcpy(head.tag, tagOf(&model), sizeof head.tag);
+    std::memcpy(head.tag, tag, sizeof head.tag);
     stream(head.hash);
     stream.plain(head.tag, sizeof head.tag);
     serialize(stream, const_cast<Model&>(model));  // NOLINT: what is saved is not changed
@@ -76,12 +70,12 @@ std::vector<unsigned char> written(const Model& model) {
 }
 
 template <class Model>
-void read(const unsigned char* bytes, std::size_t count, Model& model) {
+void read(const unsigned char* bytes, std::size_t count, Model& model, const char* tag) {
   StateStream stream(bytes, count);
   Head head;
   stream(head.hash);
   stream.plain(head.tag, sizeof head.tag);
-  const bool good = !stream.failed() && std::memcmp(head.tag, tagOf(&model), sizeof head.tag) == 0 &&
+  const bool good = !stream.failed() && std::memcmp(head.tag, tag, sizeof head.tag) == 0 &&
                     head.hash == hashInLanes(bytes + kHashed, count - kHashed);
   if (good) serialize(stream, model);
   if (!good || stream.failed() || stream.count() != count)
@@ -102,22 +96,22 @@ void checkGroups(const TriangleMesh& mesh) {
 }  // namespace
 
 std::vector<unsigned char> bytesOf(const MeshModel& model) {
-  return written(*model.mesh);
+  return written(*model.mesh, kMesh);
 }
 std::vector<unsigned char> bytesOf(const CageModel& model) {
-  return written(*model.cage);
+  return written(*model.cage, kCage);
 }
 
 MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count) {
   auto mesh = std::make_shared<TriangleMesh>();
-  read(bytes, count, *mesh);
+  read(bytes, count, *mesh, kMesh);
   checkMesh(*mesh);
   checkGroups(*mesh);
   return {std::move(mesh)};
 }
 CageModel cageOfBytes(const unsigned char* bytes, std::size_t count) {
   auto cage = std::make_shared<ReportedCage>(Cage(), std::string());
-  read(bytes, count, *cage);
+  read(bytes, count, *cage, kCage);
   check(validate(*cage));
   return {std::move(cage)};
 }
