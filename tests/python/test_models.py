@@ -212,8 +212,8 @@ def test_skins_have_normals(mesh, cage):
 def test_recomputed_normals_stay_split_at_hard_edges(mesh, cage):
     corners = mesh.triangles.ravel()
     facets = ts.TriangleMesh(mesh.positions[corners], np.arange(len(corners)).reshape(-1, 3))
-    world = ts.World()
-    for add in (functools.partial(ts.Skin, cage), functools.partial(world.add_body, cage)):
+    world, tets = ts.World(), ts.Cage(cage.nodes, cage.tets)
+    for add in (functools.partial(ts.Skin, tets), functools.partial(world.add_body, tets)):
         seamless = add(mesh, normals="recomputed").normals[corners]
         split, joined = (add(facets, normals="recomputed", hard_edge_degrees=d).normals for d in (5, 180))
         assert np.abs(split - seamless).max() > 0.05 and np.abs(joined - seamless).max() < 1e-4
