@@ -211,7 +211,10 @@ def test_skins_have_normals(mesh, cage):
 
 def test_recomputed_normals_stay_split_at_hard_edges(mesh, cage):
     corners = mesh.triangles.ravel()
-    facets = ts.TriangleMesh(mesh.positions[corners], np.arange(len(corners)).reshape(-1, 3))
+    a, b, c = mesh.positions[mesh.triangles].swapaxes(0, 1)
+    flat = np.cross(b - a, c - a)
+    flat = np.repeat(flat / np.linalg.norm(flat, axis=1, keepdims=True), 3, axis=0)
+    facets = ts.TriangleMesh(mesh.positions[corners], np.arange(len(corners)).reshape(-1, 3), normals=flat)
     world, tets = ts.World(), ts.Cage(cage.nodes, cage.tets)
     for add in (functools.partial(ts.Skin, tets), functools.partial(world.add_body, tets)):
         seamless = add(mesh, normals="recomputed").normals[corners]

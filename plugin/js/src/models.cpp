@@ -4,9 +4,11 @@
 // Meshes and cages.
 
 #include <emscripten.h>
+#include <facade/models.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/io/files.h>
+#include "guarded.h"
 
 #include <cstdio>
 #include <memory>
