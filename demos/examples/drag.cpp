@@ -70,33 +70,27 @@ Vector3d pointerAt(double t) {
 /// A rigid ring that hangs on a pin at its top.
 class Ring {
  public:
-  Ring(btDiscreteDynamicsWorld& world, const Vector3d& lowest) : world_(world) {
-    btVector3 inertia;
-    shape_.calculateLocalInertia(kMass, inertia);
-    body_ = std::make_unique<btRigidBody>(kMass, nullptr, &shape_, inertia);
-    const btTransform at(btMatrix3x3::getIdentity(), toBullet(lowest + kRing * Vector3d::UnitY()));
-    body_->setWorldTransform(at);
-    body_->setInterpolationWorldTransform(at);
-    body_->setActivationState(DISABLE_DEACTIVATION);
-    pin_ = std::make_unique<btPoint2PointConstraint>(*body_, btVector3(0, static_cast<btScalar>(kRing), 0));
-    world_.addRigidBody(body_.get());
-    world_.addConstraint(pin_.get());
+  Ring(World& world, const Vector3d& lowest)
+      : world_(world.bullet()),
+        body_(world.addRigid(std::make_unique<btCylinderShapeZ>(btVector3(kRadius, kRadius, btScalar(0.02))),
+                             btTransform(btMatrix3x3::getIdentity(), toBullet(lowest + kRing * Vector3d::UnitY())),
+                             0.5)),
+        pin_(body_, btVector3(0, kRadius, 0)) {
+    body_.setFriction(btScalar(0.5));
+    body_.setActivationState(DISABLE_DEACTIVATION);
+    world_.addConstraint(&pin_);
   }
-  ~Ring() {
-    world_.removeConstraint(pin_.get());
-    world_.removeRigidBody(body_.get());
-  }
+  ~Ring() { world_.removeConstraint(&pin_); }
   Ring(const Ring&) = delete;
   Ring& operator=(const Ring&) = delete;
-  btRigidBody& body() { return *body_; }
-  static btVector3 lowest() { return {0, -static_cast<btScalar>(kRing), 0}; }
+  btRigidBody& body() { return body_; }
+  static btVector3 lowest() { return {0, -kRadius, 0}; }
 
  private:
-  static constexpr btScalar kMass = btScalar(0.5);
+  static constexpr auto kRadius = static_cast<btScalar>(kRing);
   btDiscreteDynamicsWorld& world_;
-  btCylinderShapeZ shape_{btVector3(static_cast<btScalar>(kRing), static_cast<btScalar>(kRing), btScalar(0.02))};
-  std::unique_ptr<btRigidBody> body_;
-  std::unique_ptr<btPoint2PointConstraint> pin_;
+  btRigidBody& body_;
+  btPoint2PointConstraint pin_;
 };
 
 /// A height just above the floor.
@@ -185,7 +179,7 @@ Drag::Drag(const DragOptions& options)
   require(crown.status());
   crown_ = crown.value();
   const Vector3d ringAt = tip + pointerAt(kThere);
-  ring_ = std::make_unique<Ring>(world_.bullet(), ringAt);
+  ring_ = std::make_unique<Ring>(world_, ringAt);
   (void)append(model_.mesh, drawn_);
   for (std::size_t k = 0; k < props_.size(); ++k) propFirst_[k] = append(props_[k], drawn_);
   pointerNow_ = tip;

@@ -90,10 +90,4 @@ void requireExtension(const std::string& path, const std::vector<std::string>& e
   throw InputError(path + ": unsupported output format; use " + known);
 }
 
-std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed) {
-  const auto* data = static_cast<const unsigned char*>(bytes);
-  for (std::size_t i = 0; i < count; ++i) seed = (seed ^ data[i]) * 1099511628211ull;
-  return seed;
-}
-
 }  // namespace tetskin::scenes

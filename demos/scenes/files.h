@@ -37,8 +37,7 @@ void appendNumber(std::string& text, Number value) {
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
 
-/// 64 bits of FNV-1a over bytes; `seed` is the hash of the bytes before them.
+/// FNV-1a of nothing.
 constexpr std::uint64_t kNoHash = 14695981039346656037ull;
-std::uint64_t hashOf(const void* bytes, std::size_t count, std::uint64_t seed = kNoHash);
 
 }  // namespace tetskin::scenes

@@ -13,6 +13,7 @@
 #include <btBulletDynamicsCommon.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/core/src/base/hash.h>
 #include <tetskin/reduced/reduced_body.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/solver/deformable_world.h>
@@ -209,7 +210,7 @@ std::uint64_t World::hashOfNodes(std::uint64_t seed) const {
     for (int n = 0; body && n < body->m_nodes.size(); ++n) {
       const btVector3& x = body->m_nodes[n].m_x;
       const float position[3] = {static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z())};
-      seed = hashOf(position, sizeof position, seed);
+      seed = fnv1a(position, sizeof position, seed);
     }
   }
   return seed;

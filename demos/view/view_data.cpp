@@ -3,11 +3,11 @@
 #include "view/view_data.h"
 
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/core/src/base/bytes.h>
 #include <tetskin/core/src/exported/skin_binding.h>
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 #include <set>
 
 namespace tetskin::view {
@@ -15,9 +15,12 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-template <class Word>
-void appendLittleEndian(Word word, std::string& bytes) {
-  for (std::size_t k = 0; k < sizeof word; ++k) bytes += static_cast<char>(word >> (8 * k) & 0xFF);
+template <class Number>
+Json packedAs(const char* type, const std::vector<Number>& numbers) {
+  std::string bytes;
+  bytes.reserve(sizeof(Number) * numbers.size());
+  for (const Number number : numbers) appendLittleEndian(number, bytes);
+  return {{type, base64(bytes)}};
 }
 
 Indices flat(const std::vector<std::array<int, 2>>& edges) {
@@ -108,31 +111,16 @@ std::string base64(std::string_view bytes) {
 }
 
 Json packed(const std::vector<std::uint16_t>& words) {
-  std::string bytes;
-  bytes.reserve(2 * words.size());
-  for (const std::uint16_t word : words) appendLittleEndian(word, bytes);
-  return {{"u16", base64(bytes)}};
+  return packedAs("u16", words);
 }
-
 Json packed(const std::vector<std::uint32_t>& indices) {
   if (std::all_of(indices.begin(), indices.end(), [](std::uint32_t index) { return index <= 0xFFFF; })) {
     return packed(std::vector<std::uint16_t>(indices.begin(), indices.end()));
   }
-  std::string bytes;
-  bytes.reserve(4 * indices.size());
-  for (const std::uint32_t index : indices) appendLittleEndian(index, bytes);
-  return {{"u32", base64(bytes)}};
+  return packedAs("u32", indices);
 }
-
 Json packed(const std::vector<float>& numbers) {
-  std::string bytes;
-  bytes.reserve(4 * numbers.size());
-  for (const float number : numbers) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &number, sizeof bits);
-    appendLittleEndian(bits, bytes);
-  }
-  return {{"f32", base64(bytes)}};
+  return packedAs("f32", numbers);
 }
 
 Json trianglesOf(const TriangleMesh& mesh) {

@@ -14,30 +14,35 @@ const Vec3& finite(const Vec3& vector, const char* name) {
   return vector;
 }
 
-Interpolation interpolationOf(const std::string& name) {
-  if (name == "linear") return Interpolation::Linear;
-  if (name == "quadratic") return Interpolation::Quadratic;
+void checkMesh(const TriangleMesh& mesh) {
+  check(validate(mesh));
+  const auto check = [&](std::size_t length, const char* name) {
+    if (length != 0 && length != mesh.vertexCount())
+      fail(StatusCode::SizeMismatch, std::string(name) + ": " + std::to_string(length) + " for " +
+                                         std::to_string(mesh.vertexCount()) + " vertices");
+  };
+  check(mesh.normals.size(), "normals");
+  check(mesh.tangents.size(), "tangents");
+  check(mesh.texcoords.size(), "texcoords");
+}
+
+Interpolation valueOf(const Choice<Interpolation>& interpolation) {
+  if (interpolation.name == "linear") return Interpolation::Linear;
+  if (interpolation.name == "quadratic") return Interpolation::Quadratic;
   throw std::invalid_argument("interpolation: 'linear' or 'quadratic'");
 }
 
-BindingOptions bindingOptions(const Choice<Interpolation>& interpolation, const Choice<Normals>& normals,
-                              const Choice<OutsideRule>& outside, std::optional<double> maxDistance) {
-  BindingOptions options;
-  options.interpolation = interpolationOf(interpolation.name);
-  if (normals.name == "none") {
-    options.normals = Normals::None;
-  } else if (normals.name == "transformed") {
-    options.normals = Normals::Transformed;
-  } else if (normals.name == "recomputed") {
-    options.normals = Normals::Recomputed;
-  } else {
-    throw std::invalid_argument("normals: 'none', 'transformed' or 'recomputed'");
-  }
-  if (outside.name != "nearest" && outside.name != "barycentric")
-    throw std::invalid_argument("outside: 'nearest' or 'barycentric'");
-  options.outside = outside.name == "nearest" ? OutsideRule::Nearest : OutsideRule::Barycentric;
-  if (maxDistance) options.maxDistance = *maxDistance;
-  return options;
+Normals valueOf(const Choice<Normals>& normals) {
+  if (normals.name == "none") return Normals::None;
+  if (normals.name == "transformed") return Normals::Transformed;
+  if (normals.name == "recomputed") return Normals::Recomputed;
+  throw std::invalid_argument("normals: 'none', 'transformed' or 'recomputed'");
+}
+
+OutsideRule valueOf(const Choice<OutsideRule>& outside) {
+  if (outside.name == "nearest") return OutsideRule::Nearest;
+  if (outside.name == "barycentric") return OutsideRule::Barycentric;
+  throw std::invalid_argument("outside: 'nearest' or 'barycentric'");
 }
 
 Eigen::Affine3d placementOf(const Vec3& position, const Quaternion& rotation) {

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tetskin::facade {
 
@@ -34,6 +35,15 @@ inline CageModel cageModel(Cage&& cage, std::string report = {}) {
   return {std::make_shared<const ReportedCage>(std::move(cage), std::move(report))};
 }
 
+/// As `validate`, and that normals, tangents and texture coordinates are none, or one for each vertex. Throws.
+void checkMesh(const TriangleMesh& mesh);
+/// For other workers and processes of this version of tetskin, on machines of the same kind.
+std::vector<unsigned char> bytesOf(const MeshModel& mesh);
+std::vector<unsigned char> bytesOf(const CageModel& cage);
+/// Back. Throw: Malformed, if bytes have changed or are of something else; or the error of `validate`.
+MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count);
+CageModel cageOfBytes(const unsigned char* bytes, std::size_t count);
+
 /// One of several words, for a value of this type.
 template <class Of>
 struct Choice {
@@ -43,10 +53,10 @@ struct Choice {
 /// Throws unless all numbers are finite, and no larger than the library supports.
 const Vec3& finite(const Vec3& vector, const char* name);
 
-/// Options from their names.
-BindingOptions bindingOptions(const Choice<Interpolation>& interpolation, const Choice<Normals>& normals,
-                              const Choice<OutsideRule>& outside, std::optional<double> maxDistance);
-Interpolation interpolationOf(const std::string& name);
+/// The value that a word stands for; throw for another word.
+Interpolation valueOf(const Choice<Interpolation>& interpolation);
+Normals valueOf(const Choice<Normals>& normals);
+OutsideRule valueOf(const Choice<OutsideRule>& outside);
 
 /// The placement of a rest space in the world.
 Eigen::Affine3d placementOf(const Vec3& position, const Quaternion& rotation);

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "worlds.h"
 
+#include <tuple>
+
 namespace tetskin::facade {
 
 btVector3 toBullet(const Vec3& vector, const char* name) {
@@ -17,32 +19,32 @@ btTransform toBullet(const Vec3& position, const Quaternion& rotation) {
   return btTransform(q.normalized(), toBullet(position, "position"));
 }
 
+namespace {
+
+template <class Word, class Value>
+void set(const Word& word, Value& value) {
+  value = word;
+}
+template <class Of>
+void set(const Choice<Of>& word, Of& value) {
+  value = valueOf(word);
+}
+void set(const std::optional<double>& word, double& value) {
+  if (word) value = *word;
+}
+
+}  // namespace
+
 std::shared_ptr<World::Body> addBody(World& world, const CageModel& cage, const MeshModel& mesh,
                                      const BodyWords& words) {
   WorldBodyOptions options;
-  SoftBodyOptions& material = options.material;
-  material.mass = words.mass;
-  material.density = words.density;
-  material.nodeMasses = words.nodeMasses;
-  material.youngsModulus = words.youngsModulus;
-  material.relativeStiffness = words.relativeStiffness;
-  material.stiffnessScale = words.stiffnessScale;
-  material.poissonRatio = words.poissonRatio;
-  material.stiffnessDamping = words.stiffnessDamping;
-  material.friction = words.friction;
-  material.margin = words.margin;
-  material.solverTolerance = words.solverTolerance;
-  material.maxIterations = words.maxIterations;
-  material.faceTree = false;
-  options.binding = bindingOptions(words.interpolation, words.normals, words.outside, words.maxDistance);
-  options.pinned = words.pinned;
-  options.visible = words.visible;
-  options.surfaceContact = words.surfaceContact;
-  options.softContact = words.softContact;
-  options.selfContact = words.selfContact;
-  options.contactMargin = words.contactMargin;
-  options.sampleSpacing = words.sampleSpacing;
-  return take(world.addBody(cage.cage, mesh.mesh, options, placementOf(words.position, words.rotation)));
+  options.material.faceTree = false;
+  Placement place;
+  const auto parts = std::tie(options, options.material, options.binding, place);
+#define TETSKIN_SET(of, type, name, python, ...) set(words.name, std::get<of&>(parts).name);
+  TETSKIN_BODY_OPTIONS(TETSKIN_SET)
+#undef TETSKIN_SET
+  return take(world.addBody(cage.cage, mesh.mesh, options, placementOf(place.position, place.rotation)));
 }
 
 std::shared_ptr<World::RigidBody> addRigid(World& world, const ShapeModel& shape, double mass, const btTransform& pose,

@@ -23,41 +23,49 @@ struct ShapeModel {
   std::shared_ptr<btCollisionShape> shape;
 };
 
-// All options of a soft body, from which the bindings make their functions: type, name in C++ and JavaScript, name in
-// Python, default (none for an option that is not given). A test compares the types and the comments that are written
-// by hand with this table, and this table with the defaults of the library.
+/// Where the rest space of a soft body is in the world.
+struct Placement {
+  Vec3 position{};
+  Quaternion rotation{};
+};
+
+// All options of a soft body, from which the bindings make their functions: the library's structure, type, name in C++
+// and JavaScript, name in Python, default (none for an option that is not given). The test style.options compares the
+// types and comments that are written by hand with this table, and this table with the members and defaults of the
+// structures.
 // clang-format off
-#define TETSKIN_BODY_OPTIONS(option)                                    \
-  option(Vec3, position, position, 0, 0, 0)                             \
-  option(Quaternion, rotation, rotation, 0, 0, 0, 1)                    \
-  option(std::vector<int>, pinned, pinned)                              \
-  option(std::optional<double>, mass, mass)                             \
-  option(double, density, density, 100)                                 \
-  option(std::vector<double>, nodeMasses, node_masses)                  \
-  option(std::optional<double>, youngsModulus, youngs_modulus)          \
-  option(double, relativeStiffness, relative_stiffness, 50)             \
-  option(std::vector<double>, stiffnessScale, stiffness_scale)          \
-  option(double, poissonRatio, poisson_ratio, 0.3)                      \
-  option(double, stiffnessDamping, stiffness_damping, 0.02)             \
-  option(double, friction, friction, 0.5)                               \
-  option(std::optional<double>, margin, margin)                         \
-  option(double, solverTolerance, solver_tolerance, 0.005)              \
-  option(int, maxIterations, max_iterations, 100)                       \
-  option(Choice<Interpolation>, interpolation, interpolation, "linear") \
-  option(Choice<Normals>, normals, normals, "none")                     \
-  option(Choice<OutsideRule>, outside, outside, "nearest")              \
-  option(std::optional<double>, maxDistance, max_distance)              \
-  option(bool, visible, visible, true)                                  \
-  option(bool, surfaceContact, surface_contact, true)                   \
-  option(bool, softContact, soft_contact, false)                        \
-  option(bool, selfContact, self_contact, false)                        \
-  option(std::optional<double>, contactMargin, contact_margin)          \
-  option(std::optional<double>, sampleSpacing, sample_spacing)
+#define TETSKIN_BODY_OPTIONS(option)                                                    \
+  option(Placement, Vec3, position, position, 0, 0, 0)                                  \
+  option(Placement, Quaternion, rotation, rotation, 0, 0, 0, 1)                         \
+  option(WorldBodyOptions, std::vector<int>, pinned, pinned)                            \
+  option(SoftBodyOptions, std::optional<double>, mass, mass)                            \
+  option(SoftBodyOptions, double, density, density, 100)                                \
+  option(SoftBodyOptions, std::vector<double>, nodeMasses, node_masses)                 \
+  option(SoftBodyOptions, std::optional<double>, youngsModulus, youngs_modulus)         \
+  option(SoftBodyOptions, double, relativeStiffness, relative_stiffness, 50)            \
+  option(SoftBodyOptions, std::vector<double>, stiffnessScale, stiffness_scale)         \
+  option(SoftBodyOptions, double, poissonRatio, poisson_ratio, 0.3)                     \
+  option(SoftBodyOptions, double, stiffnessDamping, stiffness_damping, 0.02)            \
+  option(SoftBodyOptions, double, friction, friction, 0.5)                              \
+  option(SoftBodyOptions, std::optional<double>, margin, margin)                        \
+  option(SoftBodyOptions, double, solverTolerance, solver_tolerance, 0.005)             \
+  option(SoftBodyOptions, int, maxIterations, max_iterations, 100)                      \
+  option(BindingOptions, Choice<Interpolation>, interpolation, interpolation, "linear") \
+  option(BindingOptions, Choice<Normals>, normals, normals, "none")                     \
+  option(BindingOptions, Choice<OutsideRule>, outside, outside, "nearest")              \
+  option(BindingOptions, std::optional<double>, maxDistance, max_distance)              \
+  option(BindingOptions, double, hardEdgeDegrees, hard_edge_degrees, 5)                 \
+  option(WorldBodyOptions, bool, visible, visible, true)                                \
+  option(WorldBodyOptions, bool, surfaceContact, surface_contact, true)                 \
+  option(WorldBodyOptions, bool, softContact, soft_contact, false)                      \
+  option(WorldBodyOptions, bool, selfContact, self_contact, false)                      \
+  option(WorldBodyOptions, std::optional<double>, contactMargin, contact_margin)        \
+  option(WorldBodyOptions, std::optional<double>, sampleSpacing, sample_spacing)
 // clang-format on
 
 /// The options of a soft body, as languages give them.
 struct BodyWords {
-#define TETSKIN_FIELD(type, name, python, ...) type name{__VA_ARGS__};
+#define TETSKIN_FIELD(of, type, name, python, ...) type name{__VA_ARGS__};
   TETSKIN_BODY_OPTIONS(TETSKIN_FIELD)
 #undef TETSKIN_FIELD
 };

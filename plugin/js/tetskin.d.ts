@@ -305,6 +305,8 @@ export interface BodyOptions {
   outside?: "nearest" | "barycentric";
   /** How far outside a vertex may be, rest length; without it, any distance */
   maxDistance?: number;
+  /** Recomputed normals stay split at an edge whose rest normals differ by more; 5 */
+  hardEdgeDegrees?: number;
   /** Whether steps compute the surface, on the CPU; true. With a Palette, false saves their time. */
   visible?: boolean;
   /** Contact with rigid bodies at the visible surface, otherwise at nodes; true */

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "soft_fixtures.h"
+#include "support/rigids.h"
 
 namespace tetskin::test {
 namespace {
@@ -21,25 +22,17 @@ constexpr btScalar kStepOfResets = btScalar(1) / 60;
 /// Balls that fall onto a pinned plate, and one beside, onto the floor: by their surfaces.
 struct LandingBalls {
   tetskin::DeformableWorld world;
-  btStaticPlaneShape plane{btVector3(0, 1, 0), 0};
-  btRigidBody floor{0, nullptr, &plane};
+  Rigid floor{world, std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0, btVector3(0, 0, 0)};
   std::unique_ptr<SoftContacts> contacts = SoftContacts::add(world).value();
   std::vector<std::unique_ptr<DeformableBody>> bodies;
   std::vector<std::unique_ptr<SurfaceContact>> surfaces;
 
   LandingBalls() {
-    world.addRigidBody(&floor);
     static const std::shared_ptr<const ContactShape> coarse = ball().makeShape({600, 24});
     add(plate().cage, plate().mesh, Vector3d(0, 0.5, 0), plate().shape, true);
     add(ball().cage, ball().mesh, Vector3d(0, 0.7, 0), coarse, false);
     add(ball().cage, ball().mesh, Vector3d(0.2, 1.7, 0.1), coarse, false);
     add(ball().cage, ball().mesh, Vector3d(3, 0.2, 0), coarse, false);
-  }
-  ~LandingBalls() {
-    surfaces.clear();
-    contacts.reset();
-    bodies.clear();
-    world.removeRigidBody(&floor);
   }
   void add(TetMesh cage, const TriangleMesh& mesh, const Vector3d& at, const std::shared_ptr<const ContactShape>& shape,
            bool held) {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include "loaded_texts.h"
 
+#include <tetskin/core/src/base/bytes.h>
 #include <tetskin/io/files.h>
-#include <tetskin/io/src/text/binary_numbers.h>
 
 namespace tetskin::test {
 namespace {
@@ -14,9 +14,9 @@ const std::string kFacet =
 /// A binary file of one triangle that claims this many.
 std::string binaryStl(std::uint32_t triangles, const std::string& begin = "") {
   std::string bytes = begin + std::string(80 - begin.size(), '\0');
-  io::appendLittleEndian(triangles, bytes);
+  appendLittleEndian(triangles, bytes);
   for (const float number : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.5f}) {
-    io::appendLittleEndian(number, bytes);
+    appendLittleEndian(number, bytes);
   }
   return bytes + std::string(2, '\0');
 }

@@ -35,6 +35,10 @@ CALLS = {
         lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 2]], normals=CORNERS[:2]),
         error("SIZE_MISMATCH"),
     ),
+    "a hard edge of a negative angle": (
+        lambda t: t.w.add_body(t.c, t.m, normals="recomputed", hard_edge_degrees=-1),
+        error("INVALID_OPTION"),
+    ),
     "masses of other nodes": (lambda t: t.w.add_body(t.c, t.m, node_masses=[1.0]), error("SIZE_MISMATCH")),
     "a position of two numbers": (lambda t: t.w.add_body(t.c, t.m, position=(0, 0)), TypeError),
     # types
@@ -116,7 +120,7 @@ CALLS = {
     "a free node that is moved": (lambda t: t.b.set_pinned_positions([0], [[0.0, 0, 0]]), error("INVALID_OPTION")),
     "forces that are not recorded": (lambda t: ts.World(record_forces=False).forces_on(t.r), error("NOT_ADDED")),
     "a pickle of something else": (
-        lambda t: t.c.__class__.__new__(ts.Cage).__setstate__((b"",) * 12),
+        lambda t: ts.Cage.__new__(ts.Cage).__setstate__(t.m.__getstate__()),
         error("MALFORMED"),
     ),
     "an attribute that is not there": (lambda t: setattr(t.b, "positions", t.c.nodes), AttributeError),
@@ -156,12 +160,10 @@ def test_is_refused(name, cage, mesh):
 
 
 def test_damaged_pickles_are_refused(cage):
-    state = list(cage.__getstate__())
-    state[1] = state[1][:-4]
-    with pytest.raises(ts.Error):
-        ts.Cage.__new__(ts.Cage).__setstate__(tuple(state))
-    with pytest.raises(ts.Error):
-        ts.Cage.__new__(ts.Cage).__setstate__(())
+    state = cage.__getstate__()
+    for broken in (state[:-4], state + b"1", state[:100] + b"!" + state[101:], b""):
+        with pytest.raises(ts.Error):
+            ts.Cage.__new__(ts.Cage).__setstate__(broken)
 
 
 def test_a_snapshot_with_any_byte_changed_is_refused_or_another_one(dropped):

@@ -3,6 +3,7 @@
 """Meshes and cages: from files and arrays, to files and pickles; long work with progress; classes that need no
 world."""
 
+import functools
 import json
 import os
 import pickle
@@ -206,6 +207,20 @@ def test_skins_have_normals(mesh, cage):
         assert np.abs(np.linalg.norm(skin.normals, axis=1) - 1).max() < 1e-4
     assert ts.Skin(cage, mesh).normals.shape == (0, 3)
     assert (skin.bounds[0] <= mesh.positions.min(0) + 1e-5).all() and "outside" in skin.report
+
+
+def test_recomputed_normals_stay_split_at_hard_edges(mesh, cage):
+    corners = mesh.triangles.ravel()
+    a, b, c = mesh.positions[mesh.triangles].swapaxes(0, 1)
+    flat = np.cross(b - a, c - a)
+    flat = np.repeat(flat / np.linalg.norm(flat, axis=1, keepdims=True), 3, axis=0)
+    facets = ts.TriangleMesh(mesh.positions[corners], np.arange(len(corners)).reshape(-1, 3), normals=flat)
+    world, tets = ts.World(), ts.Cage(cage.nodes, cage.tets)
+    for add in (functools.partial(ts.Skin, tets), functools.partial(world.add_body, tets)):
+        seamless = add(mesh, normals="recomputed").normals[corners]
+        split, joined = (add(facets, normals="recomputed", hard_edge_degrees=d).normals for d in (5, 180))
+        assert np.abs(split - seamless).max() > 0.05 and np.abs(joined - seamless).max() < 1e-4
+        assert np.array_equal(add(facets, normals="recomputed").normals, split)
 
 
 def test_an_elastic_body_swings_without_a_world(cage):

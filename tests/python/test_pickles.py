@@ -61,9 +61,12 @@ def test_models_are_pickled_to_the_bit(name, mesh, cage, tmp_path):
 
 def test_the_state_has_what_a_model_has(mesh, cage, tmp_path):
     """So that the test above compares something."""
-    full, empty = attributed().__getstate__(), mesh.__getstate__()
-    assert full[2] and full[4] and not empty[2] and not empty[4] and len(grouped(tmp_path).__getstate__()[5]) == 2
-    assert ts.calibrate(cage).__getstate__()[4] and ts.refine_quadratic(cage).__getstate__()[8]
+    full, empty = attributed(), mesh.__getstate__()
+    assert full.texcoords.tobytes() in full.__getstate__() and full.normals.tobytes() in full.__getstate__()
+    assert len(full.__getstate__()) == len(empty) + 20 * mesh.vertex_count
+    assert all(name in grouped(tmp_path).__getstate__() for name in (b"first", b"red", b"second", b"blue"))
+    assert ts.calibrate(cage).stiffness_factor.tobytes() in ts.calibrate(cage).__getstate__()
+    assert len(ts.refine_quadratic(cage).__getstate__()) > len(cage.__getstate__()) + 4 * cage.tet_count
 
 
 def build(mesh, cage):

@@ -11,6 +11,7 @@
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 #include <support/bars.h>
+#include <support/rigids.h>
 #include <tetskin/reduced/reduced_body.h>
 
 #include <cmath>
@@ -63,16 +64,10 @@ class World {
     world->setGravity(gravity);
     world->getWorldInfo().m_gravity = gravity;
   }
-  ~World() {
-    if (world && floor_) world->removeRigidBody(floor_.get());
-  }
   /// Adds a floor whose top is at y = 0.
   void addFloor() {
-    btTransform below(btQuaternion::getIdentity(), btVector3(0, -1, 0));
-    floor_ = std::make_unique<btRigidBody>(0, nullptr, &floorShape_);
-    floor_->setWorldTransform(below);
-    floor_->setInterpolationWorldTransform(below);
-    world->addRigidBody(floor_.get());
+    floor_ = std::make_unique<Rigid>(*world, std::make_unique<btBoxShape>(btVector3(20, 1, 20)), btScalar(0),
+                                     btVector3(0, -1, 0));
   }
   void step(int substeps, double seconds = 1.0 / 240.0) {
     for (int k = 0; k < substeps; ++k) world->stepSimulation(static_cast<btScalar>(seconds), 0);
@@ -84,11 +79,12 @@ class World {
   btDbvtBroadphase broadphase_;
   btDeformableMultiBodyConstraintSolver constraintSolver_;
   std::unique_ptr<btDeformableBodySolver> bodySolver_;
-  btBoxShape floorShape_{btVector3(20, 1, 20)};
-  std::unique_ptr<btRigidBody> floor_;
 
  public:
   std::unique_ptr<btDeformableMultiBodyDynamicsWorld> world;
+
+ private:
+  std::unique_ptr<Rigid> floor_;
 };
 
 inline btTransform at(double x, double y, double z) {

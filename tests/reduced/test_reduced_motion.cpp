@@ -249,14 +249,10 @@ TEST(ReducedMotion, OfABarThatIsHeldInAWallIsThatOfOneInTheAir) {
     const double expected = farthestOf(air, *alone);
     for (const double depth : {0.0, 0.03}) {
       World world;
-      btBoxShape shape(btVector3(btScalar(0.5), 1, 1));
-      btRigidBody wall(0, nullptr, &shape);
-      wall.setWorldTransform(at(-1.52 + depth, 0, 0));
-      wall.setInterpolationWorldTransform(wall.getWorldTransform());
-      world.world->addRigidBody(&wall);
+      const Rigid wall(*world.world, std::make_unique<btBoxShape>(btVector3(btScalar(0.5), 1, 1)), 0,
+                       at(-1.52 + depth, 0, 0));
       const auto body = added(world, barModes(true), options);
       EXPECT_NEAR(farthestOf(world, *body), expected, 1e-3) << modes << " " << depth;
-      world.world->removeRigidBody(&wall);
     }
   }
 }

@@ -3,11 +3,11 @@
 #include "replay_scenes.h"
 
 #include "replay_models.h"
+#include "support/rigids.h"
 
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/contact/soft_contacts.h>
 #include <tetskin/contact/surface_contact.h>
-#include <tetskin/replay/src/exported/state_hash.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
@@ -25,30 +25,15 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// A rigid body that is in a world as long as it exists; fixed if it has no mass.
-class Rigid {
- public:
-  Rigid(tetskin::DeformableWorld& world, btCollisionShape& shape, double mass, const btVector3& origin)
-      : world_(world), body_(construction(shape, mass)) {
-    const btTransform where(btMatrix3x3::getIdentity(), origin);
-    body_.setWorldTransform(where);
-    body_.setInterpolationWorldTransform(where);
-    world_.addRigidBody(&body_);
-  }
-  ~Rigid() { world_.removeRigidBody(&body_); }
-  Rigid(const Rigid&) = delete;
-  Rigid& operator=(const Rigid&) = delete;
-  btRigidBody& body() { return body_; }
-
- private:
-  static btRigidBody::btRigidBodyConstructionInfo construction(btCollisionShape& shape, double mass) {
-    btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape.calculateLocalInertia(btScalar(mass), inertia);
-    return {btScalar(mass), nullptr, &shape, inertia};
-  }
-  tetskin::DeformableWorld& world_;
-  btRigidBody body_;
-};
+std::unique_ptr<btCollisionShape> plane(const btVector3& normal, double distance) {
+  return std::make_unique<btStaticPlaneShape>(normal, btScalar(distance));
+}
+std::unique_ptr<btCollisionShape> ball(double radius) {
+  return std::make_unique<btSphereShape>(btScalar(radius));
+}
+std::unique_ptr<btCollisionShape> box(const btVector3& half) {
+  return std::make_unique<btBoxShape>(half);
+}
 
 /// A soft body of a model, which touches rigid bodies at its surface.
 struct Soft {
@@ -75,8 +60,7 @@ class OnFloor : public ReplayScene {
   explicit OnFloor(const DeformableWorldOptions& options) : ReplayScene(options) {}
 
  private:
-  btStaticPlaneShape plane_{btVector3(0, 1, 0), 0};
-  Rigid floor_{world(), plane_, 0, at(0, 0, 0)};
+  Rigid floor_{world(), plane(at(0, 1, 0), 0), 0, at(0, 0, 0)};
 };
 
 /// Four walls around a square, at this distance from its centre.
@@ -84,13 +68,11 @@ class Walls {
  public:
   Walls(tetskin::DeformableWorld& world, double distance) {
     for (const btVector3& inward : {at(1, 0, 0), at(-1, 0, 0), at(0, 0, 1), at(0, 0, -1)}) {
-      shapes_.push_back(std::make_unique<btStaticPlaneShape>(inward, btScalar(-distance)));
-      walls_.push_back(std::make_unique<Rigid>(world, *shapes_.back(), 0, at(0, 0, 0)));
+      walls_.push_back(std::make_unique<Rigid>(world, plane(inward, -distance), btScalar(0), at(0, 0, 0)));
     }
   }
 
  private:
-  std::vector<std::unique_ptr<btStaticPlaneShape>> shapes_;
   std::vector<std::unique_ptr<Rigid>> walls_;
 };
 
@@ -100,9 +82,8 @@ class Drop : public OnFloor {
 
  private:
   ReplayModel model_ = ballModel(6, 12);
-  btSphereShape stoneShape_{btScalar(0.25)}, ballShape_{btScalar(0.25)};
-  Rigid stone_{world(), stoneShape_, 0, at(0.375, 0.125, 0.125)};
-  Rigid ball_{world(), ballShape_, 5, at(-0.375, 0.25, -0.0625)};
+  Rigid stone_{world(), ball(0.25), 0, at(0.375, 0.125, 0.125)};
+  Rigid ball_{world(), ball(0.25), 5, at(-0.375, 0.25, -0.0625)};
   Soft body_{world(), model_, {0, 1.25, 0}, firmness(60)};
 };
 
@@ -141,13 +122,12 @@ class Drag : public OnFloor {
 
  private:
   ReplayModel model_ = ballModel(5, 10);
-  btBoxShape hatShape_{at(0.25, 0.0625, 0.25)}, stepShape_{at(2, 0.25, 0.25)};
-  Rigid hat_{world(), hatShape_, 1, at(0, 1.125, 0)};
-  Rigid step_{world(), stepShape_, 0, at(0, 0.25, 1.25)};
+  Rigid hat_{world(), box(at(0.25, 0.0625, 0.25)), 1, at(0, 1.125, 0)};
+  Rigid step_{world(), box(at(2, 0.25, 0.25)), 0, at(0, 0.25, 1.25)};
   Soft body_{world(), model_, {0, 0.5, 0}, firmness(50)};
   SurfaceTree tree_ = SurfaceTree::create(model_.binding, model_.mesh).value();
   std::unique_ptr<SurfaceWeld> weld_ =
-      SurfaceWeld::add(world(), tree_.pointAtRest(body_.body(), {0, 0.5, 0}).value(), hat_.body()).value();
+      SurfaceWeld::add(world(), tree_.pointAtRest(body_.body(), {0, 0.5, 0}).value(), *hat_).value();
   std::unique_ptr<SurfaceSpring> spring_ =
       SurfaceSpring::add(world(), tree_.pointAtRest(body_.body(), {0, 0, 0.5}).value()).value();
 };
@@ -195,14 +175,13 @@ class Pit : public OnFloor {
       const double shift = ((7 * n) % 13 - 6) / 512.0;
       const btVector3 where =
           at(0.34375 * (n % 4 - 1.5) + shift, 0.25 + 0.375 * (n / 16), 0.34375 * (n / 4 % 4 - 1.5) - shift);
-      balls_.push_back(std::make_unique<Rigid>(world(), ballShape_, 0.25, where));
+      balls_.push_back(std::make_unique<Rigid>(world(), ball(0.15625), btScalar(0.25), where));
     }
   }
 
  private:
   static constexpr int kBalls = 48;
   ReplayModel model_ = ballModel(4, 8);
-  btSphereShape ballShape_{btScalar(0.15625)};
   Walls walls_{world(), 0.75};
   std::vector<std::unique_ptr<Rigid>> balls_;
   Soft body_{world(), model_, {0.0625, 2, 0.125}, firmness(50)};
@@ -232,10 +211,6 @@ const std::vector<std::string>& replaySceneNames() {
 void ReplayScene::step(int frame) {
   act(frame);
   world_.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
-}
-
-std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
-  return bullet_detail::stateHash(world);
 }
 
 }  // namespace tetskin::test

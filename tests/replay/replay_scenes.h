@@ -6,6 +6,7 @@
 // a world restored from a snapshot continues like the one that was saved.
 #pragma once
 
+#include <tetskin/replay/src/exported/state_hash.h>
 #include <tetskin/solver/deformable_world.h>
 
 #include <cstdint>
@@ -45,8 +46,6 @@ class ReplayScene {
 /// spring; twist: a bar, wrung and released; pit: a ball falls among 48 rigid ones.
 const std::vector<std::string>& replaySceneNames();
 
-/// Hash of positions and velocities of all nodes, and of transforms and velocities of all rigid bodies, to the last
-/// bit.
-std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world);
+using bullet_detail::stateHash;
 
 }  // namespace tetskin::test

@@ -15,6 +15,7 @@
 #include <fstream>
 
 #include "replay/replay_scenes.h"
+#include "support/rigids.h"
 
 namespace {
 
@@ -80,16 +81,11 @@ Bytes read(const std::string& path) {
 
 /// Rigid bodies that fall on each other, and all leave again.
 void churn(ReplayScene& scene) {
-  btBoxShape shape(btVector3(1, 1, 1));
-  std::vector<std::unique_ptr<btRigidBody>> bodies;
-  for (int k = 0; k < 7; ++k) {
-    bodies.push_back(std::make_unique<btRigidBody>(btScalar(1), nullptr, &shape, btVector3(1, 1, 1)));
-    bodies.back()->setWorldTransform(
-        btTransform(btQuaternion::getIdentity(), btVector3(btScalar(20 + 0.5 * k), btScalar(5 + 1.5 * k), 0)));
-    scene.world().addRigidBody(bodies.back().get());
-  }
+  test::Rigids boxes(scene.world());
+  auto& shape = boxes.shape<btBoxShape>(btVector3(1, 1, 1));
+  for (int k = 0; k < 7; ++k) boxes.add(shape, 1, btVector3(btScalar(20 + 0.5 * k), btScalar(5 + 1.5 * k), 0));
   for (int frame = 0; frame < 3; ++frame) scene.step(frame);
-  for (int k : {2, 6, 0, 1, 5, 4, 3}) scene.world().removeRigidBody(bodies[static_cast<std::size_t>(k)].get());
+  for (const std::size_t k : {2, 5, 0, 0, 2, 1, 0}) boxes.remove(*boxes.bodies[k]);
 }
 
 void goOn(const Arguments& arguments, bool withChurn) {

@@ -17,23 +17,17 @@ namespace {
 class SmallWorld {
  public:
   SmallWorld() {
-    floor.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, -1, 0)));
-    world.addRigidBody(&floor);
-    box.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.3), btScalar(1.1), 0)));
-    world.addRigidBody(&box);
+    const btScalar half = btScalar(0.2);
+    rigids.add(rigids.shape<btBoxShape>(btVector3(20, 1, 20)), 0, btVector3(0, -1, 0));
+    rigids.add(rigids.shape<btBoxShape>(btVector3(half, half, half)), 100, btVector3(btScalar(0.3), btScalar(1.1), 0));
     first = DeformableBody::add(world, smallCageAbove(0.1)).value();
-  }
-  ~SmallWorld() {
-    world.removeRigidBody(&floor);
-    world.removeRigidBody(&box);
   }
   void step(int count = 1) {
     for (int k = 0; k < count; ++k) world.stepSimulation(btScalar(1) / 120, 2, btScalar(1) / 240);
   }
 
-  btBoxShape floorShape{btVector3(20, 1, 20)}, boxShape{btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2))};
-  btRigidBody floor{0, nullptr, &floorShape}, box{100, nullptr, &boxShape, btVector3(3, 3, 3)};
   tetskin::DeformableWorld world;
+  Rigids rigids{world};
   std::unique_ptr<DeformableBody> first, second;
 };
 

@@ -7,8 +7,9 @@
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Dynamics/btActionInterface.h>
+#include <tetskin/core/src/base/hash.h>
 #include <tetskin/replay/snapshot.h>
-#include <tetskin/replay/src/state/snapshot_hash.h>
+#include <tetskin/replay/src/state/snapshot_bytes.h>
 
 #include <cstring>
 #include <tuple>
@@ -20,7 +21,6 @@ namespace {
 
 using bullet_detail::kHashAt;
 using bullet_detail::kHashedFrom;
-using bullet_detail::snapshotHash;
 
 void build(RigidScene& scene) {
   scene.addFloor();
@@ -285,7 +285,7 @@ TEST(DamagedSnapshots, WithARightHashHarmNoMemory) {
       const std::size_t at = kHashedFrom + random() % (bytes.size() - kHashedFrom);
       bytes[at] ^= static_cast<unsigned char>(1u << random() % 8);
     }
-    const std::uint64_t hash = snapshotHash(bytes.data() + kHashedFrom, bytes.size() - kHashedFrom);
+    const std::uint64_t hash = hashInLanes(bytes.data() + kHashedFrom, bytes.size() - kHashedFrom);
     std::memcpy(bytes.data() + kHashAt, &hash, sizeof hash);
     if (restoreSnapshot(scene.world, bytes.data(), bytes.size()).ok()) ++accepted;
     (void)saved(scene.world);

@@ -5,7 +5,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tetskin/replay/src/state/snapshot_hash.h>
+#include <tetskin/core/src/base/hash.h>
+#include <tetskin/replay/src/state/snapshot_bytes.h>
 
 #include <cstdint>
 #include <cstring>
@@ -46,7 +47,7 @@ inline SavedBytes withPartOf(const SavedBytes& later, std::size_t part, const Sa
   std::memcpy(mixed.data() + kSnapshotLengthAt, &ends.back(), 8);
   std::memcpy(mixed.data() + bullet_detail::kHashedFrom, ends.data(), 8 * ends.size());
   const std::uint64_t hash =
-      bullet_detail::snapshotHash(mixed.data() + bullet_detail::kHashedFrom, mixed.size() - bullet_detail::kHashedFrom);
+      hashInLanes(mixed.data() + bullet_detail::kHashedFrom, mixed.size() - bullet_detail::kHashedFrom);
   std::memcpy(mixed.data() + bullet_detail::kHashAt, &hash, 8);
   return mixed;
 }

@@ -8,6 +8,7 @@
 
 #include "support/bars.h"
 #include "support/cage_surface.h"
+#include "support/rigids.h"
 
 namespace tetskin::test {
 namespace {
@@ -75,9 +76,8 @@ TEST(World, HasTheBitsOfItsPartsByThemselves) {
   const auto body = world.addBody(cage, mesh, {}, at(0, 1)).value();
 
   DeformableWorld parts;
-  btStaticPlaneShape plane(btVector3(0, 1, 0), 0);
-  btRigidBody floor(0, nullptr, &plane);
-  parts.addRigidBody(&floor);
+  const Rigid floor(parts, std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0)), 0,
+                    btVector3(0, 0, 0));
   Cage placed = *cage;
   for (Eigen::Vector3d& node : placed.mesh.nodes) node.y() += 1.0;
   const auto part = DeformableBody::add(parts, placed).value();
@@ -94,7 +94,6 @@ TEST(World, HasTheBitsOfItsPartsByThemselves) {
   for (std::size_t v = 0; v < skin.positions().size(); ++v) {
     for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(body->positions[3 * v + k], float(skin.positions()[v][k])) << v;
   }
-  parts.removeRigidBody(&floor);
 }
 
 TEST(World, GoesOnFromASnapshotToTheBit) {
@@ -182,6 +181,11 @@ TEST(World, ABodyThatIsRefusedLeavesNothing) {
   options.pinned = {3, 1000};
   EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::IndexOutOfRange);
   options.pinned = {};
+  const std::vector<char> saved = crowd.world.save().value();
+  options.binding.hardEdgeDegrees = -1;
+  EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
+  EXPECT_EQ(crowd.world.save().value(), saved);
+  options.binding = {};
   options.contactMargin = -1;
   EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
   const btTransform here = btTransform::getIdentity();

@@ -162,7 +162,7 @@ double applyRadialImpulse(BodyHandle& body, Vec3 centre, double radius, double s
 
 EMSCRIPTEN_BINDINGS(bodies) {
   emscripten::value_object<BodyWords> options("BodyOptions");
-#define TETSKIN_FIELD(type, name, python, ...) addField<&BodyWords::name>(options, #name);
+#define TETSKIN_FIELD(of, type, name, python, ...) addField<&BodyWords::name>(options, #name);
   TETSKIN_BODY_OPTIONS(TETSKIN_FIELD)
 #undef TETSKIN_FIELD
   emscripten::class_<BodyHandle>("Body");

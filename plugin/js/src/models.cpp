@@ -2,12 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Meshes and cages.
-#include "byte_arrays.h"
 
 #include <emscripten.h>
+#include <facade/models.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/io/files.h>
+#include "guarded.h"
 
 #include <cstdio>
 #include <memory>
@@ -80,7 +81,7 @@ MeshModel meshFromBytes(std::uintptr_t bytes, std::size_t count) {
   return meshOfBytes(reinterpret_cast<const unsigned char*>(bytes), count);
 }
 View meshToBytes(const MeshModel& model) {
-  return lent(bytesOf(*model.mesh));
+  return lent(bytesOf(model));
 }
 View meshPositions(const MeshModel& model) {
   return viewNumbers(model.mesh->positions.front().data(), 3 * model.mesh->vertexCount());

@@ -38,7 +38,8 @@ PaletteHandle* createPalette(const CageModel& cage, const MeshModel& mesh, std::
   options.layout = columns ? BoneLayout::Columns : BoneLayout::Rows;
   // Gradients are for the linear surface of a binding with gradients.
   options.gradients = gradients;
-  BindingOptions binding = bindingOptions({interpolation}, {"none"}, {"nearest"}, {});
+  BindingOptions binding;
+  binding.interpolation = valueOf(Choice<Interpolation>{std::move(interpolation)});
   options.disableQuadratic = gradients && binding.interpolation == Interpolation::Linear;
   if (gradients) binding.interpolation = Interpolation::Quadratic;
   auto handle = std::make_unique<PaletteHandle>();

@@ -194,20 +194,17 @@ class Class : public nb::class_<T> {
     const std::string name = nb::cast<std::string>(this->attr("__name__"));
     return def("__repr__", [name, words](const T& self) { return "<tetskin." + name + ": " + words(self) + ">"; });
   }
-  /// Pickling, also by the oldest protocols.
-  /// get  an object's state, as a tuple
-  /// set  makes an object from a state; may throw
-  template <class Get, class Set>
-  Class& pickled(Get get, Set set) {
-    def("__getstate__", get, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"));
-    const auto make = [set](T& self, const nb::tuple& state) {
-      try {
-        new (&self) T(set(state));
-      } catch (const nb::cast_error&) {
-        fail(StatusCode::Malformed, "not the pickled state: something in it has another type");
-      }
-    };
-    def("__setstate__", make, nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
+  /// Pickling, also by the oldest protocols: the state is one object of bytes.
+  /// ofBytes  makes an object of the bytes of `facade::bytesOf`; may throw
+  template <class OfBytes>
+  Class& pickled(OfBytes ofBytes) {
+    def("__getstate__", [](const T& self) {
+      const std::vector<unsigned char> bytes = bytesOf(self);
+      return nb::bytes(bytes.data(), bytes.size());
+    });
+    def("__setstate__", [ofBytes](T& self, const nb::bytes& state) {
+      new (&self) T(ofBytes(static_cast<const unsigned char*>(state.data()), state.size()));
+    });
     const auto reduce = [](nb::handle self) {
       const nb::object newObject = nb::module_::import_("copyreg").attr("__newobj__");
       return nb::make_tuple(newObject, nb::make_tuple(self.type()), self.attr("__getstate__")());
@@ -253,20 +250,6 @@ class Kept {
  private:
   mutable nb::object array_;
 };
-
-/// The bytes of a vector or a text, for pickle, and back.
-template <class Values>
-nb::bytes bytesOf(const Values& values) {
-  return nb::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
-}
-template <class Values>
-void readBytes(nb::handle object, Values& values) {
-  using T = typename Values::value_type;
-  const auto bytes = nb::cast<nb::bytes>(object);
-  if (bytes.size() % sizeof(T) != 0) fail(StatusCode::Malformed, "not a pickled object of tetskin");
-  values.resize(bytes.size() / sizeof(T));
-  std::copy(bytes.c_str(), bytes.c_str() + bytes.size(), reinterpret_cast<char*>(values.data()));
-}
 
 /// The type of `bounds`, for the stub.
 inline const nb::sig kBoundsType{

@@ -123,9 +123,9 @@ struct Given<std::vector<int>> : GivenArray {
   }
 };
 
-#define TETSKIN_PARAMETER(type, name, python, ...) , const Given<type>::Type& name
-#define TETSKIN_READ(type, name, python, ...) words.name = Given<type>::read(name, #python, nodes);
-#define TETSKIN_ARGUMENT(type, name, python, ...) , nb::arg(#python) = Given<type>::shown(BodyWords().name)
+#define TETSKIN_PARAMETER(of, type, name, python, ...) , const Given<type>::Type& name
+#define TETSKIN_READ(of, type, name, python, ...) words.name = Given<type>::read(name, #python, nodes);
+#define TETSKIN_ARGUMENT(of, type, name, python, ...) , nb::arg(#python) = Given<type>::shown(BodyWords().name)
 
 BodyHandle addBody(const std::shared_ptr<World>& world, const CageModel& cage,
                    const std::optional<MeshLike>& mesh TETSKIN_BODY_OPTIONS(TETSKIN_PARAMETER)) {
@@ -246,9 +246,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "size, from 30 (wobbles, sags) to "
            "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
            "the body's size.\n\n"
-           "interpolation, normals, outside, max_distance: as in Skin. visible: whether steps update the surface. "
-           "surface_contact: with rigid bodies; "
-           "contact_margin: the distance kept, None: 0.2 % "
+           "interpolation, normals, outside, max_distance, hard_edge_degrees: as in Skin. visible: whether steps "
+           "update the surface. surface_contact: with rigid bodies; contact_margin: the distance kept, None: 0.2 % "
            "of the body's size; sample_spacing: rest units, of points on large triangles. soft_contact: with other "
            "bodies that have it; self_contact: with "
            "others and itself. Both need a distance grid of the surface, made once, which takes a second for 20,000 "

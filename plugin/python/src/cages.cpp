@@ -50,33 +50,6 @@ CageModel quadratic(const CageModel& model) {
   return cageModel(take(refineQuadratic(*model.cage)));
 }
 
-nb::tuple stateOfCage(const CageModel& model) {
-  const Cage& cage = *model.cage;
-  const nb::object hash = cage.meshHash ? nb::object(nb::int_(*cage.meshHash)) : nb::object(nb::none());
-  return nb::make_tuple(bytesOf(cage.mesh.nodes), bytesOf(cage.mesh.tets), bytesOf(cage.vertexTets),
-                        bytesOf(cage.volumeFraction), bytesOf(cage.stiffnessFactor), bytesOf(cage.masses),
-                        bytesOf(cage.component), bytesOf(cage.sourceTet), bytesOf(cage.quadraticTet),
-                        bytesOf(cage.fineVolumeFraction), hash, model.cage->report);
-}
-
-CageModel cageOfState(const nb::tuple& state) {
-  if (state.size() != 12) fail(StatusCode::Malformed, "not a pickled cage of this version of tetskin");
-  Cage cage;
-  readBytes(state[0], cage.mesh.nodes);
-  readBytes(state[1], cage.mesh.tets);
-  readBytes(state[2], cage.vertexTets);
-  readBytes(state[3], cage.volumeFraction);
-  readBytes(state[4], cage.stiffnessFactor);
-  readBytes(state[5], cage.masses);
-  readBytes(state[6], cage.component);
-  readBytes(state[7], cage.sourceTet);
-  readBytes(state[8], cage.quadraticTet);
-  readBytes(state[9], cage.fineVolumeFraction);
-  if (!nb::object(state[10]).is_none()) cage.meshHash = nb::cast<std::uint64_t>(state[10]);
-  check(validate(cage));
-  return cageModel(std::move(cage), nb::cast<std::string>(state[11]));
-}
-
 /// A property that views one of a cage's arrays.
 template <auto Member>
 auto arrayOf() {
@@ -97,7 +70,7 @@ void bindCages(nb::module_& module) {
         return counted(c.mesh.tetCount(), "tet", "tets") + ", " + counted(c.mesh.nodeCount(), "node", "nodes") +
                (c.quadraticTet.empty() ? "" : ", quadratic") + (c.stiffnessFactor.empty() ? "" : ", calibrated");
       })
-      .pickled(stateOfCage, cageOfState)
+      .pickled(cageOfBytes)
       .def(
           "__init__",
           [](CageModel* self, const ArrayLike& nodes, const ArrayLike& tets) {

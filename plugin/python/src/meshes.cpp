@@ -21,12 +21,6 @@ std::vector<Vector> floatRows(const std::optional<ArrayLike>& array, const char*
   return rows;
 }
 
-void checkLength(std::size_t length, std::size_t vertices, const char* name) {
-  if (length == 0 || length == vertices) return;
-  fail(StatusCode::SizeMismatch,
-       std::string(name) + ": " + std::to_string(length) + " for " + std::to_string(vertices) + " vertices");
-}
-
 /// names  of positions and triangles, as the caller knows them
 MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const std::optional<ArrayLike>& normals,
                const std::optional<ArrayLike>& texcoords,
@@ -36,9 +30,7 @@ MeshModel made(const ArrayLike& positions, const ArrayLike& triangles, const std
   mesh->triangles = indexRowsOf<3>(triangles, names[1]);
   mesh->normals = floatRows<Eigen::Vector3f>(normals, "normals", 3);
   mesh->texcoords = floatRows<Eigen::Vector2f>(texcoords, "texcoords", 2);
-  check(validate(*mesh));
-  checkLength(mesh->normals.size(), mesh->vertexCount(), "normals");
-  checkLength(mesh->texcoords.size(), mesh->vertexCount(), "texcoords");
+  checkMesh(*mesh);
   return {std::move(mesh)};
 }
 
@@ -51,45 +43,6 @@ MeshModel loaded(const PathLike& path) {
                                             "tetskin.create_cage(trimesh.load_mesh(path)), for one, takes its meshes");
   }
   return {std::make_shared<const TriangleMesh>(take(std::move(mesh)))};
-}
-
-nb::tuple stateOfMesh(const MeshModel& model) {
-  const TriangleMesh& mesh = *model.mesh;
-  nb::list groups;
-  for (const TriangleGroup& group : mesh.groups) {
-    groups.append(
-        nb::make_tuple(bytesOf(group.name), bytesOf(group.material), group.firstTriangle, group.triangleCount));
-  }
-  return nb::make_tuple(bytesOf(mesh.positions), bytesOf(mesh.triangles), bytesOf(mesh.normals), bytesOf(mesh.tangents),
-                        bytesOf(mesh.texcoords), groups);
-}
-
-MeshModel meshOfState(const nb::tuple& state) {
-  if (state.size() != 6) fail(StatusCode::Malformed, "not a pickled mesh of this version of tetskin");
-  auto mesh = std::make_shared<TriangleMesh>();
-  readBytes(state[0], mesh->positions);
-  readBytes(state[1], mesh->triangles);
-  readBytes(state[2], mesh->normals);
-  readBytes(state[3], mesh->tangents);
-  readBytes(state[4], mesh->texcoords);
-  std::size_t next = 0;
-  for (nb::handle item : nb::cast<nb::list>(state[5])) {
-    const auto group = nb::cast<nb::tuple>(item);
-    mesh->groups.push_back({{}, {}, nb::cast<std::size_t>(group[2]), nb::cast<std::size_t>(group[3])});
-    readBytes(group[0], mesh->groups.back().name);
-    readBytes(group[1], mesh->groups.back().material);
-    const TriangleGroup& read = mesh->groups.back();
-    if (read.firstTriangle != next || read.triangleCount > mesh->triangleCount() - next)
-      fail(StatusCode::Malformed, "a group of triangles is out of range");
-    next += read.triangleCount;
-  }
-  if (!mesh->groups.empty() && next != mesh->triangleCount())
-    fail(StatusCode::Malformed, "groups do not cover all triangles");
-  check(validate(*mesh));
-  checkLength(mesh->normals.size(), mesh->vertexCount(), "normals");
-  checkLength(mesh->tangents.size(), mesh->vertexCount(), "tangents");
-  checkLength(mesh->texcoords.size(), mesh->vertexCount(), "texcoords");
-  return {std::move(mesh)};
 }
 
 /// The texture coordinates of a trimesh mesh, if it has a pair for each vertex.
@@ -136,7 +89,7 @@ void bindMeshes(nb::module_& module) {
         return counted(m.mesh->vertexCount(), "vertex", "vertices") + ", " +
                counted(m.mesh->triangleCount(), "triangle", "triangles");
       })
-      .pickled(stateOfMesh, meshOfState)
+      .pickled(meshOfBytes)
       .def(
           "__init__",
           [](MeshModel* self, const ArrayLike& positions, const ArrayLike& triangles,

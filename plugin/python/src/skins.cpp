@@ -65,15 +65,15 @@ BoneLayout layoutOf(const std::string& name) {
 /// Bones with their memory.
 class Palette {
  public:
-  Palette(const CageModel& cage, const MeshModel& mesh, const std::string& interpolation, bool gradients,
+  Palette(const CageModel& cage, const MeshModel& mesh, Interpolation interpolation, bool gradients,
           const std::string& layout) {
     PaletteOptions options;
     options.layout = layoutOf(layout);
     // Gradients are for the linear surface of a binding with gradients.
     options.gradients = gradients;
-    options.disableQuadratic = gradients && interpolationOf(interpolation) == Interpolation::Linear;
+    options.disableQuadratic = gradients && interpolation == Interpolation::Linear;
     BindingOptions binding;
-    binding.interpolation = gradients ? Interpolation::Quadratic : interpolationOf(interpolation);
+    binding.interpolation = gradients ? Interpolation::Quadratic : interpolation;
     binding_ = take(SkinBinding<double>::create(*cage.cage, *mesh.mesh, binding));
     palette_ = take(BonePalette<double>::create(binding_, options));
     bones = std::make_shared<std::vector<float>>(palette_.boneCount() * boneFloats(options.layout));
@@ -117,14 +117,22 @@ void bindSkins(nb::module_& module) {
       .def(
           "__init__",
           [](Skin* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolation>& interpolation,
-             const Choice<Normals>& normals, const Choice<OutsideRule>& outside, std::optional<double> maxDistance) {
-            new (self) Skin(cage, meshOf(mesh), bindingOptions(interpolation, normals, outside, maxDistance));
+             const Choice<Normals>& normals, const Choice<OutsideRule>& outside, std::optional<double> maxDistance,
+             double hardEdgeDegrees) {
+            BindingOptions options;
+            options.interpolation = valueOf(interpolation);
+            options.normals = valueOf(normals);
+            options.outside = valueOf(outside);
+            options.maxDistance = maxDistance.value_or(options.maxDistance);
+            options.hardEdgeDegrees = hardEdgeDegrees;
+            new (self) Skin(cage, meshOf(mesh), options);
           },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "normals"_a = "none",
-          "outside"_a = "nearest", "max_distance"_a = nb::none(),
+          "outside"_a = "nearest", "max_distance"_a = nb::none(), "hard_edge_degrees"_a = kHardEdgeDegrees,
           "Embeds the mesh in the cage at rest. interpolation: 'linear' or 'quadratic'; normals: 'none', 'transformed' "
           "or 'recomputed'; outside: 'nearest' or 'barycentric': which tet carries a vertex outside the cage; "
-          "max_distance: rest units; a vertex farther than this from every tet raises an Error.")
+          "max_distance: rest units; a vertex farther than this from every tet raises an Error; hard_edge_degrees: "
+          "recomputed normals stay split at an edge whose rest normals differ by more.")
       .def(
           "update",
           [](Skin& skin, const ArrayLike& nodes) {
@@ -154,7 +162,7 @@ void bindSkins(nb::module_& module) {
           "__init__",
           [](Palette* self, const CageModel& cage, const MeshLike& mesh, const Choice<Interpolation>& interpolation,
              bool gradients, const Choice<Layouts>& layout) {
-            new (self) Palette(cage, meshOf(mesh), interpolation.name, gradients, layout.name);
+            new (self) Palette(cage, meshOf(mesh), valueOf(interpolation), gradients, layout.name);
           },
           "cage"_a, "mesh"_a, nb::kw_only(), "interpolation"_a = "linear", "gradients"_a = false, "layout"_a = "rows",
           "layout: 'rows', 3 rows of 4, or 'columns', the 4 columns of a 4x4 matrix. gradients: bones of the linear "

@@ -79,7 +79,8 @@ class TETSKIN_WORLD_API World {
     std::unique_ptr<DeformableBody> body;     ///< never null
     SoftBodySkin skin;                        ///< updated by `step`; its targets are the arrays below
     std::unique_ptr<SurfaceContact> contact;  ///< null without `surfaceContact`
-    /// vertexCount x 3, world space, after the last step; the memory stays as long as the body.
+    /// vertexCount x 3, world space, after the last step, in the binding's `VertexOrder`; the memory stays as long as
+    /// the body.
     std::vector<float> positions;
     std::vector<float> normals;  ///< likewise, unit length; empty for Normals::None
     bool softContact = false;    ///< it is among the world's SoftContacts
@@ -247,8 +248,9 @@ class TETSKIN_WORLD_API World {
   Status updateSkins();
   Status updateTeleported();
   Shared& sharedOf(const Body& body, const BindingOptions& options);
-  Status bindSurface(Body& body, const WorldBodyOptions& options);
-  Status touchOthers(Body& body, Shared& shared, bool itself);
+  /// What the surface needs of its model, in the body and, for contact with others, as the result.
+  Result<std::shared_ptr<const ContactShape>> prepareSurface(Body& body, const WorldBodyOptions& options);
+  Status bindSurface(Body& body, const WorldBodyOptions& options, std::shared_ptr<const ContactShape> shape);
   /// Removes those for which a condition holds, in order. Allocates nothing, so it works when memory is short.
   template <class Thing, class Condition>
   void removeEach(std::vector<std::shared_ptr<Thing>>& all, Condition&& condition) {

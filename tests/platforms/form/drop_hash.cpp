@@ -4,6 +4,7 @@
 #include <tetskin/bullet/soft_body_skin.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/contact/surface_contact.h>
+#include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/solver/deformable_world.h>
@@ -57,9 +58,7 @@ std::uint64_t hashOf(const btSoftBody& body) {
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     for (int k = 0; k < 3; ++k) {
       const auto x = static_cast<float>(body.m_nodes[n].m_x[k]);
-      std::uint32_t bits = 0;
-      std::memcpy(&bits, &x, sizeof bits);
-      for (int byte = 0; byte < 4; ++byte) hash = (hash ^ (bits >> 8 * byte & 0xff)) * 1099511628211u;
+      hash = tetskin::fnv1a(&x, sizeof x, hash);
     }
   }
   return hash;

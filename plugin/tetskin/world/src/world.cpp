@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 
 namespace tetskin {
 namespace {
@@ -32,8 +33,11 @@ void forget(std::vector<std::shared_ptr<Thing>>& all, const Thing& thing) {
 }
 
 bool same(const BindingOptions& a, const BindingOptions& b) {
-  return a.interpolation == b.interpolation && a.normals == b.normals && a.outside == b.outside &&
-         a.maxDistance == b.maxDistance && a.order == b.order && a.hardEdgeDegrees == b.hardEdgeDegrees;
+  const auto all = [](const BindingOptions& of) {
+    const auto& [interpolation, normals, outside, maxDistance, order, hardEdgeDegrees] = of;
+    return std::tie(interpolation, normals, outside, maxDistance, order, hardEdgeDegrees);
+  };
+  return all(a) == all(b);
 }
 
 btHingeConstraint* hingeOf(const World::Joint& joint) {
@@ -261,7 +265,7 @@ World::Shared& World::sharedOf(const Body& body, const BindingOptions& options) 
   return *shared_.back();
 }
 
-Status World::bindSurface(Body& body, const WorldBodyOptions& options) {
+Result<std::shared_ptr<const ContactShape>> World::prepareSurface(Body& body, const WorldBodyOptions& options) {
   Shared& shared = sharedOf(body, options.binding);
   body.binding = shared.binding.lock();
   if (!body.binding) {
@@ -270,6 +274,16 @@ Status World::bindSurface(Body& body, const WorldBodyOptions& options) {
     shared.binding = body.binding = std::move(binding).value();
   }
   body.fit = shared.fit;
+  std::shared_ptr<const ContactShape> shape = shared.shape.lock();
+  if (!shape && (options.softContact || options.selfContact)) {
+    auto made = ContactShape::create(*body.cage, *body.mesh);
+    if (!made.ok()) return made.status();
+    shared.shape = shape = std::move(made).value();
+  }
+  return shape;
+}
+
+Status World::bindSurface(Body& body, const WorldBodyOptions& options, std::shared_ptr<const ContactShape> shape) {
   const std::size_t count = body.mesh->vertexCount();
   InstanceOptions instance;
   body.positions.resize(3 * count);
@@ -288,18 +302,9 @@ Status World::bindSurface(Body& body, const WorldBodyOptions& options) {
     if (!contact.ok()) return contact.status();
     body.contact = std::move(contact).value();
   }
-  return options.softContact || options.selfContact ? touchOthers(body, shared, options.selfContact) : Status{};
-}
-
-Status World::touchOthers(Body& body, Shared& shared, bool itself) {
-  std::shared_ptr<const ContactShape> shape = shared.shape.lock();
-  if (!shape) {
-    auto made = ContactShape::create(*body.cage, *body.mesh);
-    if (!made.ok()) return made.status();
-    shared.shape = shape = std::move(made).value();
-  }
+  if (!options.softContact && !options.selfContact) return {};
   if (!soft_) soft_ = SoftContacts::add(*world_).value();
-  Status added = soft_->add(body.body->body(), shape, itself);
+  Status added = soft_->add(body.body->body(), std::move(shape), options.selfContact);
   body.softContact = added.ok();
   return added;
 }
@@ -319,16 +324,22 @@ Result<std::shared_ptr<World::Body>> World::addBody(std::shared_ptr<const Cage> 
   const std::vector<Eigen::Vector3d>& rest = cage->mesh.nodes;
   std::transform(rest.begin(), rest.end(), placed.mesh.nodes.begin(),
                  [&](const Eigen::Vector3d& node) -> Eigen::Vector3d { return placement * node; });
-  auto made = DeformableBody::add(*world_, placed, options.material);
-  if (!made.ok()) return made.status();
   auto body = std::make_shared<Body>();
-  body->body = std::move(made).value();
   body->cage = std::move(cage);
   body->mesh = std::move(mesh);
+  std::shared_ptr<const ContactShape> shape;
+  if (body->mesh) {  // before the body is in the world: what fails then leaves traces in its snapshots
+    auto prepared = prepareSurface(*body, options);
+    if (!prepared.ok()) return prepared.status();
+    shape = std::move(prepared).value();
+  }
+  auto made = DeformableBody::add(*world_, placed, options.material);
+  if (!made.ok()) return made.status();
+  body->body = std::move(made).value();
   Unless added{[&] {
     if (soft_ && body->softContact) soft_->remove(body->body->body());
   }};
-  Status bound = body->mesh ? bindSurface(*body, options) : Status{};
+  Status bound = body->mesh ? bindSurface(*body, options, std::move(shape)) : Status{};
   if (!bound.ok()) return bound;
   for (const int node : options.pinned) (void)body->body->setPinned(node);
   if (body->mesh && !options.visible) body->skin.setVisible(false);

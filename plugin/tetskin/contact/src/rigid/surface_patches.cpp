@@ -10,6 +10,9 @@
 #include <cassert>
 
 namespace tetskin::contact_detail {
+
+using namespace bullet_detail;
+
 namespace {
 
 using Point = EmbeddedPoint<btScalar>;

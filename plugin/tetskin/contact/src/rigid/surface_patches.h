@@ -12,8 +12,6 @@
 
 namespace tetskin::contact_detail {
 
-using namespace bullet_detail;
-
 /// By triangle: the number of parts into which its edges are cut, a power of 2; 1: no samples.
 using Divisions = std::vector<std::uint32_t>;
 
@@ -34,6 +32,7 @@ double countOfSamples(const Divisions& divisions);
 /// and the samples on its triangles. Cost O(n log n) for n vertices and triangles.
 /// mesh       of the embedding
 /// divisions  by triangle; empty: no samples
-ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh, const Divisions& divisions);
+bullet_detail::ContactPatches makeContactPatches(const Embedding& embedding, const TriangleMesh& mesh,
+                                                 const Divisions& divisions);
 
 }  // namespace tetskin::contact_detail

@@ -11,6 +11,9 @@
 #include <iterator>
 
 namespace tetskin::contact_detail {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// Depth above which two bodies overlap, in sizes of the smaller body.

@@ -14,9 +14,7 @@
 
 namespace tetskin::contact_detail {
 
-using namespace bullet_detail;
-
-class SoftContactRows : public RowSource {
+class SoftContactRows : public bullet_detail::RowSource {
  public:
   explicit SoftContactRows(const SoftContactOptions& options) : options_(options) {}
 
@@ -31,19 +29,19 @@ class SoftContactRows : public RowSource {
   /// True if the body lay wholly inside another one in the last step.
   bool isWithin(const ContactBody& body) const;
   /// The contacts of the last step, and those between sleeping bodies, as they were when these fell asleep.
-  const PointContacts& lastContacts() const { return contacts_; }
-  const PointContacts& sleepingContacts() const { return sleeping_; }
+  const bullet_detail::PointContacts& lastContacts() const { return contacts_; }
+  const bullet_detail::PointContacts& sleepingContacts() const { return sleeping_; }
 
   /// Results do not depend on candidates; only the time of a search does.
   void dropCandidates();
 
-  PointContacts* contacts(btScalar seconds, ParallelFor* threads) override;
+  bullet_detail::PointContacts* contacts(btScalar seconds, ParallelFor* threads) override;
   void removeSoftBody(btSoftBody* body) override;
   void forget(const btSoftBody& body) override;
   void shift(const btVector3& by) override;
   /// Of the last step's contacts, only those between sleeping bodies are kept; the others are reset, as before a step.
-  void serialize(WorldStream& stream) override;
-  void checkState(WorldStream& stream) override;
+  void serialize(bullet_detail::WorldStream& stream) override;
+  void checkState(bullet_detail::WorldStream& stream) override;
 
  private:
   /// State that two bodies, or one body with itself, keep from step to step.
@@ -63,10 +61,10 @@ class SoftContactRows : public RowSource {
   std::unique_ptr<ContactBody> take(const btSoftBody& body);
   void includeReturned();
   void forgetPairs(const ContactBody& body);
-  void serializeBodies(WorldStream& stream);
-  void serializePairs(WorldStream& stream);
-  void serializePair(WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
-  void serializeSleeping(WorldStream& stream);
+  void serializeBodies(bullet_detail::WorldStream& stream);
+  void serializePairs(bullet_detail::WorldStream& stream);
+  void serializePair(bullet_detail::WorldStream& stream, const std::pair<int, int>& ids, PairState& state);
+  void serializeSleeping(bullet_detail::WorldStream& stream);
   ContactBody* withId(int id) const;
   bool motionMatters(const ContactBody& body) const;
   void keepSleeping();
@@ -84,7 +82,7 @@ class SoftContactRows : public RowSource {
   int nextId_ = 0;
   std::vector<PairSearch> searches_;                     ///< one for each task
   std::map<std::pair<int, int>, PairState> pairStates_;  ///< by the bodies' ids
-  PointContacts contacts_, sleeping_;
+  bullet_detail::PointContacts contacts_, sleeping_;
 };
 
 }  // namespace tetskin::contact_detail

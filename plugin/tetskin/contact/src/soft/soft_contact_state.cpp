@@ -9,6 +9,9 @@
 #include <vector>
 
 namespace tetskin::contact_detail {
+
+using namespace bullet_detail;
+
 namespace {
 
 void serializePoint(WorldStream& stream, CarriedPoint& point) {

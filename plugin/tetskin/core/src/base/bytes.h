@@ -49,21 +49,31 @@ inline std::uint64_t hashOf(const unsigned char* bytes, std::size_t count) {
 template <class Scalar>
 using BitsOf = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
 
+/// Appends a number to a string or a vector, the lowest byte first.
+template <class Number, class Bytes>
+void appendLittleEndian(Number number, Bytes& bytes) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    BitsOf<Number> bits;
+    std::memcpy(&bits, &number, sizeof bits);
+    appendLittleEndian(bits, bytes);
+  } else {
+    static_assert(std::is_unsigned_v<Number>);
+    for (std::size_t k = 0; k < sizeof number; ++k)
+      bytes.push_back(static_cast<typename Bytes::value_type>(number >> (8 * k) & 0xFF));
+  }
+}
+
 class ByteWriter {
  public:
   explicit ByteWriter(std::size_t size) { bytes_.reserve(size); }
 
   /// Writes a tag of eight letters.
   void tag(const char* letters) { u64(readBytes(reinterpret_cast<const unsigned char*>(letters), 8)); }
-  void u64(std::uint64_t value) { put(value, 8); }
-  void u32(std::uint32_t value) { put(value, 4); }
+  void u64(std::uint64_t value) { appendLittleEndian(value, bytes_); }
+  void u32(std::uint32_t value) { appendLittleEndian(value, bytes_); }
   template <class Scalar>
   void plane(const Scalar* values, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      BitsOf<Scalar> bits;
-      std::memcpy(&bits, values + k, sizeof bits);
-      put(bits, sizeof bits);
-    }
+    for (std::size_t k = 0; k < count; ++k) appendLittleEndian(values[k], bytes_);
   }
   /// Returns all bytes, followed by their hash.
   std::vector<unsigned char> take() {
@@ -72,9 +82,6 @@ class ByteWriter {
   }
 
  private:
-  void put(std::uint64_t value, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) bytes_.push_back(static_cast<unsigned char>(value >> (8 * k)));
-  }
   std::vector<unsigned char> bytes_;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -32,5 +33,35 @@ class Hash {
   static constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15u;
   std::uint64_t value_ = 0xCBF29CE484222325u;
 };
+
+/// A hash of bytes, for some 100 kilobytes within microseconds: its lanes are independent. A change of a single byte
+/// never goes unnoticed.
+inline std::uint64_t hashInLanes(const unsigned char* bytes, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  Hash lanes[kLanes];
+  std::size_t at = 0;
+  for (; at + 8 * kLanes <= count; at += 8 * kLanes) {
+    std::uint64_t words[kLanes];
+    std::memcpy(words, bytes + at, sizeof words);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane].add(words[lane]);
+  }
+  for (std::size_t lane = 0; at < count; at += 8, ++lane) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + at, count - at < 8 ? count - at : 8);
+    lanes[lane].add(word);
+  }
+  Hash hash;
+  hash.add(std::uint64_t{count});
+  for (const Hash& lane : lanes) hash.add(lane.value());
+  return hash.value();
+}
+
+/// FNV-1a of bytes, for results that other programs compare: anyone can compute it.
+/// before  the hash of the bytes before them
+inline std::uint64_t fnv1a(const void* bytes, std::size_t count, std::uint64_t before) {
+  const auto* data = static_cast<const unsigned char*>(bytes);
+  for (std::size_t i = 0; i < count; ++i) before = (before ^ data[i]) * 1099511628211u;
+  return before;
+}
 
 }  // namespace tetskin

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/bytes.h>
 #include <tetskin/io/animation.h>
 #include <tetskin/io/src/text/atomic_file.h>
-#include <tetskin/io/src/text/binary_numbers.h>
 #include <tetskin/io/src/text/file_text.h>
 
 #include <cmath>
@@ -50,11 +50,11 @@ Result<Pc2Writer> Pc2Writer::create(const std::string& path, std::size_t vertexC
   impl->vertexCount = vertexCount;
   impl->file = std::move(file).value();
   std::string header("POINTCACHE2\0", 12);
-  io::appendLittleEndian(std::uint32_t{1}, header);
-  io::appendLittleEndian(static_cast<std::uint32_t>(vertexCount), header);
-  io::appendLittleEndian(first, header);
-  io::appendLittleEndian(step, header);
-  io::appendLittleEndian(std::uint32_t{0}, header);
+  appendLittleEndian(std::uint32_t{1}, header);
+  appendLittleEndian(static_cast<std::uint32_t>(vertexCount), header);
+  appendLittleEndian(first, header);
+  appendLittleEndian(step, header);
+  appendLittleEndian(std::uint32_t{0}, header);
   if (Status status = impl->file.append(header); !status.ok()) return status;
   return Pc2Writer(std::move(impl));
 }
@@ -75,7 +75,7 @@ Status Pc2Writer::add(PointView<const Scalar> positions) {
   }
   impl_->buffer.clear();
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    for (int k = 0; k < 3; ++k) io::appendLittleEndian(static_cast<float>(positions[v][k]), impl_->buffer);
+    for (int k = 0; k < 3; ++k) appendLittleEndian(static_cast<float>(positions[v][k]), impl_->buffer);
   }
   Status status = impl_->file.append(impl_->buffer);
   if (status.ok()) ++impl_->frames;
@@ -96,7 +96,7 @@ Status Pc2Writer::finish() {
     return io::fileError(StatusCode::Empty, impl->path, 0, "cannot be written without frames; add one first");
   }
   std::string count;
-  io::appendLittleEndian(impl->frames, count);
+  appendLittleEndian(impl->frames, count);
   Status status = impl->file.overwrite(kFrameCountOffset, count);
   return status.ok() ? impl->file.finish() : status;
 }

@@ -79,16 +79,4 @@ inline double decodeNumber(const char* data, const NumberType& type, ByteOrder o
   return value;
 }
 
-/// Appends a number of 32 bits, the lowest byte first, on any machine.
-inline void appendLittleEndian(std::uint32_t number, std::string& bytes) {
-  const char four[4] = {static_cast<char>(number & 0xFF), static_cast<char>(number >> 8 & 0xFF),
-                        static_cast<char>(number >> 16 & 0xFF), static_cast<char>(number >> 24)};
-  bytes.append(four, sizeof four);
-}
-inline void appendLittleEndian(float number, std::string& bytes) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &number, sizeof bits);
-  appendLittleEndian(bits, bytes);
-}
-
 }  // namespace tetskin::io

@@ -34,12 +34,7 @@ void StepChunk::serialize(StateStream& stream) {
   stream.array(motion);
 }
 Bytes StepChunk::toBytes() {
-  StateStream counted;
-  serialize(counted);
-  Bytes bytes(counted.count());
-  StateStream written(bytes.data(), bytes.size());
-  serialize(written);
-  return bytes;
+  return bytesWrittenBy([this](StateStream& stream) { serialize(stream); });
 }
 std::optional<StepChunk> StepChunk::fromBytes(const Bytes& bytes) {
   StepChunk chunk;

@@ -22,6 +22,7 @@
 #include <tetskin/bullet/src/base/own_objects.h>
 #include <tetskin/replay/src/state/bullet_members.h>
 #include <tetskin/replay/src/state/world_state.h>
+#include <tetskin/solver/src/exported/solver_state.h>
 
 #include <memory>
 #include <string>
@@ -83,8 +84,8 @@ PointCache cacheOf(btConvexConcaveCollisionAlgorithm& algorithm) {
 
 enum class AlgorithmKind : unsigned char { None, Stateless, Convex, Compound, TwoCompounds, Unknown };
 
-/// Samples of Bullet's dispatcher and algorithms, as Bullet creates them for these shapes: a world's objects are
-/// recognised by comparison.
+/// Samples of Bullet's algorithms, as its dispatcher creates them for these shapes: a world's objects are recognised by
+/// comparison.
 class BulletClasses {
  public:
   static const BulletClasses& get() {
@@ -109,14 +110,8 @@ class BulletClasses {
     if (isOfSameClass(a, *plane_)) return cacheOf(static_cast<btConvexPlaneCollisionAlgorithm&>(a));
     return cacheOf(static_cast<btConvexConcaveCollisionAlgorithm&>(a));
   }
-  const btDispatcher& dispatcher() const { return dispatcher_; }
 
  private:
-  static btDefaultCollisionConstructionInfo small() {
-    btDefaultCollisionConstructionInfo info;
-    info.m_defaultMaxPersistentManifoldPoolSize = info.m_defaultMaxCollisionAlgorithmPoolSize = 16;
-    return info;
-  }
   btCollisionAlgorithm* made(btCollisionShape* first, btCollisionShape* second) {
     objects_.push_back(std::make_unique<btCollisionObject>());
     objects_.back()->setCollisionShape(first);
@@ -124,11 +119,9 @@ class BulletClasses {
     objects_.push_back(std::make_unique<btCollisionObject>());
     objects_.back()->setCollisionShape(second);
     const btCollisionObjectWrapper b(nullptr, second, objects_.back().get(), btTransform::getIdentity(), -1, -1);
-    return dispatcher_.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+    return WorldParts::get().dispatcher.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
   }
 
-  btDefaultCollisionConfiguration configuration_{small()};
-  btCollisionDispatcher dispatcher_{&configuration_};
   btSphereShape sphere_{1};
   btBoxShape box_{btVector3(1, 1, 1)};
   btTriangleShape triangleShape_{btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0)};
@@ -358,10 +351,6 @@ class AllPairs : public btOverlapFilterCallback {
 };
 
 }  // namespace
-
-bool isBulletsDispatcher(const btDispatcher& dispatcher) {
-  return isOfSameClass(dispatcher, BulletClasses::get().dispatcher());
-}
 
 void serializePairs(WorldStream& stream) {
   btOverlappingPairCache& cache = *stream.world().getPairCache();

@@ -22,22 +22,19 @@ template struct Opened<ActionsMember, &btDiscreteDynamicsWorld::m_actions>;
 namespace {
 
 bool isSavedBroadphase(const btBroadphaseInterface& broadphase) {
-  static const btBroadphaseInterface* const bullets = new btDbvtBroadphase;
-  return isWatched(broadphase) || isOfSameClass(broadphase, *bullets);
+  return isWatched(broadphase) || isOfSameClass<btBroadphaseInterface>(broadphase, WorldParts::get().broadphase);
 }
 
 bool isSavedDispatcher(const btDispatcher& dispatcher) {
-  return isWatched(dispatcher) || isBulletsDispatcher(dispatcher);
+  return isWatched(dispatcher) || isOfSameClass<btDispatcher>(dispatcher, WorldParts::get().dispatcher);
 }
 
 bool isSavedSolver(const btConstraintSolver& solver) {
-  static const btConstraintSolver* const sample = new btDeformableMultiBodyConstraintSolver;
-  return isOfSameClass(solver, *sample);
+  return isOfSameClass<btConstraintSolver>(solver, WorldParts::get().solver);
 }
 
 bool isSavedCache(const btOverlappingPairCache& cache) {
-  static const btOverlappingPairCache* const sample = new btHashedOverlappingPairCache;
-  return isOfSameClass(cache, *sample);
+  return isOfSameClass(cache, *WorldParts::get().broadphase.getOverlappingPairCache());
 }
 
 std::string unsavedPart(World& world) {

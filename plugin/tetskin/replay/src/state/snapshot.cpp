@@ -3,10 +3,10 @@
 //
 // A snapshot is a header, and a payload of parts in the machine's own numbers. Everything is checked before the world
 // is changed: the bytes by their hash, the world by the directory, which is the payload's first part.
+#include <tetskin/core/src/base/hash.h>
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/replay/src/state/saved_worlds.h>
 #include <tetskin/replay/src/state/snapshot_bytes.h>
-#include <tetskin/replay/src/state/snapshot_hash.h>
 #include <tetskin/replay/src/state/world_directory.h>
 #include <tetskin/replay/src/state/world_state.h>
 #include <tetskin/solver/src/base/required_solver.h>
@@ -87,7 +87,7 @@ Status readHeader(const unsigned char* bytes, std::size_t size, Header& header) 
     return malformed("it has " + std::to_string(size) + " bytes, not the " +
                      std::to_string(header.length + Header::bytes()) + " that were written");
   }
-  if (header.hash != snapshotHash(bytes + kHashedFrom, size - kHashedFrom))
+  if (header.hash != hashInLanes(bytes + kHashedFrom, size - kHashedFrom))
     return malformed("bytes have changed since it was saved");
   return {};
 }
@@ -119,7 +119,7 @@ Result<std::size_t> save(World& saved, void* buffer, std::size_t size, bool with
   }
   StateStream front(bytes, begin);
   header.serialize(front);
-  header.hash = snapshotHash(bytes + kHashedFrom, needed - kHashedFrom);
+  header.hash = hashInLanes(bytes + kHashedFrom, needed - kHashedFrom);
   std::memcpy(bytes + kHashAt, &header.hash, sizeof header.hash);
   return needed;
 }

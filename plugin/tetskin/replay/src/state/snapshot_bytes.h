@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to recorded runs: snapshots as vectors, and whether two belong to the same world.
+// Internal: where a snapshot's hash is; for recorded runs, snapshots as vectors, and whether two are of one world.
 #pragma once
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/core/types.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace tetskin::bullet_detail {
+
+/// Position of the hash in a snapshot: it covers all bytes after it.
+constexpr std::size_t kHashAt = 32, kHashedFrom = kHashAt + 8;
 
 /// Saves a snapshot without force records, which need not exist where a run is played; reuses the vector's memory.
 /// Errors: those of `saveSnapshot`.

@@ -66,11 +66,11 @@ void addTets(Hash& hash, const btSoftBody& body) {
   if (body.m_nodes.size() == 0) return;
   std::uint64_t sum = 0;
   for (int t = 0; t < body.m_tetras.size(); ++t) {
-    std::uint64_t tet = static_cast<std::uint64_t>(t) + 1;
-    for (const btSoftBody::Node* node : body.m_tetras[t].m_n) {
-      tet = tet * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(node - &body.m_nodes[0]);
-    }
-    sum += (tet ^ tet >> 29) * 0xBF58476D1CE4E5B9u;
+    Hash tet;
+    tet.add(static_cast<std::uint64_t>(t));
+    for (const btSoftBody::Node* node : body.m_tetras[t].m_n)
+      tet.add(static_cast<std::uint64_t>(node - &body.m_nodes[0]));
+    sum += tet.value();
   }
   hash.add(sum);
 }

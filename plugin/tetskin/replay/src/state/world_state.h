@@ -27,8 +27,6 @@ void serializeBroadphase(WorldStream& stream);
 void serializePairs(WorldStream& stream);
 /// Call it before all others when restoring: pairs are found by ids, which change. pairs_state.cpp
 void removePairs(WorldStream& stream);
-/// True if it is of Bullet's own class, and not of a derived one.
-bool isBulletsDispatcher(const btDispatcher& dispatcher);
 /// Nodes of a soft body, and what Bullet remembers of it. soft_bodies_state.cpp
 void serializeSoftBodies(WorldStream& stream);
 

@@ -70,6 +70,17 @@ void checkAnchors(WorldStream& stream, const btSoftBody& body) {
 
 }  // namespace
 
+WorldParts& WorldParts::get() {
+  static auto* const parts = new WorldParts;  // never destroyed: worlds may be static
+  return *parts;
+}
+
+btDefaultCollisionConstructionInfo WorldParts::small() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = info.m_defaultMaxCollisionAlgorithmPoolSize = 16;
+  return info;
+}
+
 bool isWatched(const btBroadphaseInterface& broadphase) {
   static bool detects = false;
   static const btBroadphaseInterface* const watched = new WatchedBroadphase(detects);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <BulletDynamics/Dynamics/btActionInterface.h>
+#include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
 #include <btBulletCollisionCommon.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/solver/deformable_world.h>
@@ -24,6 +25,24 @@ TETSKIN_SOLVER_API void serializeForces(WorldStream& stream, DeformableSolver& s
 TETSKIN_SOLVER_API void checkForces(WorldStream& stream, DeformableSolver& solver);
 /// State of the search for contacts of soft bodies with rigid objects.
 TETSKIN_SOLVER_API void serializeContactSearch(WorldStream& stream);
+
+/// Parts of a world, as samples of Bullet's classes. They are made in this library, as those of a `DeformableWorld`
+/// are: if each library contains a Bullet of its own, its classes have other virtual tables than those of other
+/// libraries.
+class WorldParts {
+ public:
+  static TETSKIN_SOLVER_API WorldParts& get();
+
+ private:
+  static btDefaultCollisionConstructionInfo small();
+  WorldParts() = default;
+  btDefaultCollisionConfiguration configuration_{small()};
+
+ public:
+  btCollisionDispatcher dispatcher{&configuration_};
+  btDbvtBroadphase broadphase;
+  btDeformableMultiBodyConstraintSolver solver;
+};
 
 /// True for the broadphase, and for the dispatcher, of a `DeformableWorld`.
 TETSKIN_SOLVER_API bool isWatched(const btBroadphaseInterface& broadphase);

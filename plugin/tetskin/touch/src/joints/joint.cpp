@@ -11,6 +11,9 @@
 #include <cmath>
 
 namespace tetskin::touch_detail {
+
+using namespace bullet_detail;
+
 namespace {
 
 /// The unit of a spring's frequency: one over Bullet's usual substep.

@@ -20,8 +20,6 @@
 
 namespace tetskin::touch_detail {
 
-using namespace bullet_detail;
-
 struct JointSettings {
   bool turns = false;                                         ///< true for a weld, which also constrains rotation
   double stiffness = 10;                                      ///< of springs: see SurfaceSpringOptions
@@ -60,22 +58,22 @@ class Joint {
   /// Called when its body has left the world and may be destroyed unnoticed.
   void drop();
   /// Adds the constraints of the step.
-  void addJoints(btScalar seconds, std::vector<PointJoint>& joints);
+  void addJoints(btScalar seconds, std::vector<bullet_detail::PointJoint>& joints);
   /// joints  those that addJoints has added, with their impulses
-  void finish(btScalar seconds, const PointJoint* joints);
+  void finish(btScalar seconds, const bullet_detail::PointJoint* joints);
   void shift(const btVector3& by);
   /// Writes or reads, for snapshots, what changes.
-  void serialize(WorldStream& stream);
+  void serialize(bullet_detail::WorldStream& stream);
   /// Writes what does not change, and must be the same in the world in which a snapshot is restored.
-  void checkState(WorldStream& stream);
+  void checkState(bullet_detail::WorldStream& stream);
 
  private:
-  CarriedPoint carriedPoint() const;
-  CarriedPoint pointBeside(const btVector3& at) const;
+  bullet_detail::CarriedPoint carriedPoint() const;
+  bullet_detail::CarriedPoint pointBeside(const btVector3& at) const;
   void weld();
   void wake();
-  PointJoint rowOf(const CarriedPoint& point, const btVector3& anchor) const;
-  void makeSpring(btScalar seconds, PointJoint& row) const;
+  bullet_detail::PointJoint rowOf(const bullet_detail::CarriedPoint& point, const btVector3& anchor) const;
+  void makeSpring(btScalar seconds, bullet_detail::PointJoint& row) const;
 
   SurfacePoint point_;
   const btSoftBodySolver* solver_;  ///< of the world in which the joint acts
@@ -84,12 +82,12 @@ class Joint {
   double nodeMass_;  ///< mean mass of the body's nodes that can move
   bool dropped_ = false;
   bool hidden_ = false;  ///< this joint keeps the body and the object from colliding
-  CarriedPoint carried_;
-  btScalar arm_ = 0;          ///< of a weld: distance of the other two points; 0: the weld holds the point only
-  CarriedPoint beside_[2];    ///< of a weld: the other two points
-  btTransform anchorBefore_;  ///< in world space, when last read
-  int added_ = 0;             ///< rows added in this step
-  bool slept_ = false;        ///< the body slept when this step began: its forces stay as they are
+  bullet_detail::CarriedPoint carried_;
+  btScalar arm_ = 0;  ///< of a weld: distance of the other two points; 0: the weld holds the point only
+  bullet_detail::CarriedPoint beside_[2];  ///< of a weld: the other two points
+  btTransform anchorBefore_;               ///< in world space, when last read
+  int added_ = 0;                          ///< rows added in this step
+  bool slept_ = false;                     ///< the body slept when this step began: its forces stay as they are
   btVector3 force_{0, 0, 0}, torque_{0, 0, 0};
 };
 

@@ -7,6 +7,8 @@
 
 namespace tetskin::touch_detail {
 
+using namespace bullet_detail;
+
 Status JointOwner::check(const btDiscreteDynamicsWorld& world, const SurfacePoint& point) {
   if (const StatusCode status = point.status(); status != StatusCode::Ok) {
     return {StatusCode::InvalidOption, std::string("invalid surface point: ") + toString(status)};

@@ -12,6 +12,8 @@
 
 namespace tetskin::touch_detail {
 
+using namespace bullet_detail;
+
 SurfaceJointRows::~SurfaceJointRows() {
   leave();
 }

@@ -15,7 +15,7 @@ class DeformableSolver;
 
 namespace tetskin::touch_detail {
 
-class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<SurfaceJointRows> {
+class SurfaceJointRows : public bullet_detail::RowSource, public std::enable_shared_from_this<SurfaceJointRows> {
  public:
   explicit SurfaceJointRows(DeformableSolver& solver) : solver_(solver) {}
   ~SurfaceJointRows() override;
@@ -31,12 +31,12 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
   /// Ignores entries that were dropped.
   void remove(const Joint& joint);
 
-  std::vector<PointJoint>* joints(btScalar seconds) override;
+  std::vector<bullet_detail::PointJoint>* joints(btScalar seconds) override;
   void finish(btScalar seconds) override;
   void removeSoftBody(btSoftBody* body) override;
   void shift(const btVector3& by) override;
-  void serialize(WorldStream& stream) override;
-  void checkState(WorldStream& stream) override;
+  void serialize(bullet_detail::WorldStream& stream) override;
+  void checkState(bullet_detail::WorldStream& stream) override;
 
  private:
   void eraseSpent();
@@ -44,7 +44,7 @@ class SurfaceJointRows : public RowSource, public std::enable_shared_from_this<S
 
   DeformableSolver& solver_;
   std::vector<std::shared_ptr<Joint>> active_;
-  std::vector<PointJoint> joints_;
+  std::vector<bullet_detail::PointJoint> joints_;
   std::vector<std::size_t> firsts_;  ///< first index in `joints_`, by part
   bool listed_ = false;
 };

@@ -129,4 +129,15 @@ class StateStream {
   bool failed_ = false;
 };
 
+/// The bytes that `serialize(stream)` writes.
+template <class Serialize>
+std::vector<unsigned char> bytesWrittenBy(Serialize&& serialize) {
+  StateStream counted;
+  serialize(counted);
+  std::vector<unsigned char> bytes(counted.count());
+  StateStream written(bytes.data(), bytes.size());
+  serialize(written);
+  return bytes;
+}
+
 }  // namespace tetskin
