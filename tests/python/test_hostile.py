@@ -39,6 +39,9 @@ CALLS = {
         lambda t: t.w.add_body(t.c, t.m, normals="recomputed", hard_edge_degrees=-1),
         error("INVALID_OPTION"),
     ),
+    "a negative distance of contact": (lambda t: t.w.add_body(t.c, t.m, contact_margin=-1), error("INVALID_OPTION")),
+    "a spacing of samples below 0": (lambda t: t.w.add_body(t.c, t.m, sample_spacing=-1), error("INVALID_OPTION")),
+    "a spacing of too many samples": (lambda t: t.w.add_body(t.c, t.m, sample_spacing=1e-9), error("INVALID_OPTION")),
     "masses of other nodes": (lambda t: t.w.add_body(t.c, t.m, node_masses=[1.0]), error("SIZE_MISMATCH")),
     "a position of two numbers": (lambda t: t.w.add_body(t.c, t.m, position=(0, 0)), TypeError),
     # types

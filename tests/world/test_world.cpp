@@ -182,12 +182,20 @@ TEST(World, ABodyThatIsRefusedLeavesNothing) {
   EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::IndexOutOfRange);
   options.pinned = {};
   const std::vector<char> saved = crowd.world.save().value();
+  const auto refused = [&] {
+    EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
+    EXPECT_EQ(crowd.world.save().value(), saved);
+  };
   options.binding.hardEdgeDegrees = -1;
-  EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
-  EXPECT_EQ(crowd.world.save().value(), saved);
+  refused();
   options.binding = {};
   options.contactMargin = -1;
-  EXPECT_EQ(crowd.world.addBody(crowd.cage, crowd.mesh, options).status().code, StatusCode::InvalidOption);
+  refused();
+  options.contactMargin = {};
+  for (const double spacing : {-1.0, 0.0, std::nan(""), 1e-9}) {
+    options.sampleSpacing = spacing;
+    refused();
+  }
   const btTransform here = btTransform::getIdentity();
   EXPECT_EQ(crowd.world.addRigidBody(ground(), 1, here).status().code, StatusCode::InvalidOption);
   EXPECT_EQ(crowd.world.addRigidBody(ground(), 0, here, -1).status().code, StatusCode::InvalidOption);

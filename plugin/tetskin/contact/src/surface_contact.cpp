@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/bullet/src/base/own_objects.h>
+#include <tetskin/contact/src/exported/contact_options.h>
 #include <tetskin/contact/src/rigid/surface_patches.h>
 #include <tetskin/contact/surface_contact.h>
 #include <tetskin/core/src/exported/skin_binding.h>
@@ -31,18 +32,6 @@ Status refused(StatusCode code, const char* message) {
   return {code, message};
 }
 
-Status checkContactOptions(const SurfaceContactOptions& options) {
-  if (options.margin && !(*options.margin >= 0.0 && std::isfinite(*options.margin))) {
-    return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite and not negative");
-  }
-  if (options.sampleSpacing && !(*options.sampleSpacing > 0.0)) {
-    return refused(StatusCode::InvalidOption,
-                   "the sample spacing of surface contact must be above 0; for no samples, give "
-                   "SurfaceContactOptions::kNoSamples");
-  }
-  return {};
-}
-
 Status checkFit(const btSoftBody& body, const Embedding& embedding, const TriangleMesh& mesh) {
   if (embedding.empty()) return refused(StatusCode::Empty, "the binding has no vertices; surface contact needs some");
   if (Status status = validate(mesh); !status.ok()) return status;
@@ -54,13 +43,6 @@ Status checkFit(const btSoftBody& body, const Embedding& embedding, const Triang
                    "the binding belongs to another cage; the body has another number of nodes");
   }
   return {};
-}
-
-Status checkCount(const contact_detail::Divisions& divisions) {
-  if (contact_detail::countOfSamples(divisions) <= kMaxSamples) return {};
-  return refused(StatusCode::InvalidOption,
-                 "the sample spacing of surface contact is so small that the mesh would need more than 10,000,000 "
-                 "samples; make it larger, in the unit of the mesh at rest");
 }
 
 Status checkWorld(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body) {
@@ -95,6 +77,23 @@ double largestSide(const btSoftBody& body) {
 
 }  // namespace
 
+Status checkContactOptions(const SurfaceContactOptions& options, const TriangleMesh& mesh) {
+  if (options.margin && !(*options.margin >= 0.0 && std::isfinite(*options.margin))) {
+    return refused(StatusCode::InvalidOption, "the margin of surface contact must be finite and not negative");
+  }
+  if (!options.sampleSpacing) return {};
+  if (!(*options.sampleSpacing > 0.0)) {
+    return refused(StatusCode::InvalidOption,
+                   "the sample spacing of surface contact must be above 0; for no samples, give "
+                   "SurfaceContactOptions::kNoSamples");
+  }
+  const contact_detail::Divisions divisions = contact_detail::divisionsFor(mesh, *options.sampleSpacing);
+  if (contact_detail::countOfSamples(divisions) <= kMaxSamples) return {};
+  return refused(StatusCode::InvalidOption,
+                 "the sample spacing of surface contact is so small that the mesh would need more than 10,000,000 "
+                 "samples; make it larger, in the unit of the mesh at rest");
+}
+
 struct SurfaceContact::Impl {
   Impl(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, ContactPatches patches,
        const SearchDistances& distances)
@@ -110,14 +109,13 @@ SurfaceContact::~SurfaceContact() = default;
 Result<std::unique_ptr<SurfaceContact>> SurfaceContact::add(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                                                             const SoftBodyBinding& binding, const TriangleMesh& mesh,
                                                             const SurfaceContactOptions& options) {
-  for (Status status :
-       {checkContactOptions(options), checkWorld(world, body), checkFit(body, binding.embedding(), mesh)}) {
+  for (Status status : {checkWorld(world, body), checkFit(body, binding.embedding(), mesh)}) {
     if (!status.ok()) return status;
   }
+  if (Status status = checkContactOptions(options, mesh); !status.ok()) return status;
   const contact_detail::Divisions divisions =
       options.sampleSpacing ? contact_detail::divisionsFor(mesh, *options.sampleSpacing)
                             : contact_detail::defaultDivisions(binding.embedding(), mesh, dataOf(binding).restNodes);
-  if (Status status = checkCount(divisions); !status.ok()) return status;
   const double size = largestSide(body);
   ContactPatches patches = contact_detail::makeContactPatches(binding.embedding(), mesh, divisions);
   SearchDistances distances;

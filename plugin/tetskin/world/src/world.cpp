@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/contact/src/exported/contact_options.h>
 #include <tetskin/replay/snapshot.h>
 #include <tetskin/world/world.h>
 
@@ -25,6 +26,13 @@ Unless(Undo) -> Unless<Undo>;
 
 Status invalid(const char* message) {
   return {StatusCode::InvalidOption, message};
+}
+
+SurfaceContactOptions contactOptions(const WorldBodyOptions& options) {
+  SurfaceContactOptions contact;
+  contact.margin = options.contactMargin;
+  contact.sampleSpacing = options.sampleSpacing;
+  return contact;
 }
 
 template <class Thing>
@@ -274,6 +282,9 @@ Result<std::shared_ptr<const ContactShape>> World::prepareSurface(Body& body, co
     shared.binding = body.binding = std::move(binding).value();
   }
   body.fit = shared.fit;
+  if (options.surfaceContact) {
+    if (Status status = checkContactOptions(contactOptions(options), *body.mesh); !status.ok()) return status;
+  }
   std::shared_ptr<const ContactShape> shape = shared.shape.lock();
   if (!shape && (options.softContact || options.selfContact)) {
     auto made = ContactShape::create(*body.cage, *body.mesh);
@@ -295,10 +306,8 @@ Status World::bindSurface(Body& body, const WorldBodyOptions& options, std::shar
   Status bound = body.skin.bind(body.body->body(), body.binding, instance);
   if (!bound.ok()) return bound;
   if (options.surfaceContact) {
-    SurfaceContactOptions margins;
-    margins.margin = options.contactMargin;
-    margins.sampleSpacing = options.sampleSpacing;
-    auto contact = SurfaceContact::add(*world_, body.body->body(), *body.binding, *body.mesh, margins);
+    auto contact =
+        SurfaceContact::add(*world_, body.body->body(), *body.binding, *body.mesh, contactOptions(options));
     if (!contact.ok()) return contact.status();
     body.contact = std::move(contact).value();
   }
