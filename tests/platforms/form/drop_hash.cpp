@@ -54,7 +54,7 @@ tetskin::TriangleMesh makeBall(int n) {
 
 /// FNV-1a of the positions as floats.
 std::uint64_t hashOf(const btSoftBody& body) {
-  std::uint64_t hash = 1469598103934665603u;
+  std::uint64_t hash = tetskin::kStateHashBasis;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     for (int k = 0; k < 3; ++k) {
       const auto x = static_cast<float>(body.m_nodes[n].m_x[k]);

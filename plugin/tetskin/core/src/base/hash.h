@@ -56,6 +56,9 @@ inline std::uint64_t hashInLanes(const unsigned char* bytes, std::size_t count) 
   return hash.value();
 }
 
+/// What hashes of states begin with. Not FNV's own basis: recorded hashes were made with this one.
+constexpr std::uint64_t kStateHashBasis = 1469598103934665603u;
+
 /// FNV-1a of bytes, for results that other programs compare: anyone can compute it.
 /// before  the hash of the bytes before them
 inline std::uint64_t fnv1a(const void* bytes, std::size_t count, std::uint64_t before) {

@@ -12,7 +12,7 @@ namespace tetskin::bullet_detail {
 /// Hash of positions and velocities of all nodes, and of transforms and velocities of all rigid bodies, to the last
 /// bit, in the order of the world's objects.
 inline std::uint64_t stateHash(const btDeformableMultiBodyDynamicsWorld& world) {
-  std::uint64_t hash = 1469598103934665603u;
+  std::uint64_t hash = kStateHashBasis;
   const auto add = [&](const btVector3& v) { hash = fnv1a(&v[0], 3 * sizeof v[0], hash); };
   for (int i = 0; i < world.getNumCollisionObjects(); ++i) {
     const btCollisionObject* object = world.getCollisionObjectArray()[i];
