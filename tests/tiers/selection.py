@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What `tests/run --change` tests with sanitizers and clang-tidy: what differs from the commit at which `tests/run --all`
-last passed, and what uses it.
+"""What `tests/run --change` tests: with sanitizers and clang-tidy, what differs from the commit at which `tests/run --all`
+last passed, and what uses it; which unit tests it leaves out; and which tests of the bindings it runs.
 
 selection.py select BUILD              writes BUILD/changes/ and prints it in words
 selection.py start BUILD               before tests/run --all: what is tested, and whether it is a commit
@@ -49,11 +49,16 @@ PAGE = "README.md"
 # with the module for JavaScript.
 PYTHON = re.compile(r"^((plugin|demos/examples|tests)/python|demos/lab/peers|plugin/facade)/|^tests/platforms/common[.]sh$|"
                     r"^plugin/docs/(python|pybullet|many_runs)[.]md$")
-# What else is in the package, its build or its tests: the library, what draws its pages, a page with its figures.
-IN_PYTHON = re.compile(r"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/peers[.]md|(plugin/)?CMakeLists[.]txt|"
-                       r"plugin/cmake/.*|demos/setup[.]sh|tests/(configurations[.]cmake|run))$")
+# What builds or runs the package and the module for JavaScript.
+BUILDS = r"(plugin/)?CMakeLists[.]txt|plugin/cmake/.*|demos/setup[.]sh|tests/(configurations[.]cmake|run)"
+# What else is in the package or its tests: the library, what draws the package's pages, and peers.md, whose figures a test
+# compares.
+IN_PYTHON = re.compile(rf"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/peers[.]md|{BUILDS})$")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
 WEB = re.compile(r"^(plugin/js|plugin/facade|demos/examples/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")
+# What they share with others: Bullet and tinygltf by the Python package; scenes that are compiled into the page.
+IN_WEB = re.compile(rf"^(plugin/python/(cmake/(bullet|tinygltf)[.]cmake|fetch_bullet|licences/.*)|demos/run|{BUILDS})$")
+IN_PAGE = re.compile(r"^demos/(scenes/(serpent\w*|materials|angles)|view/view_page)[.](cpp|h)$")
 OF_MODULE_ALONE = re.compile(r"^(tests/js/|plugin/js/README[.]md$|plugin/docs/javascript[.]md$)")
 OF_PAGE_ALONE = re.compile(r"^(demos/examples/live/|tests/live/.*[.](py|js)$)")
 COMPILED = {"STATIC_LIBRARY", "SHARED_LIBRARY", "MODULE_LIBRARY", "OBJECT_LIBRARY", "EXECUTABLE"}
@@ -185,7 +190,7 @@ def selected(graph, files):
     """The targets that changed, by file; or why all libraries count as changed."""
     changed = {}
     for file in files:
-        if PYTHON.search(file) or WEB.search(file) or (OTHER_TEST.search(file) and file not in graph.owners):
+        if file not in graph.owners and any(kind.search(file) for kind in (PYTHON, WEB, OTHER_TEST)):
             continue
         if MACHINERY.search(file) or (file.startswith("tests/") and not ORDINARY_TEST.search(file)):
             return {}, f"{file} has changed, on which all tests depend"
@@ -204,8 +209,8 @@ def is_library_source(file):
 def web_tests(files):
     """Which tests of JavaScript and the live page a change of these files needs."""
     own = [file for file in files if WEB.search(file) or OF_MODULE_ALONE.search(file)]
-    library = any(file.startswith("plugin/tetskin/") and not READ.search(file) for file in files)
-    page = any(not OF_MODULE_ALONE.search(file) for file in own)
+    library = any(file.startswith("plugin/tetskin/") and not READ.search(file) or IN_WEB.search(file) for file in files)
+    page = any(not OF_MODULE_ALONE.search(file) for file in own) or any(IN_PAGE.search(file) for file in files)
     module = library or any(not OF_PAGE_ALONE.search(file) for file in own)
     return " ".join(["module"] * module + ["page"] * page + ["scene"] * (library and not page))
 
