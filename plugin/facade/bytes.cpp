@@ -56,17 +56,20 @@ void serialize(StateStream& stream, ReportedCage& cage) {
 }
 
 template <class Model>
-std::vector<unsigned char> written(const Model& model, const char* tag) {
-  std::vector<unsigned char> bytes = bytesWrittenBy([&](StateStream& stream) {
+void write(const Model& model, const char* tag, const Room& room) {
+  const auto everything = [&](StateStream stream) {
     Head head;
     std::memcpy(head.tag, tag, sizeof head.tag);
     stream(head.hash);
     stream.plain(head.tag, sizeof head.tag);
     serialize(stream, const_cast<Model&>(model));  // NOLINT: what is saved is not changed
-  });
-  const std::uint64_t hash = hashInLanes(bytes.data() + kHashed, bytes.size() - kHashed);
-  std::memcpy(bytes.data(), &hash, sizeof hash);
-  return bytes;
+    return stream.count();
+  };
+  const std::size_t count = everything(StateStream());
+  unsigned char* const bytes = room(count);
+  everything(StateStream(bytes, count));
+  const std::uint64_t hash = hashInLanes(bytes + kHashed, count - kHashed);
+  std::memcpy(bytes, &hash, sizeof hash);
 }
 
 template <class Model>
@@ -95,11 +98,11 @@ void checkGroups(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<unsigned char> bytesOf(const MeshModel& model) {
-  return written(*model.mesh, kMesh);
+void writeBytes(const MeshModel& model, const Room& room) {
+  write(*model.mesh, kMesh, room);
 }
-std::vector<unsigned char> bytesOf(const CageModel& model) {
-  return written(*model.cage, kCage);
+void writeBytes(const CageModel& model, const Room& room) {
+  write(*model.cage, kCage, room);
 }
 
 MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count) {

@@ -16,14 +16,14 @@ const Vec3& finite(const Vec3& vector, const char* name) {
 
 void checkMesh(const TriangleMesh& mesh) {
   check(validate(mesh));
-  const auto check = [&](std::size_t length, const char* name) {
+  const auto checkCount = [&](std::size_t length, const char* name) {
     if (length != 0 && length != mesh.vertexCount())
       fail(StatusCode::SizeMismatch, std::string(name) + ": " + std::to_string(length) + " for " +
                                          std::to_string(mesh.vertexCount()) + " vertices");
   };
-  check(mesh.normals.size(), "normals");
-  check(mesh.tangents.size(), "tangents");
-  check(mesh.texcoords.size(), "texcoords");
+  checkCount(mesh.normals.size(), "normals");
+  checkCount(mesh.tangents.size(), "tangents");
+  checkCount(mesh.texcoords.size(), "texcoords");
 }
 
 Interpolation valueOf(const Choice<Interpolation>& interpolation) {

@@ -11,6 +11,8 @@
 #include <tetskin/core/mesh_skin.h>
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,10 +39,12 @@ inline CageModel cageModel(Cage&& cage, std::string report = {}) {
 
 /// As `validate`, and that normals, tangents and texture coordinates are none, or one for each vertex. Throws.
 void checkMesh(const TriangleMesh& mesh);
-/// For other workers and processes of this version of tetskin, on machines of the same kind.
-std::vector<unsigned char> bytesOf(const MeshModel& mesh);
-std::vector<unsigned char> bytesOf(const CageModel& cage);
-/// Back. Throw: Malformed, if bytes have changed or are of something else; or the error of `validate`.
+/// Called with the number of bytes; returns where they are written.
+using Room = std::function<unsigned char*(std::size_t)>;
+/// As bytes, for other workers and processes of this version of tetskin, on machines of the same kind.
+void writeBytes(const MeshModel& mesh, const Room& room);
+void writeBytes(const CageModel& cage, const Room& room);
+/// Back. Throw: Malformed, if bytes have changed or are of something else; or the error of `checkMesh` or `validate`.
 MeshModel meshOfBytes(const unsigned char* bytes, std::size_t count);
 CageModel cageOfBytes(const unsigned char* bytes, std::size_t count);
 

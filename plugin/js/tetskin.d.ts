@@ -168,7 +168,7 @@ export interface Cage extends Thing {
   edges(): Int32Array;
   /** f x 3 node indices of the boundary's faces, outwards, a new array. */
   boundaryFaces(): Int32Array;
-  /** How it was made, and how well it fits; empty for a cage from bytes or arrays. */
+  /** How it was made, and how well it fits; empty for a cage from arrays or `refineQuadratic`. */
   readonly report: string;
   /** A copy of another size, with masses to match. */
   scaled(scale: number): Cage;
@@ -305,7 +305,7 @@ export interface BodyOptions {
   outside?: "nearest" | "barycentric";
   /** How far outside a vertex may be, rest length; without it, any distance */
   maxDistance?: number;
-  /** Recomputed normals stay split at an edge whose rest normals differ by more; 5 */
+  /** Degrees: recomputed normals stay split where rest normals at an edge differ by more than this; 5 */
   hardEdgeDegrees?: number;
   /** Whether steps compute the surface, on the CPU; true. With a Palette, false saves their time. */
   visible?: boolean;

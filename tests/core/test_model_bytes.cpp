@@ -60,6 +60,19 @@ StatusCode refusalOf(TriangleMesh mesh) {
   return refusalOf(bytesOf(facade::MeshModel{std::make_shared<TriangleMesh>(std::move(mesh))}));
 }
 
+TEST(ModelBytes, KeepAllThatAMeshHas) {
+  const TriangleMesh mesh = fullMesh();
+  const ModelBytes bytes = bytesOf(facade::MeshModel{std::make_shared<TriangleMesh>(mesh)});
+  const TriangleMesh read = *facade::meshOfBytes(bytes.data(), bytes.size()).mesh;
+  EXPECT_EQ(read.positions, mesh.positions);
+  EXPECT_EQ(read.triangles, mesh.triangles);
+  EXPECT_EQ(read.normals, mesh.normals);
+  EXPECT_EQ(read.tangents, mesh.tangents);
+  EXPECT_EQ(read.texcoords, mesh.texcoords);
+  EXPECT_EQ(read.groups.size(), 2u);
+  EXPECT_EQ(bytesOf(facade::MeshModel{std::make_shared<TriangleMesh>(read)}), bytes);
+}
+
 TEST(ModelBytes, OfAMeshThatDoesNotFitTogetherAreRefused) {
   EXPECT_EQ(refusalOf(fullMesh()), StatusCode::Ok);
   TriangleMesh mesh = fullMesh();

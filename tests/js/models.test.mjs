@@ -115,6 +115,13 @@ test("a cage is handed over to another instance by its bytes", async () => {
   assert.throws(() => tetskin.createWorld().addBody(copy, null), failure("InvalidArgument", /another instance/));
 });
 
+test("the bytes of a mesh keep its groups", () => {
+  const text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng first\nf 1 2 3\ng second\nf 1 3 4\n";
+  const bytes = tetskin.readMesh(Buffer.from(text), "obj").toBytes();
+  for (const name of ["first", "second"]) assert.ok(Buffer.from(bytes).includes(name), name);
+  assert.deepEqual(tetskin.meshFromBytes(bytes).toBytes(), bytes);
+});
+
 test("bytes that are damaged, cut short or of something else are refused", () => {
   const bytes = tetskin.createCage(mesh, {targetTets: 100}).toBytes();
   for (const broken of [bytes.slice(0, 100), new Uint8Array(0), mesh.toBytes()]) {

@@ -164,9 +164,10 @@ def test_is_refused(name, cage, mesh):
 
 def test_damaged_pickles_are_refused(cage):
     state = cage.__getstate__()
-    for broken in (state[:-4], state + b"1", state[:100] + b"!" + state[101:], b""):
-        with pytest.raises(ts.Error):
+    for broken in (state[:-4], state + b"1", state[:100] + b"!" + state[101:], b"", (), (cage.nodes, cage.tets)):
+        with pytest.raises(ts.Error) as raised:
             ts.Cage.__new__(ts.Cage).__setstate__(broken)
+        assert raised.value.code == ts.StatusCode.MALFORMED and "this version of tetskin" in str(raised.value)
 
 
 def test_a_snapshot_with_any_byte_changed_is_refused_or_another_one(dropped):

@@ -2,15 +2,16 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Meshes and cages.
+#include "guarded.h"
 
 #include <emscripten.h>
 #include <facade/models.h>
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/io/files.h>
-#include "guarded.h"
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 
 namespace tetskin::js {
@@ -73,15 +74,24 @@ MeshModel createMesh(Doubles positions, Indices triangles, Doubles normals, Doub
   mesh->triangles = indexRows<3>(triangles);
   mesh->normals = floatRows<Eigen::Vector3f>(normals);
   mesh->texcoords = floatRows<Eigen::Vector2f>(texcoords);
-  check(validate(*mesh));
+  checkMesh(*mesh);
   return {std::move(mesh)};
 }
 
 MeshModel meshFromBytes(std::uintptr_t bytes, std::size_t count) {
   return meshOfBytes(reinterpret_cast<const unsigned char*>(bytes), count);
 }
+template <class Model>
+View lentBytes(const Model& model) {
+  std::vector<unsigned char> bytes;
+  writeBytes(model, [&](std::size_t count) {
+    bytes.resize(count);
+    return bytes.data();
+  });
+  return lent(std::move(bytes));
+}
 View meshToBytes(const MeshModel& model) {
-  return lent(bytesOf(model));
+  return lentBytes(model);
 }
 View meshPositions(const MeshModel& model) {
   return viewNumbers(model.mesh->positions.front().data(), 3 * model.mesh->vertexCount());
@@ -158,7 +168,7 @@ CageModel cageFromBytes(std::uintptr_t bytes, std::size_t count) {
   return cageOfBytes(reinterpret_cast<const unsigned char*>(bytes), count);
 }
 View cageToBytes(const CageModel& model) {
-  return lent(bytesOf(model));
+  return lentBytes(model);
 }
 View cageNodes(const CageModel& model) {
   return viewNumbers(model.cage->mesh.nodes.front().data(), 3 * model.cage->mesh.nodeCount());

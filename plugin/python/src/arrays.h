@@ -195,16 +195,25 @@ class Class : public nb::class_<T> {
     return def("__repr__", [name, words](const T& self) { return "<tetskin." + name + ": " + words(self) + ">"; });
   }
   /// Pickling, also by the oldest protocols: the state is one object of bytes.
-  /// ofBytes  makes an object of the bytes of `facade::bytesOf`; may throw
+  /// ofBytes  makes an object of the bytes of `facade::writeBytes`; may throw
   template <class OfBytes>
   Class& pickled(OfBytes ofBytes) {
     def("__getstate__", [](const T& self) {
-      const std::vector<unsigned char> bytes = bytesOf(self);
-      return nb::bytes(bytes.data(), bytes.size());
+      nb::object state;
+      writeBytes(self, [&](std::size_t count) {
+        state = nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(count)));
+        if (!state.is_valid()) throw nb::python_error();
+        return reinterpret_cast<unsigned char*>(PyBytes_AsString(state.ptr()));
+      });
+      return nb::borrow<nb::bytes>(state);
     });
-    def("__setstate__", [ofBytes](T& self, const nb::bytes& state) {
-      new (&self) T(ofBytes(static_cast<const unsigned char*>(state.data()), state.size()));
-    });
+    const auto setState = [ofBytes](T& self, const nb::object& state) {
+      nb::bytes bytes;
+      if (!nb::try_cast(state, bytes))
+        fail(StatusCode::Malformed, "the state is not bytes: not a pickled object of this version of tetskin");
+      new (&self) T(ofBytes(static_cast<const unsigned char*>(bytes.data()), bytes.size()));
+    };
+    def("__setstate__", setState, nb::sig("def __setstate__(self, state: bytes, /) -> None"));
     const auto reduce = [](nb::handle self) {
       const nb::object newObject = nb::module_::import_("copyreg").attr("__newobj__");
       return nb::make_tuple(newObject, nb::make_tuple(self.type()), self.attr("__getstate__")());

@@ -132,7 +132,7 @@ void bindSkins(nb::module_& module) {
           "Embeds the mesh in the cage at rest. interpolation: 'linear' or 'quadratic'; normals: 'none', 'transformed' "
           "or 'recomputed'; outside: 'nearest' or 'barycentric': which tet carries a vertex outside the cage; "
           "max_distance: rest units; a vertex farther than this from every tet raises an Error; hard_edge_degrees: "
-          "recomputed normals stay split at an edge whose rest normals differ by more.")
+          "recomputed normals stay split where rest normals at an edge differ by more.")
       .def(
           "update",
           [](Skin& skin, const ArrayLike& nodes) {

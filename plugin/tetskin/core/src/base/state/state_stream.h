@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Between the libraries: the stream to and from a snapshot. One function per struct, `serialize`, serves both
-// directions, so that they cannot differ.
+// Between the libraries: the stream to and from a snapshot, a recorded step, or the bytes of a mesh or cage. One
+// function per struct, `serialize`, serves both directions, so that they cannot differ.
 #pragma once
 
 #include <cassert>
@@ -15,7 +15,7 @@
 namespace tetskin {
 
 /// Counts, writes, or reads bytes. It writes numbers one by one, never structs, whose padding is not initialised; in
-/// the machine's own byte order, which the snapshot's header states.
+/// the machine's own byte order: a snapshot's header states it, and others are refused by their hash.
 ///
 /// Reading never goes beyond the bytes: what is missing reads as 0, and `failed` is true from then on.
 class StateStream {
