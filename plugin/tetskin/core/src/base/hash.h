@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #pragma once
 
+#include <tetskin/export.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -36,25 +38,7 @@ class Hash {
 
 /// A hash of bytes, for some 100 kilobytes within microseconds: its lanes are independent. A change of a single byte
 /// never goes unnoticed.
-inline std::uint64_t hashInLanes(const unsigned char* bytes, std::size_t count) {
-  constexpr std::size_t kLanes = 8;
-  Hash lanes[kLanes];
-  std::size_t at = 0;
-  for (; at + 8 * kLanes <= count; at += 8 * kLanes) {
-    std::uint64_t words[kLanes];
-    std::memcpy(words, bytes + at, sizeof words);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane].add(words[lane]);
-  }
-  for (std::size_t lane = 0; at < count; at += 8, ++lane) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes + at, count - at < 8 ? count - at : 8);
-    lanes[lane].add(word);
-  }
-  Hash hash;
-  hash.add(std::uint64_t{count});
-  for (const Hash& lane : lanes) hash.add(lane.value());
-  return hash.value();
-}
+TETSKIN_CORE_API std::uint64_t hashInLanes(const unsigned char* bytes, std::size_t count);
 
 /// What hashes of states begin with. Not FNV's own basis: recorded hashes were made with this one.
 constexpr std::uint64_t kStateHashBasis = 1469598103934665603u;
