@@ -120,8 +120,8 @@ set_tests_properties(python.staged_package PROPERTIES PROCESSORS ${nested_parall
 set_tests_properties(python.wheel PROPERTIES COST 2000)
 set_tests_properties(python.package python.beside_others PROPERTIES COST 900)
 
-# The module for JavaScript in Node, and the live page in headless Chromium: both are built in one folder, by one test at
-# a time, which compiles what has changed since the last one. Without Emscripten, Node or Chromium they are skipped.
+# The module for JavaScript in Node, and the live page in headless Chromium: both are built in one folder, by one test
+# at a time, which compiles what has changed since the last one. Without Emscripten, Node or Chromium they are skipped.
 # tests/run --change runs one scene where only the library below them has changed.
 set(command_js.module js/run)
 set(command_live.driver live/run --driver)

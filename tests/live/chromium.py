@@ -398,6 +398,8 @@ def unfilter(kind, row, before, channels):
                 guess = (left + above) // 2
             else:
                 to_left, to_above, to_corner = abs(above - corner), abs(left - corner), abs(left + above - 2 * corner)
-                guess = left if to_left <= to_above and to_left <= to_corner else above if to_above <= to_corner else corner
+                guess = above if to_above <= to_corner else corner
+                if to_left <= to_above and to_left <= to_corner:
+                    guess = left
             left = row[i] = (row[i] + guess) & 255
             corner = above

@@ -84,7 +84,7 @@ class World {
   std::unique_ptr<btDeformableMultiBodyDynamicsWorld> world;
 
  private:
-  std::unique_ptr<Rigid> floor_;
+  std::unique_ptr<Rigid> floor_;  ///< removes itself from `world`: release it before that
 };
 
 inline btTransform at(double x, double y, double z) {

@@ -69,7 +69,8 @@ def member_faults(structure, members, options):
 
 
 def check_itself():
-    planted = members_of("Planted", "struct Planted : Other {\n  int a = 1;  ///< a; b\n  A<int, 2> b{};\n  bool c, d;\n};")
+    planted = members_of("Planted", "struct Planted : Other {\n  int a = 1;  ///< a; b\n  A<int, 2> b{};\n"
+                                    "  bool c, d;\n};")
     assert planted == {"a": "1", "b": "", "c": "", "d": ""}, planted
     members = members_of("BindingOptions", read("plugin/tetskin/core/mesh_skin.h"))
     for changed in ({**members, "planted": "1.0"}, {**members, "hardEdgeDegrees": "6.0"}, {}):

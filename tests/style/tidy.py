@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""tidy.py CLANG_TIDY JOINED ALONE [--files LIST]: runs the checks of .clang-tidy on the library, two files at a time: on
-what the build folder JOINED compiles, that is on many sources at once where it joins them by including them. Some checks
-look only at the file that is compiled, and so see nothing in joined sources: these run on each source that has anything
-for them, with the commands of ALONE, a build that does not join. With a LIST of files, one per line, only on these, and
-on the sources that are joined with them. A header is checked as part of a source that includes it.
+"""tidy.py CLANG_TIDY JOINED ALONE [--files LIST]: runs the checks of .clang-tidy on the library, two files at a time:
+on what the build folder JOINED compiles, that is on many sources at once where it joins them by including them. Some
+checks look only at the file that is compiled, and so see nothing in joined sources: these run on each source that has
+anything for them, with the commands of ALONE, a build that does not join. With a LIST of files, one per line, only on
+these, and on the sources that are joined with them. A header is checked as part of a source that includes it.
 
 The build folders' compile commands are GCC's: its default C++ is 17, clang's is not, and it has other warnings."""
 import concurrent.futures

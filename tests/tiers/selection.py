@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Zlib
 # SPDX-FileCopyrightText: 2026 the tetskin authors
-"""What `tests/run --change` tests: with sanitizers and clang-tidy, what differs from the commit at which `tests/run --all`
-last passed, and what uses it; which unit tests it leaves out; and which tests of the bindings it runs.
+"""What `tests/run --change` tests: with sanitizers and clang-tidy, what differs from the commit at which
+`tests/run --all` last passed, and what uses it; which unit tests it leaves out; which tests of the bindings it runs.
 
 selection.py select BUILD              writes BUILD/changes/ and prints it in words
 selection.py start BUILD               before tests/run --all: what is tested, and whether it is a commit
@@ -47,12 +47,12 @@ MACHINERY = re.compile(r"^([.]ci|tests/tiers)/|^demos/(setup[.]sh|run)$|[.]cmake
 PAGE = "README.md"
 # The Python package and its demos, which are built and tested as a whole, by tests of their own; with what it shares
 # with the module for JavaScript.
-PYTHON = re.compile(r"^((plugin|demos/examples|tests)/python|demos/lab/peers|plugin/facade)/|^tests/platforms/common[.]sh$|"
-                    r"^plugin/docs/(python|pybullet|many_runs)[.]md$")
+PYTHON = re.compile(r"^((plugin|demos/examples|tests)/python|demos/lab/peers|plugin/facade)/|"
+                    r"^tests/platforms/common[.]sh$|^plugin/docs/(python|pybullet|many_runs)[.]md$")
 # What builds or runs the package and the module for JavaScript.
 BUILDS = r"(plugin/)?CMakeLists[.]txt|plugin/cmake/.*|demos/setup[.]sh|tests/(configurations[.]cmake|run)"
-# What else is in the package or its tests: the library, what draws the package's pages, and peers.md, whose figures a test
-# compares.
+# What else is in the package or its tests: the library, what draws the package's pages, and peers.md, whose figures a
+# test compares.
 IN_PYTHON = re.compile(rf"^(plugin/tetskin/.*[.](cpp|h|txt)|demos/view/.*|plugin/docs/peers[.]md|{BUILDS})$")
 # The module for JavaScript and the page that is made with it: these, too, have tests of their own.
 WEB = re.compile(r"^(plugin/js|plugin/facade|demos/examples/live|tests/js|tests/live)/|^tests/platforms/common[.]sh$")

@@ -26,9 +26,9 @@ namespace tetskin {
 /// Cost     O(nodes + tets + objects + contacts), some 50 microseconds for 3,000 tets; allocates little
 /// Errors   SizeMismatch: the buffer is too small, and holds no snapshot; NotSaved: the world has something that cannot
 ///          be saved, which the message names. Bullet's classes are recognised by their virtual tables and type
-///          information. If several modules of a program each contain a Bullet of their own, joints of another module,
-///          and worlds that are no `DeformableWorld`, are not recognised with MSVC or without type information: with
-///          MSVC, if tetskin is a DLL, Bullet must be one, too, for these
+///          information. Where several modules of a program each contain a Bullet, MSVC, or a build without type
+///          information, cannot recognise another module's joints, nor its worlds that are no `DeformableWorld`: with
+///          MSVC and tetskin as a DLL, these need a Bullet that is a DLL, too
 TETSKIN_REPLAY_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
                                                     std::size_t size);
 
