@@ -306,8 +306,7 @@ Status World::bindSurface(Body& body, const WorldBodyOptions& options, std::shar
   Status bound = body.skin.bind(body.body->body(), body.binding, instance);
   if (!bound.ok()) return bound;
   if (options.surfaceContact) {
-    auto contact =
-        SurfaceContact::add(*world_, body.body->body(), *body.binding, *body.mesh, contactOptions(options));
+    auto contact = SurfaceContact::add(*world_, body.body->body(), *body.binding, *body.mesh, contactOptions(options));
     if (!contact.ok()) return contact.status();
     body.contact = std::move(contact).value();
   }

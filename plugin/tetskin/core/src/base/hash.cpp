@@ -5,7 +5,7 @@
 namespace tetskin {
 
 std::uint64_t hashInLanes(const unsigned char* bytes, std::size_t count) {
-  constexpr std::size_t kLanes = 8;
+  constexpr std::size_t kLanes = 8;  ///< as many as the processor works on at a time
   Hash lanes[kLanes];
   std::size_t at = 0;
   for (; at + 8 * kLanes <= count; at += 8 * kLanes) {
