@@ -26,9 +26,8 @@ namespace tetskin {
 /// Cost     O(nodes + tets + objects + contacts), some 50 microseconds for 3,000 tets; allocates little
 /// Errors   SizeMismatch: the buffer is too small, and holds no snapshot; NotSaved: the world has something that cannot
 ///          be saved, which the message names. Bullet's classes are recognised by their virtual tables and type
-///          information. Where several modules of a program each contain a Bullet, MSVC, or a build without type
-///          information, cannot recognise another module's joints, nor its worlds that are no `DeformableWorld`: with
-///          MSVC and tetskin as a DLL, these need a Bullet that is a DLL, too
+///          information. With MSVC, or without type information, those of a module with a Bullet of its own are not:
+///          its joints, and its worlds, except a `DeformableWorld`. There, where tetskin is a DLL, Bullet must be one
 TETSKIN_REPLAY_API Result<std::size_t> saveSnapshot(const btDeformableMultiBodyDynamicsWorld& world, void* buffer,
                                                     std::size_t size);
 
