@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace tetskin::elastic_detail {
 namespace {
@@ -179,6 +180,15 @@ double BodyComponents<S>::largestRadius() const {
 }
 
 template <class S>
+double BodyComponents<S>::impactFrequency(std::size_t component) const {
+  constexpr double kPi = 3.14159265358979324, kLength = 3.0;  // in radii of gyration: a ball has 2.6, a bar 3.5
+  const ComponentMotion& motion = motions_[component];
+  const double length = kLength * motion.radius();
+  if (!(length > 0.0)) return 0.0;
+  return kPi * std::sqrt(stiffness_[component] / motion.mass()) / (2.0 * length);
+}
+
+template <class S>
 std::vector<std::array<double, 9>> BodyComponents<S>::turns() const {
   std::vector<std::array<double, 9>> turns(count());
   for (std::size_t part = 0; part < turns.size(); ++part) {
@@ -189,10 +199,10 @@ std::vector<std::array<double, 9>> BodyComponents<S>::turns() const {
 }
 
 template <class S>
-double BodyComponents<S>::compliance(std::size_t slot, const std::array<double, 3>& point,
+double BodyComponents<S>::compliance(std::size_t component, const std::array<double, 3>& point,
                                      const std::array<double, 3>& direction) const {
-  return motions_[partOf_[slot]].compliance(Eigen::Vector3d(point[0], point[1], point[2]),
-                                            Eigen::Vector3d(direction[0], direction[1], direction[2]));
+  return motions_[component].compliance(Eigen::Vector3d(point[0], point[1], point[2]),
+                                        Eigen::Vector3d(direction[0], direction[1], direction[2]));
 }
 
 template <class S>
@@ -289,6 +299,30 @@ void BodyComponents<S>::projectToRigidMotion(const NodeStates<S>& nodes, S* solu
   std::vector<RigidVelocity> rigid;
   for (std::size_t k = 0; k < count(); ++k) rigid.push_back(motions_[k].withMomentum(own[k]));
   changeSolution(nodes, rigid, solution, [](S, S motion) { return motion; });
+}
+
+template <class S>
+RigidVelocity BodyComponents<S>::solvedVelocity(const NodeStates<S>& nodes, std::size_t component,
+                                                const S* solution) const {
+  assert(component < count());
+  return motions_[component].withMomentum(momenta(nodes, solution, true)[component]);
+}
+
+template <class S>
+void BodyComponents<S>::push(const NodeStates<S>& nodes, std::size_t component, const Eigen::Vector3d& point,
+                             const Eigen::Vector3d& impulse, S* solution) const {
+  assert(component < count());
+  const Eigen::Vector3d arm = point - motions_[component].about(),
+                        spin(arm[1] * impulse[2] - arm[2] * impulse[1], arm[2] * impulse[0] - arm[0] * impulse[2],
+                             arm[0] * impulse[1] - arm[1] * impulse[0]);
+  ComponentMomentum given;
+  for (int k = 0; k < 3; ++k) {
+    given.momentum[k] = impulse[k];
+    given.spin[k] = spin[k];
+  }
+  std::vector<RigidVelocity> changes(count());
+  changes[component] = motions_[component].changeBy(given);
+  changeSolution(nodes, changes, solution, [](S own, S change) { return own + change; });
 }
 
 template <class S>

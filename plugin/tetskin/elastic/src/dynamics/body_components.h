@@ -63,10 +63,20 @@ class BodyComponents {
   /// how much rotation is taken for strain.
   double stiffnessOverInertia() const;
   double largestRadius() const;
+  /// Circular frequency of a component that hits something: half a period is what a pressure wave takes through it and
+  /// back. 0 without mass.
+  double impactFrequency(std::size_t component) const;
   /// By component: rotations of the step, stored by rows.
   std::vector<std::array<double, 9>> turns() const;
   /// See `ComponentMotion::compliance`.
-  double compliance(std::size_t slot, const std::array<double, 3>& point, const std::array<double, 3>& direction) const;
+  double compliance(std::size_t component, const std::array<double, 3>& point,
+                    const std::array<double, 3>& direction) const;
+  const Eigen::Vector3d& centre(std::size_t component) const { return motions_[component].about(); }
+  /// The motion of a component as a rigid body, at the beginning of the step, or of the solution.
+  RigidVelocity ownVelocity(std::size_t component) const { return motions_[component].own(); }
+  RigidVelocity solvedVelocity(const NodeStates<S>& nodes, std::size_t component, const S* solution) const;
+  void push(const NodeStates<S>& nodes, std::size_t component, const Eigen::Vector3d& point,
+            const Eigen::Vector3d& impulse, S* solution) const;
   /// See `BodyDynamics::rigidMotions`.
   /// moved  displacements at which the motions are taken
   bool rigidMotions(const NodeStates<S>& nodes, std::size_t component, const AlignedVector<S>& moved,

@@ -264,6 +264,18 @@ RigidVelocity ComponentMotion::withMomentum(const ComponentMomentum& own) const 
   return rigidWith(vectorOf(own.momentum), vectorOf(own.spin), Matrix3d::Identity());
 }
 
+RigidVelocity ComponentMotion::changeBy(const ComponentMomentum& given) const {
+  return rigidWith(vectorOf(given.momentum), vectorOf(given.spin), turn_);
+}
+
+RigidVelocity ComponentMotion::own() const {
+  RigidVelocity motion = rigidWith(momentum_, spin_, Matrix3d::Identity());
+  if (pinned_.kind != PinnedNodes::Nothing) {
+    for (int k = 0; k < 3; ++k) motion.velocity[k] += velocity_[k];
+  }
+  return motion;
+}
+
 RigidVelocity ComponentMotion::rigidWith(const Vector3d& momentum, const Vector3d& spin, const Matrix3d& turn) const {
   Vector3d push = Vector3d::Zero(), rate = Vector3d::Zero();
   const Matrix3d inertia = inertiaOf(turn, second_);

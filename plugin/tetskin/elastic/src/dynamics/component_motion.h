@@ -107,6 +107,7 @@ class ComponentMotion {
   /// A point near `about()`, on a grid as wide as the component, so that it seldom changes: positions relative to it
   /// have the most digits, and the same rounding from step to step.
   Eigen::Vector3d anchor() const;
+  double mass() const { return mass_; }
   /// The root mean square distance from the centre of mass; 0 without mass.
   double radius() const;
   /// The smallest moment of inertia about an axis through the centre of mass; 0 without mass.
@@ -129,6 +130,11 @@ class ComponentMotion {
 
   /// The rigid motion with this momentum, about `about()`, as far as pinned nodes permit.
   RigidVelocity withMomentum(const ComponentMomentum& own) const;
+  /// The same of what acts in the step, at the component's predicted position, as in `excess`.
+  RigidVelocity changeBy(const ComponentMomentum& given) const;
+
+  /// That of its momentum at the beginning of the step.
+  RigidVelocity own() const;
 
   /// The velocities to add if something else has rotated the component: such a rotation is a straight motion, linear in
   /// the nodes' positions, and becomes a chord. Momenta stay the same.

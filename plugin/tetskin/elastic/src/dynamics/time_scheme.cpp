@@ -32,6 +32,13 @@ TimeScheme firstOrder(double seconds, double damping) {
   return {damping < seconds ? 1.0 : 0.0, damping};
 }
 
+/// With dt^2 / 4, the trapezoidal rule, the forces may be no stiffer than K.
+TimeScheme carryingOn(double seconds, double damping, double theta) {
+  assert(seconds > 0.0 && damping >= 0.0 && theta >= 0.0 && theta <= 1.0);
+  const double half = 0.5 * seconds;
+  return {0.0, damping + half, theta * half / (damping + half)};
+}
+
 TimeScheme backwardEuler(double seconds, double damping) {
   assert(seconds > 0.0 && damping >= 0.0);
   return {0.0, damping + seconds};

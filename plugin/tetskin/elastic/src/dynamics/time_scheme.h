@@ -28,6 +28,7 @@ namespace tetskin::elastic_detail {
 struct TimeScheme {
   double filter = 0.0;   ///< a, from 0 to 1
   double damping = 0.0;  ///< seconds; at least the material's
+  double carried = 0.0;  ///< share of alpha K u that the right side has beside M u: see `carryingOn`
 
   double alpha(double seconds) const { return seconds * ((1.0 - filter) * damping + filter * seconds); }
 };
@@ -36,8 +37,15 @@ struct TimeScheme {
 TimeScheme secondOrder(double seconds, double damping);
 /// Where there is no step before, or steps do not follow the motion: see impulse_history.h.
 TimeScheme firstOrder(double seconds, double damping);
-/// Where contacts may hold the body. With less damping, what is squashed flat trembles: nodes at 0.3 instead of 0.01
-/// sizes per second under 300 times a body's weight, and a body crushed by a plate gains energy.
+/// Where contacts come and go, and where there is no step before. The step carries on what it begins with, u, by the
+/// same matrix:
+///   (M + dt (damping + dt / 2) K) u' = (M + theta dt^2 / 2 K) u + dt f(x)
+/// With theta = 1 this is, for a vibration, Newmark's method with beta = gamma = 1/2: of second order, without damping
+/// of its own. It needs no step before, and the bodies' real forces may be up to twice as stiff as K. A smaller theta
+/// damps by (1 - theta) dt / 2.
+/// theta  from 0 to 1
+TimeScheme carryingOn(double seconds, double damping, double theta);
+/// Where something holds the body flat: flat tets are stiffer than K by any factor.
 TimeScheme backwardEuler(double seconds, double damping);
 
 }  // namespace tetskin::elastic_detail

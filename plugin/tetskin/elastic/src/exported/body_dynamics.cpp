@@ -26,6 +26,9 @@ constexpr double kMaxGain = 0.1;
 /// Value of dt (dt + damping) times that sum over the inertia, above which a deviation from rigid motion does not last
 /// for a step.
 constexpr double kStiff = 1e3;
+/// The same, without damping, up to which a step carries on the whole of what it begins with. Vibrations that are much
+/// faster overshoot: a cube of 60 gets 1.4 times the energy of its fall.
+constexpr double kResolvable = 8.0;
 /// Value of dt^2 times that sum over the inertia, above which a rotation by a tenth of a radian that arises within a
 /// step stores noticeable energy.
 constexpr double kFeelsTurns = 1.0;
@@ -51,6 +54,22 @@ void toPoints(const S* wide, AlignedVector<S>& points) {
   bySlots(points.size() / 4, [&](std::size_t slot, std::size_t first) {
     for (std::size_t k = 0; k < 3; ++k) points[4 * slot + k] = wide[first + k * kGroup];
   });
+}
+
+/// The least volume of a tet over that at rest.
+template <class S>
+double leastVolume(const RestTets& rest, const BlockMatrix<S>& matrix, const NodePlaces<S>& places) {
+  double least = 1.0;
+  const auto at = [&](int n) {
+    return Eigen::Map<const Eigen::Vector3d>(places.at(matrix.slotOf(static_cast<std::size_t>(n))));
+  };
+  for (std::size_t t = 0; t < rest.count(); ++t) {
+    const Tet& tet = rest.tets[t];
+    const Eigen::Vector3d o = at(tet[0]), a = at(tet[1]) - o, b = at(tet[2]) - o, c = at(tet[3]) - o;
+    const Eigen::Map<const Eigen::Matrix3d> gradients(rest.gradients[t].data());
+    least = std::min(least, a.dot(b.cross(c)) * gradients.determinant());
+  }
+  return least;
 }
 
 }  // namespace
@@ -140,6 +159,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   const double seconds = start.seconds;
   pressed_ = start.pressed;
   untouched_ = start.touched ? 0 : std::min(untouched_ + 1, kUntouched);
+  impact_ = start.impact;
   if (!start.continues) history_.forget();
   forceSeconds_ = seconds * forceShare(seconds, start.staggered);
   lastSeconds_ = seconds;
@@ -166,10 +186,26 @@ template <class S>
 void BodyDynamics<S>::chooseScheme() {
   const bool free = untouched_ >= kUntouched;
   if (!free || stiff_ || changed_ || !remembered_) history_.forget();
-  secondOrder_ = history_.fits(forceSeconds_);
-  scheme_ = secondOrder_ ? secondOrder(lastSeconds_, damping_)
-            : free       ? firstOrder(lastSeconds_, damping_)
-                         : backwardEuler(lastSeconds_, damping_);
+  secondOrder_ = free && history_.fits(forceSeconds_);
+  scheme_ = secondOrder_   ? secondOrder(lastSeconds_, damping_)
+            : free         ? firstOrder(lastSeconds_, damping_)
+            : mayCarryOn() ? carryingOn(lastSeconds_, damping_, carriedShare())
+                           : backwardEuler(lastSeconds_, damping_);
+}
+
+/// In lasting contact points come and go, which shakes an undamped body: its own steps damp it.
+template <class S>
+double BodyDynamics<S>::carriedShare() const {
+  constexpr double kLasting = 0.5;
+  const double number = lastSeconds_ * lastSeconds_ * stiffnessOverInertia_;
+  return (impact_ || untouched_ > 0 ? 1.0 : kLasting) * std::min(1.0, kResolvable / number);
+}
+
+/// What is squashed nearly flat is stiffer than its matrix by more than the scheme bears.
+template <class S>
+bool BodyDynamics<S>::mayCarryOn() const {
+  constexpr double kLeastVolume = 0.15;
+  return tets_ && !stiff_ && leastVolume(tets_->rest(), matrix_, places_) >= kLeastVolume;
 }
 
 /// The angle by which tets may rotate before the matrix is assembled anew, relative to that of a soft body.
@@ -233,20 +269,44 @@ void BodyDynamics<S>::beginElastic() {
     }
   });
   remembered_ = false;
-  if (!history_.isKnown()) return;
-  history_.turn(components_.turns(), components_.bySlot());
-  if (secondOrder_) history_.addTo(rightSide_, scheme_, forceSeconds_);
+  if (history_.isKnown()) {
+    history_.turn(components_.turns(), components_.bySlot());
+    if (secondOrder_) history_.addTo(rightSide_, scheme_, forceSeconds_);
+  }
+  carry();
+}
+
+/// Adds the share of (A - M) u that the scheme carries on.
+template <class S>
+void BodyDynamics<S>::carry() {
+  carried_.clear();
+  if (!(scheme_.carried > 0.0)) return;
+  carried_.resize(matrix_.wideSize());
+  toPoints(began_.data(), relative_);
+  matrix_.multiply(relative_.data(), carried_.data(), nullptr);
+  const auto share = static_cast<S>(scheme_.carried);
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const S mass = matrix_.massAt(slot);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = wide + k * kGroup;
+      carried_[at] = mass != S(0) ? share * (carried_[at] - mass * began_[at]) : S(0);
+      rightSide_[at] += carried_[at];
+    }
+  });
 }
 
 template <class S>
-void BodyDynamics<S>::beTouched(ParallelFor* threads) {
+void BodyDynamics<S>::beTouched(bool impact, ParallelFor* threads) {
   assert(stage_ == Stage::Begun || stage_ == Stage::Solvable);
-  if (!tets_ || untouched_ == 0) return;
+  if (!tets_ || (untouched_ == 0 && impact_ >= impact)) return;
   stage_ = Stage::Begun;
   untouched_ = 0;
+  impact_ = impact_ || impact;
   if (secondOrder_) history_.takeFrom(rightSide_);
+  for (std::size_t k = 0; k < carried_.size(); ++k) rightSide_[k] -= carried_[k];
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
+  carry();
 }
 
 // ---- the solve
@@ -302,10 +362,42 @@ double BodyDynamics<S>::roundingSpeed() const {
 }
 
 template <class S>
-double BodyDynamics<S>::rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+double BodyDynamics<S>::rigidCompliance(std::size_t component, const std::array<double, 3>& point,
                                         const std::array<double, 3>& direction) const {
   assert(stage_ != Stage::Between);
-  return tets_ ? components_.compliance(matrix_.slotOf(node), point, direction) : 0.0;
+  return tets_ ? components_.compliance(component, point, direction) : 0.0;
+}
+
+template <class S>
+double BodyDynamics<S>::keptInImpact(std::size_t component) const {
+  constexpr double kPi = 3.14159265358979324;
+  const double ratio = 0.5 * damping_ * components_.impactFrequency(component);
+  if (!(ratio < 1.0)) return 0.0;
+  // exp(-x), to a few per cent: its bits are the same everywhere.
+  const double quarter = 0.5 * kPi * ratio / std::sqrt(1.0 - ratio * ratio),
+               root = 1.0 / (1.0 + quarter + 0.5 * quarter * quarter);
+  return root * root * root * root;
+}
+
+template <class S>
+std::array<double, 3> BodyDynamics<S>::centreOf(std::size_t component) const {
+  const Eigen::Vector3d& centre = components_.centre(component);
+  return {centre[0], centre[1], centre[2]};
+}
+
+template <class S>
+RigidVelocity BodyDynamics<S>::rigidVelocity(std::size_t component, bool solved) const {
+  assert(stage_ != Stage::Between);
+  return solved ? components_.solvedVelocity(nodes(), component, matrix_.solution())
+                : components_.ownVelocity(component);
+}
+
+template <class S>
+void BodyDynamics<S>::push(std::size_t component, const std::array<double, 3>& point,
+                           const std::array<double, 3>& impulse) {
+  assert(stage_ == Stage::Solvable || stage_ == Stage::Remembered);
+  components_.push(nodes(), component, Eigen::Vector3d(point[0], point[1], point[2]),
+                   Eigen::Vector3d(impulse[0], impulse[1], impulse[2]), matrix_.solution());
 }
 
 template <class S>
@@ -332,6 +424,22 @@ double BodyDynamics<S>::squaredSolution() const {
     }
   });
   return sum;
+}
+
+template <class S>
+double BodyDynamics<S>::vibrationEnergy(ParallelFor* threads) {
+  BodyProbe<S> here(matrix_);
+  here.points_ = points_;
+  AlignedVector<S> rigid(matrix_.solution(), matrix_.solution() + matrix_.wideSize());
+  components_.projectToRigidMotion(nodes(), rigid.data());
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<double>(matrix_.solution()[wide + k * kGroup] - rigid[wide + k * kGroup]);
+      sum += static_cast<double>(matrix_.massAt(slot)) * v * v;
+    }
+  });
+  return 0.5 * sum + energy(std::move(here), threads);
 }
 
 template <class S>

@@ -34,6 +34,7 @@ struct StepStart {
   bool pressed = false;
   /// It had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
   bool touched = false;
+  bool impact = false;  ///< these contacts stop it, or throw it back
 };
 
 /// What has changed the solution of a step.
@@ -110,7 +111,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void predict(const StepStart& start, ParallelFor* threads);
   /// The body turns out to have contacts in this step, which becomes one of a touched body: its right side is another
   /// one, and the residual is unknown.
-  void beTouched(ParallelFor* threads);
+  /// impact  they begin to stop it
+  void beTouched(bool impact, ParallelFor* threads);
   /// Computes residual = right side - A solution for the current solution. The caller may add other forces to it. May
   /// be called again, until the step is remembered.
   void findResidual(ParallelFor* threads);
@@ -132,7 +134,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   // Of a step that has begun.
   /// True if it is of second order.
-  bool isSecondOrder() const { return secondOrder_; }
+  bool isSecondOrder() const { return secondOrder_ || scheme_.carried > 0.0; }
+  /// True if it takes part in an impact.
+  bool isImpact() const { return impact_; }
   /// True if the body counts as stiff in it.
   bool isStiff() const { return stiff_; }
   /// The stiffness factor: dt (dt + damping) times the sum of V (2 mu + lambda) over the least inertia. It is the
@@ -160,10 +164,19 @@ class TETSKIN_ELASTIC_API BodyDynamics {
     assert(stage_ != Stage::Between);
     return began_.data();
   }
-  /// The change of velocity per unit impulse, both at a point and in a direction, if the node's component moves as a
-  /// rigid body. World space.
-  double rigidCompliance(std::size_t node, const std::array<double, 3>& point,
+  /// The change of velocity per unit impulse, both at a point and in a direction, if a component moves as a rigid body.
+  /// World space.
+  double rigidCompliance(std::size_t component, const std::array<double, 3>& point,
                          const std::array<double, 3>& direction) const;
+  /// The share of its energy that material damping leaves it in an impact: that of a vibration in half a period.
+  double keptInImpact(std::size_t component) const;
+  /// Its centre of mass at the beginning of the step, or the centroid of its pinned nodes.
+  std::array<double, 3> centreOf(std::size_t component) const;
+  /// Its velocity as a rigid body of its momentum: at the beginning of the step, with what acts on it beside
+  /// elasticity, or of the solution.
+  RigidVelocity rigidVelocity(std::size_t component, bool solved) const;
+  /// Changes the solution by an impulse on it as a rigid body, world space.
+  void push(std::size_t component, const std::array<double, 3>& point, const std::array<double, 3>& impulse);
   std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
   std::size_t componentCount() const { return components_.count(); }
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
@@ -172,6 +185,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   bool rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const;
 
   // Of its current solution.
+  /// The energy of the deformation at the beginning of the step, and of the velocities beside the rigid motions of
+  /// their momentum, in joules.
+  double vibrationEnergy(ParallelFor* threads);
   /// The square of the norm with respect to the masses.
   double squaredSolution() const;
   /// The square of the norm, with respect to the masses, of its difference to `deviation`.
@@ -229,6 +245,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   NodeStates<S> nodes() const { return {matrix_, places_, velocities_}; }
   LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_}; }
   void chooseScheme();
+  bool mayCarryOn() const;
+  double carriedShare() const;
+  void carry();
   void begin();
   void beginElastic();
   void assembleIfNeeded(double turnFraction, ParallelFor* threads);
@@ -245,7 +264,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   LoneSolve<S> loneSolve_;
   ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
-      forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces
+      forces_;  ///< by slot; moved_: displacements of x0, see NodePlaces
+  AlignedVector<S> carried_;
   AlignedVector<S> rightSide_, image_;  ///< in the wide layout
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
   AlignedVector<S> acting_;             ///< in the wide layout: impulses, see `solve`
@@ -253,7 +273,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
   Stage stage_ = Stage::Between;
-  bool stiff_ = false, pressed_ = false, secondOrder_ = false, deterministic_ = false;
+  bool stiff_ = false, pressed_ = false, secondOrder_ = false, impact_ = false, deterministic_ = false;
   bool changed_ = true;      ///< masses or material have changed since the last assembly
   bool remembered_ = false;  ///< the last step
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen

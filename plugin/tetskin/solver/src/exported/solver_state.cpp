@@ -156,6 +156,7 @@ void serializeSolver(WorldStream& stream, DeformableSolver& solver) {
   impl.serializeFlags(stream);
   impl.bodies.serialize(stream);
   impl.rows.serialize(stream);
+  impl.impacts.serialize(stream);
   impl.driven.serialize(stream);
   impl.loads.serialize(stream);
   impl.sleepers.serialize(stream);

@@ -221,7 +221,7 @@ double compliance(const SolvedBody& body, const CarriedPoint& point, const btVec
     sum += static_cast<double>(point.weights[k] * point.weights[k]) * own;
   }
   const auto node = static_cast<std::size_t>(point.nodes[0]);
-  return sum + body.dynamics->rigidCompliance(node, numbersOf(position), numbersOf(direction));
+  return sum + body.dynamics->rigidCompliance(body.dynamics->componentOf(node), numbersOf(position), numbersOf(direction));
 }
 
 /// seconds  length of the step that it is for

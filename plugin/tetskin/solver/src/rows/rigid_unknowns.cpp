@@ -271,6 +271,16 @@ double RigidUnknowns::compliance(const RigidPoint& at, const btVector3& directio
   return sum;
 }
 
+void RigidUnknowns::push(const RigidPoint& at, const btVector3& impulse) const {
+  if (at.unknown < 0) return;
+  RigidUnknown alone = unknowns_[static_cast<std::size_t>(at.unknown)];
+  alone.first = 0;
+  const Jacobian jacobian = jacobianOf(at);
+  Eigen::VectorXd given(jacobian.cols());
+  for (Eigen::Index k = 0; k < given.size(); ++k) given[k] = dot(smallFrom<3>(&jacobian(0, k)), toSmall(impulse));
+  apply(alone, alone.inverseMass * given);
+}
+
 void RigidUnknowns::apply(const RigidUnknown& unknown, const Eigen::VectorXd& change) {
   const double* part = change.data() + unknown.first;
   if (!std::all_of(part, part + unknown.size, [](double v) { return std::isfinite(v); })) return;

@@ -87,6 +87,8 @@ class RigidUnknowns {
   void addImpulse(const RigidPoint& at, const btVector3& impulse, Eigen::VectorXd& to) const;
   /// By how much a unit impulse at the point changes the point's velocity in a direction.
   double compliance(const RigidPoint& at, const btVector3& direction) const;
+  /// Gives an object an impulse at a point, in Bullet.
+  void push(const RigidPoint& at, const btVector3& impulse) const;
   /// Applies a change of velocities to a body in Bullet.
   static void apply(const RigidUnknown& unknown, const Eigen::VectorXd& change);
 

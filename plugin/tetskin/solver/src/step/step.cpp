@@ -217,6 +217,7 @@ void DeformableSolver::Impl::predict() {
     body.start.continues = continuesLastStep(body);
     body.start.pressed = body.before.any;
     body.start.touched = body.before.contacts;
+    body.start.impact = impacts.includes(*body.body);
     readNodes(*body.body, *body.dynamics);
     body.dynamics->setDeterministic(deterministic);
     staggerHeld(body);
@@ -313,16 +314,19 @@ void DeformableSolver::Impl::assemble() {
   addDynamicFriction(projection(), bodies, solver.m_residual);
   listFixedNodes(projection(), bodies);
   collectRows();
-  std::vector<bool> touched(bodies.bodies().size(), false);
+  impacts.begin(rows, bodies, rigids, dt());
+  std::vector<char> touched(bodies.bodies().size(), 0);
   for (const ContactRow& row : rows.rows()) {
+    if (row.joined) continue;
     for (const RowEnd& end : row.ends) {
-      assert(!end.isSoft() || end.body < touched.size());
-      if (end.isSoft() && !row.joined) touched[end.body] = true;
+      if (!end.isSoft()) continue;
+      assert(end.body < touched.size());
+      touched[end.body] = 1;
     }
   }
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     const auto index = static_cast<std::size_t>(&body - bodies.bodies().data());
-    if (touched[index]) body.dynamics->beTouched(inner);
+    if (touched[index]) body.dynamics->beTouched(impacts.includes(*body.body), inner);
   });
 }
 
@@ -421,6 +425,7 @@ void DeformableSolver::Impl::finishAlone(SolvedSystem& system, ParallelFor* inne
 void DeformableSolver::Impl::finishContacts() {
   assert(stage == Stage::Solve);
   rows.finish(bodies, dt());
+  impacts.finish(rows, bodies, rigids, dt());
   for (RowSource* source : rowSources()) source->finish(dt());
   if (const auto record = recorded.lock()) record->record(bodies, rows, dt());
 }

@@ -20,6 +20,7 @@
 #include <tetskin/solver/src/motion/sleepers.h>
 #include <tetskin/solver/src/motion/stillness.h>
 #include <tetskin/solver/src/rows/contact_rows.h>
+#include <tetskin/solver/src/rows/impacts.h>
 #include <tetskin/solver/src/rows/joint_impulses.h>
 #include <tetskin/solver/src/search/obstacle_changes.h>
 #include <tetskin/solver/src/step/hidden_bodies.h>
@@ -150,6 +151,7 @@ struct DeformableSolver::Impl {
   ObstacleChanges obstacleChanges;
   RigidUnknowns rigids;
   ContactRows rows;
+  Impacts impacts;
   JointImpulses jointImpulses;  ///< of Bullet's own solve in this step
   OtherForces others;
   StepClock clock;

@@ -56,6 +56,7 @@ void DeformableSolver::Impl::dropRemoved(const btAlignedObjectArray<btSoftBody*>
     driven.forget(*body);
     sleepers.forget(*body);
     stillness.forget(*body);
+    impacts.forget(*body);
     if (auto* own = bodyWithTrees(*const_cast<btSoftBody*>(body))) own->setMovesCountedBy(nullptr);
   }
   if (!inStep()) {
@@ -82,6 +83,7 @@ void DeformableSolver::Impl::forgetRemovedObjects(const btDeformableMultiBodyDyn
   if (!world || objects.world() != world || !objects.haveChanged()) return;
   const StepObjects::Gone gone = objects.gone();
   bodies.forget(gone);
+  for (const btCollisionObject* object : gone) impacts.forget(*object);
   rigids.paths().forget(gone);
   sleepers.forget(gone);
 }

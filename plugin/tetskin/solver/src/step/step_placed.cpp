@@ -16,6 +16,7 @@ void DeformableSolver::Impl::forgetTouches(btSoftBody& body) {
   bodies.forget(body);
   sleepers.forget(body);
   stillness.forget(body);
+  impacts.forget(body);
   for (int i = 0; i < forces().size(); ++i) {
     if (InactiveForce* own = inactiveForce(forces()[i])) own->forget(body);
   }
