@@ -19,7 +19,8 @@ const std::vector<double> kDampings = {0.0, 1e-3, 0.1, 0.3, 0.6, 0.74, 0.76, 0.9
 Eigen::Matrix3d stepOf(const TimeScheme& scheme, double seconds, double frequency) {
   const double stiffness = frequency * frequency, a = scheme.filter;
   const Eigen::RowVector3d u =
-      Eigen::RowVector3d(-seconds * stiffness, 1.0, a) / (1.0 + scheme.alpha(seconds) * stiffness);
+      Eigen::RowVector3d(-seconds * stiffness, 1.0 + scheme.carried * scheme.alpha(seconds) * stiffness, a) /
+      (1.0 + scheme.alpha(seconds) * stiffness);
   Eigen::Matrix3d step;
   step.row(0) = Eigen::RowVector3d(1, 0, 0) + seconds * u;
   step.row(1) = u;
@@ -51,7 +52,8 @@ TEST(TimeScheme, NoVibrationGrowsAtAnyFrequencyAndDamping) {
   for (const double damping : kDampings) {
     for (double frequency = 1e-3; frequency < 1e6; frequency *= 1.3) {
       for (const TimeScheme& scheme :
-           {elastic_detail::secondOrder(1.0, damping), elastic_detail::backwardEuler(1.0, damping)}) {
+           {elastic_detail::secondOrder(1.0, damping), elastic_detail::backwardEuler(1.0, damping),
+            elastic_detail::carryingOn(1.0, damping, 1.0), elastic_detail::carryingOn(1.0, damping, 0.5)}) {
         EXPECT_LE(std::abs(factorsOf(scheme, 1.0, frequency).front()), 1.0 + 1e-9) << damping << ' ' << frequency;
         EXPECT_TRUE(scheme.filter >= 0.0 && scheme.filter <= 1.0) << damping << ": it weighs a mean";
       }
@@ -89,6 +91,33 @@ TEST(TimeScheme, BackwardEulerDampsByOneStepMoreThanTheMaterial) {
     const Complex factor = factorsOf(elastic_detail::backwardEuler(seconds, damping), seconds, frequency).front();
     const double decay = -std::log(std::abs(factor)) / seconds;
     EXPECT_NEAR(decay / (frequency * frequency / 2.0), damping + seconds, 0.01 * seconds);
+  }
+}
+
+TEST(TimeScheme, AStepThatCarriesOnWhatItBeginsWithKeepsAnUndampedVibration) {
+  double before = 0.0;
+  for (const double seconds : {0.02, 0.01, 0.005, 0.0025}) {
+    const TimeScheme scheme = elastic_detail::carryingOn(seconds, 0.0, 1.0);
+    EXPECT_NEAR(std::abs(factorsOf(scheme, seconds, 10.0).front()), 1.0, 1e-9);
+    const double phase = std::arg(factorsOf(scheme, seconds, 10.0).front()) / seconds;
+    const double error = std::abs(std::abs(phase) - 10.0) / 10.0;
+    EXPECT_LT(error, 0.25 * std::pow(10.0 * seconds, 2));
+    EXPECT_TRUE(before == 0.0 || error < 0.3 * before);
+    before = error;
+  }
+}
+
+/// The same, where forces are twice as stiff as the matrix.
+TEST(TimeScheme, AStepThatCarriesOnBearsForcesTwiceAsStiffAsItsMatrix) {
+  for (double stiffness = 1e-6; stiffness < 1e12; stiffness *= 3.0) {
+    const TimeScheme scheme = elastic_detail::carryingOn(1.0, 0.0, 1.0);
+    const double alpha = scheme.alpha(1.0);
+    const Eigen::RowVector2d u =
+        Eigen::RowVector2d(-2.0 * stiffness, 1.0 + scheme.carried * alpha * stiffness) / (1.0 + alpha * stiffness);
+    Eigen::Matrix2d step;
+    step << Eigen::RowVector2d(1, 0) + u, u;
+    const double largest = step.eigenvalues().cwiseAbs().maxCoeff();
+    EXPECT_LE(largest, 1.0 + 1e-9) << stiffness;
   }
 }
 
