@@ -63,12 +63,17 @@ struct TetWork {
   const std::uint32_t* partOf = nullptr;  ///< by slot; null: all tets are of part 0
   S* corners = nullptr;                   ///< by tet and node
   S* sums = nullptr;           ///< by slot: forces are added here; null: written to a tet's first corners, by node
-  S alpha = 0, flatAlpha = 0;  ///< the second one applies where a tet is flat or inverted, if it is larger
-  S* alphas = nullptr;         ///< by pack and point: which of the two; unused unless the second is larger
+  S alpha = 0, flatAlpha = 0;  ///< the second one applies where a tet is flat or inverted
+  S* alphas = nullptr;         ///< by pack and point: which of the two; unused if they are equal
 };
+
+/// Ratio of volume to rest volume below which a tet counts as flat. No body is flat under its own weight; one that is
+/// squashed by ten times what it can carry is, and the corner on which one falls.
+constexpr double kFlatVolume = 0.1;
 
 template <class S>
 struct TetFindings {
+  S flattest = 1;       ///< the least ratio of volume to rest volume, at most 1
   S maxTurned = 0;      ///< the largest squared difference between a rotation and that of the matrix, as quaternions
   double turned = 0.0;  ///< sum of these differences, each a quarter of the squared angle
   double energy = 0.0;

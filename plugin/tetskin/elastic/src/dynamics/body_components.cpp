@@ -309,8 +309,24 @@ RigidVelocity BodyComponents<S>::solvedVelocity(const NodeStates<S>& nodes, std:
 }
 
 template <class S>
+double BodyComponents<S>::energyBesideRigid(const NodeStates<S>& nodes) const {
+  std::vector<RigidVelocity> own;
+  for (const ComponentMotion& motion : motions_) own.push_back(motion.own());
+  double sum = 0.0;
+  for (std::size_t slot = 0; slot < nodes.matrix.slotCount(); ++slot) {
+    double rigid[3];
+    own[partOf_[slot]].at(nodes.places.at(slot), rigid);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double v = static_cast<double>(nodes.velocities[4 * slot + k]) - rigid[k];
+      sum += static_cast<double>(nodes.matrix.massAt(slot)) * v * v;
+    }
+  }
+  return 0.5 * sum;
+}
+
+template <class S>
 void BodyComponents<S>::push(const NodeStates<S>& nodes, std::size_t component, const Eigen::Vector3d& point,
-                             const Eigen::Vector3d& impulse, S* solution) const {
+                             const Eigen::Vector3d& impulse, AlignedVector<S>& velocities) const {
   assert(component < count());
   const Eigen::Vector3d arm = point - motions_[component].about(),
                         spin(arm[1] * impulse[2] - arm[2] * impulse[1], arm[2] * impulse[0] - arm[0] * impulse[2],
@@ -320,9 +336,13 @@ void BodyComponents<S>::push(const NodeStates<S>& nodes, std::size_t component, 
     given.momentum[k] = impulse[k];
     given.spin[k] = spin[k];
   }
-  std::vector<RigidVelocity> changes(count());
-  changes[component] = motions_[component].changeBy(given);
-  changeSolution(nodes, changes, solution, [](S own, S change) { return own + change; });
+  const RigidVelocity change = motions_[component].withMomentum(given);
+  for (std::size_t slot = 0; slot < nodes.matrix.slotCount(); ++slot) {
+    if (partOf_[slot] != component || nodes.matrix.massAt(slot) == S(0)) continue;
+    double v[3];
+    change.at(nodes.places.at(slot), v);
+    for (std::size_t k = 0; k < 3; ++k) velocities[4 * slot + k] += static_cast<S>(v[k]);
+  }
 }
 
 template <class S>

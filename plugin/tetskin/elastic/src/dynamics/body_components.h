@@ -74,9 +74,12 @@ class BodyComponents {
   const Eigen::Vector3d& centre(std::size_t component) const { return motions_[component].about(); }
   /// The motion of a component as a rigid body, at the beginning of the step, or of the solution.
   RigidVelocity ownVelocity(std::size_t component) const { return motions_[component].own(); }
+  /// The kinetic energy of velocities beside these motions, in joules.
+  double energyBesideRigid(const NodeStates<S>& nodes) const;
   RigidVelocity solvedVelocity(const NodeStates<S>& nodes, std::size_t component, const S* solution) const;
+  /// Changes velocities at the beginning of the step by an impulse on the component as a rigid body.
   void push(const NodeStates<S>& nodes, std::size_t component, const Eigen::Vector3d& point,
-            const Eigen::Vector3d& impulse, S* solution) const;
+            const Eigen::Vector3d& impulse, AlignedVector<S>& velocities) const;
   /// See `BodyDynamics::rigidMotions`.
   /// moved  displacements at which the motions are taken
   bool rigidMotions(const NodeStates<S>& nodes, std::size_t component, const AlignedVector<S>& moved,

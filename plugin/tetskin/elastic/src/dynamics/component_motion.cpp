@@ -264,10 +264,6 @@ RigidVelocity ComponentMotion::withMomentum(const ComponentMomentum& own) const 
   return rigidWith(vectorOf(own.momentum), vectorOf(own.spin), Matrix3d::Identity());
 }
 
-RigidVelocity ComponentMotion::changeBy(const ComponentMomentum& given) const {
-  return rigidWith(vectorOf(given.momentum), vectorOf(given.spin), turn_);
-}
-
 RigidVelocity ComponentMotion::own() const {
   RigidVelocity motion = rigidWith(momentum_, spin_, Matrix3d::Identity());
   if (pinned_.kind != PinnedNodes::Nothing) {

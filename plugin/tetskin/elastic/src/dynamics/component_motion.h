@@ -130,9 +130,6 @@ class ComponentMotion {
 
   /// The rigid motion with this momentum, about `about()`, as far as pinned nodes permit.
   RigidVelocity withMomentum(const ComponentMomentum& own) const;
-  /// The same of what acts in the step, at the component's predicted position, as in `excess`.
-  RigidVelocity changeBy(const ComponentMomentum& given) const;
-
   /// That of its momentum at the beginning of the step.
   RigidVelocity own() const;
 

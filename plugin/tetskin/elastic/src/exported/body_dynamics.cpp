@@ -56,22 +56,6 @@ void toPoints(const S* wide, AlignedVector<S>& points) {
   });
 }
 
-/// The least volume of a tet over that at rest.
-template <class S>
-double leastVolume(const RestTets& rest, const BlockMatrix<S>& matrix, const NodePlaces<S>& places) {
-  double least = 1.0;
-  const auto at = [&](int n) {
-    return Eigen::Map<const Eigen::Vector3d>(places.at(matrix.slotOf(static_cast<std::size_t>(n))));
-  };
-  for (std::size_t t = 0; t < rest.count(); ++t) {
-    const Tet& tet = rest.tets[t];
-    const Eigen::Vector3d o = at(tet[0]), a = at(tet[1]) - o, b = at(tet[2]) - o, c = at(tet[3]) - o;
-    const Eigen::Map<const Eigen::Matrix3d> gradients(rest.gradients[t].data());
-    least = std::min(least, a.dot(b.cross(c)) * gradients.determinant());
-  }
-  return least;
-}
-
 }  // namespace
 
 template <class S>
@@ -154,6 +138,30 @@ bool BodyDynamics<S>::continues(std::size_t node, const S* point, const S* veloc
 // ---- the beginning of a step
 
 template <class S>
+void BodyDynamics<S>::findMotion() {
+  places_.take(points_);
+  components_.find(nodes(), pinned_ > 0, lastSeconds_);
+  stage_ = Stage::Begun;
+}
+
+template <class S>
+double BodyDynamics<S>::vibrationEnergy() {
+  assert(stage_ == Stage::Begun);
+  BodyProbe<S> here(matrix_);
+  here.points_ = points_;
+  return components_.energyBesideRigid(nodes()) + energy(std::move(here), nullptr);
+}
+
+template <class S>
+void BodyDynamics<S>::push(std::size_t component, const std::array<double, 3>& point,
+                           const std::array<double, 3>& impulse) {
+  assert(stage_ == Stage::Begun);
+  components_.push(nodes(), component, Eigen::Vector3d(point[0], point[1], point[2]),
+                   Eigen::Vector3d(impulse[0], impulse[1], impulse[2]), velocities_);
+  findMotion();
+}
+
+template <class S>
 void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   assert(start.seconds > 0.0 && points_.size() == 4 * matrix_.slotCount());
   const double seconds = start.seconds;
@@ -174,11 +182,11 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   if (changed_) stiffnessOverInertia_ = components_.stiffnessOverInertia();
   stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
   stiff_ = stiffnessNumber_ > kStiff;
-  chooseScheme();
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
   tets_->forces(moved_.data(), forces_.data(), threads);
+  chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
-  beginElastic();
+  beginElastic(threads);
 }
 
 /// A deviation from rigid motion does not last for a step of a stiff body, so that there is nothing to remember.
@@ -201,11 +209,12 @@ double BodyDynamics<S>::carriedShare() const {
   return (impact_ || untouched_ > 0 ? 1.0 : kLasting) * std::min(1.0, kResolvable / number);
 }
 
-/// What is squashed nearly flat is stiffer than its matrix by more than the scheme bears.
+/// What is squashed nearly flat is stiffer than its matrix by more than the scheme bears: in an impact, flat tets carry
+/// on nothing; where a body is held flat, nothing does.
 template <class S>
 bool BodyDynamics<S>::mayCarryOn() const {
   constexpr double kLeastVolume = 0.15;
-  return tets_ && !stiff_ && leastVolume(tets_->rest(), matrix_, places_) >= kLeastVolume;
+  return tets_ && !stiff_ && (impact_ || tets_->flattest() >= kLeastVolume);
 }
 
 /// The angle by which tets may rotate before the matrix is assembled anew, relative to that of a soft body.
@@ -217,13 +226,26 @@ double BodyDynamics<S>::allowedTurn() const {
 template <class S>
 void BodyDynamics<S>::assembleIfNeeded(double turnFraction, ParallelFor* threads) {
   const double seconds = lastSeconds_;
-  const double alpha = tets_ ? scheme_.alpha(seconds) * forceSeconds_ / seconds : 0.0;
+  const double alpha = matrixAlpha();
   const double fraction = turnFraction * std::min(1.0, seconds / kFullTurnStep);
   // A stiff component rotates as a whole, and may be a single tet among many of other components.
   const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
   const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
-  if (!changed_ && alpha == alpha_ && !turned) return;
-  const auto flatAlpha = static_cast<S>(pressed_ ? kFlatAlpha * seconds * seconds : 0.0);
+  if (changed_ || alpha != alpha_ || turned) assemble(alpha, threads);
+}
+
+template <class S>
+double BodyDynamics<S>::matrixAlpha() const {
+  return tets_ ? scheme_.alpha(lastSeconds_) * forceSeconds_ / lastSeconds_ : 0.0;
+}
+
+template <class S>
+void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
+  const double seconds = lastSeconds_,
+               flat = pressed_                ? kFlatAlpha * seconds * seconds
+                      : scheme_.carried > 0.0 ? backwardEuler(seconds, damping_).alpha(seconds)
+                                              : 0.0;
+  const auto flatAlpha = static_cast<S>(flat);
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr,
                    tets_ ? tets_->ratio() : S(0), threads);
   alpha_ = alpha;
@@ -250,7 +272,7 @@ void BodyDynamics<S>::begin() {
 }
 
 template <class S>
-void BodyDynamics<S>::beginElastic() {
+void BodyDynamics<S>::beginElastic(ParallelFor* threads) {
   assert(tets_ && forceSeconds_ > 0.0 && stage_ == Stage::Begun);
   S* solution = matrix_.solution();
   loneSolve_.beginStep(matrix_);
@@ -273,17 +295,20 @@ void BodyDynamics<S>::beginElastic() {
     history_.turn(components_.turns(), components_.bySlot());
     if (secondOrder_) history_.addTo(rightSide_, scheme_, forceSeconds_);
   }
-  carry();
+  carry(threads);
 }
 
-/// Adds the share of (A - M) u that the scheme carries on.
+/// Adds the share of (A - M) u that the scheme carries on, without the flat tets' part of A.
 template <class S>
-void BodyDynamics<S>::carry() {
+void BodyDynamics<S>::carry(ParallelFor* threads) {
   carried_.clear();
   if (!(scheme_.carried > 0.0)) return;
   carried_.resize(matrix_.wideSize());
   toPoints(began_.data(), relative_);
-  matrix_.multiply(relative_.data(), carried_.data(), nullptr);
+  const bool flat = tets_->flattest() < kernels::kFlatVolume;
+  if (flat) matrix_.assemble(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), tets_->ratio(), threads);
+  matrix_.multiply(relative_.data(), carried_.data(), threads);
+  if (flat) assemble(alpha_, threads);
   const auto share = static_cast<S>(scheme_.carried);
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     const S mass = matrix_.massAt(slot);
@@ -306,7 +331,7 @@ void BodyDynamics<S>::beTouched(bool impact, ParallelFor* threads) {
   for (std::size_t k = 0; k < carried_.size(); ++k) rightSide_[k] -= carried_[k];
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
-  carry();
+  carry(threads);
 }
 
 // ---- the solve
@@ -393,14 +418,6 @@ RigidVelocity BodyDynamics<S>::rigidVelocity(std::size_t component, bool solved)
 }
 
 template <class S>
-void BodyDynamics<S>::push(std::size_t component, const std::array<double, 3>& point,
-                           const std::array<double, 3>& impulse) {
-  assert(stage_ == Stage::Solvable || stage_ == Stage::Remembered);
-  components_.push(nodes(), component, Eigen::Vector3d(point[0], point[1], point[2]),
-                   Eigen::Vector3d(impulse[0], impulse[1], impulse[2]), matrix_.solution());
-}
-
-template <class S>
 bool BodyDynamics<S>::rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const {
   assert(stage_ != Stage::Between);
   return components_.rigidMotions(nodes(), component, moved_, motions);
@@ -424,22 +441,6 @@ double BodyDynamics<S>::squaredSolution() const {
     }
   });
   return sum;
-}
-
-template <class S>
-double BodyDynamics<S>::vibrationEnergy(ParallelFor* threads) {
-  BodyProbe<S> here(matrix_);
-  here.points_ = points_;
-  AlignedVector<S> rigid(matrix_.solution(), matrix_.solution() + matrix_.wideSize());
-  components_.projectToRigidMotion(nodes(), rigid.data());
-  double sum = 0.0;
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto v = static_cast<double>(matrix_.solution()[wide + k * kGroup] - rigid[wide + k * kGroup]);
-      sum += static_cast<double>(matrix_.massAt(slot)) * v * v;
-    }
-  });
-  return 0.5 * sum + energy(std::move(here), threads);
 }
 
 template <class S>

@@ -102,6 +102,15 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// True if the last step is remembered for the next one.
   bool remembers() const { return history_.isKnown(); }
 
+  /// Finds the rigid motions that its nodes' velocities have now: `rigidVelocity`, `rigidCompliance` and `centreOf` are
+  /// those of now, and `push` may be called, until `predict`.
+  void findMotion();
+  /// The energy of the deformation, and of the velocities beside the rigid motions that `findMotion` has found; joules.
+  double vibrationEnergy();
+  /// Changes the nodes' velocities by an impulse on a component as a rigid body, as far as pinned nodes permit. World
+  /// space.
+  void push(std::size_t component, const std::array<double, 3>& point, const std::array<double, 3>& impulse);
+
   // ---- A step. `beTouched`, `findResidual`, `solve` and `remember` assert the stage that they need; the others, that
   // a first step has begun.
 
@@ -175,8 +184,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Its velocity as a rigid body of its momentum: at the beginning of the step, with what acts on it beside
   /// elasticity, or of the solution.
   RigidVelocity rigidVelocity(std::size_t component, bool solved) const;
-  /// Changes the solution by an impulse on it as a rigid body, world space.
-  void push(std::size_t component, const std::array<double, 3>& point, const std::array<double, 3>& impulse);
   std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
   std::size_t componentCount() const { return components_.count(); }
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
@@ -185,9 +192,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   bool rigidMotions(std::size_t component, AlignedVector<S> (&motions)[kRigidMotions]) const;
 
   // Of its current solution.
-  /// The energy of the deformation at the beginning of the step, and of the velocities beside the rigid motions of
-  /// their momentum, in joules.
-  double vibrationEnergy(ParallelFor* threads);
   /// The square of the norm with respect to the masses.
   double squaredSolution() const;
   /// The square of the norm, with respect to the masses, of its difference to `deviation`.
@@ -247,10 +251,12 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void chooseScheme();
   bool mayCarryOn() const;
   double carriedShare() const;
-  void carry();
+  void carry(ParallelFor* threads);
   void begin();
-  void beginElastic();
+  void beginElastic(ParallelFor* threads);
   void assembleIfNeeded(double turnFraction, ParallelFor* threads);
+  double matrixAlpha() const;
+  void assemble(double alpha, ParallelFor* threads);
   void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
   void assembleAgain(double alpha);

@@ -259,10 +259,13 @@ struct RotatedStress {
 /// The parts of `TetFindings`.
 template <class S, int W>
 struct WideFindings {
-  Lanes<S, W> maxTurned{}, turned{};
+  Lanes<S, W> squashed{}, maxTurned{}, turned{};  ///< the first one: 1 - the ratio of volumes
   double energy = 0.0;
 
-  TetFindings<S> all() const { return {largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)), energy}; }
+  TetFindings<S> all() const {
+    return {S(1) - largest<S, W>(squashed), largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)),
+            energy};
+  }
 };
 
 /// Stores the rotations of W points.
@@ -377,6 +380,15 @@ TETSKIN_INLINE Lanes<S, W> determinantOf(const WideMatrix<S, W>& matrix) {
   return a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
 }
 
+/// stretch  R^T F
+/// shear    0 where there is no tet
+template <class S, int W>
+TETSKIN_INLINE void noteVolumes(const WideMatrix<S, W>& stretch, const Lanes<S, W>& shear,
+                                WideFindings<S, W>& findings) {
+  const Lanes<S, W> squashed = all<S, W>(S(1)) - determinantOf<S, W>(stretch);
+  findings.squashed = larger(shear > S(0) ? squashed : findings.squashed, findings.squashed);
+}
+
 /// Updates the rotations of W points.
 /// g            gradients of points
 /// shear, bulk  2 mu V and lambda V
@@ -388,6 +400,7 @@ TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const WideMatrix<S, W>& g, cons
   WideMatrix<S, W> r, s;
   turnToMaximum<S, W>(deformationGradient<S, W>(g, frame), q, r, s);
   keepRotations<S, W>(q, rotations, assembled, findings);
+  noteVolumes<S, W>(s, shear, findings);
   const WideMatrix<S, W> strain = strainOf<S, W>(q, r, g, frame);
   return {r, stressOf<S, W>(strain, traceOf<S, W>(strain), shear, bulk, withEnergy, findings)};
 }
@@ -409,20 +422,15 @@ TETSKIN_INLINE void addToNodes(const Pack& pack, int lane, const S* from, S* sum
   }
 }
 
-/// Ratio of volume to rest volume below which a tet counts as flat. No body is flat under its own weight or in an
-/// impact; one that is squashed by ten times what it can carry is.
-template <class S>
-constexpr S kFlat = S(0.1);
-
 /// The factor of the stiffness in the matrix.
 /// at        index in `alphas`
 /// gradient  returns F
 template <class S, int W, class Pack, class Gradient>
 TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S, Pack>& work, std::size_t at, Gradient&& gradient) {
-  if (!(work.flatAlpha > work.alpha)) return all<S, W>(work.alpha);
+  if (work.flatAlpha == work.alpha) return all<S, W>(work.alpha);
   if (!work.points) return wide<S, W>(work.alphas + at);
   const Lanes<S, W> ratio = determinantOf<S, W>(gradient());
-  const Lanes<S, W> alpha = ratio < kFlat<S> ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
+  const Lanes<S, W> alpha = ratio < S(kFlatVolume) ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
   put<S, W>(alpha, work.alphas + at);
   return alpha;
 }

@@ -190,6 +190,7 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
       for (std::size_t point = 0; point < Pack::kPoints; ++point) {
         keepRotations<S, W>(at[point].q, work.rotations + first + 4 * kGroup * point,
                             work.assembled + first + 4 * kGroup * point, findings);
+        noteVolumes<S, W>(at[point].s, shear, findings);
         WideMatrix<S, W> strain = strainOf<S, W>(at[point].q, at[point].r, gradients[point], frame);
         V trace = traceOf<S, W>(strain);
         if (anyLost) {

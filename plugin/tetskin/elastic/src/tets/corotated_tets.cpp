@@ -145,10 +145,12 @@ double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, Par
     work.sums = sums;
     findings_[task] = loops.forces(work, energy);
   });
+  flattest_ = S(1);
   maxTurned_ = S(0);
   turned_ = 0.0;
   double total = 0.0;
   for (const kernels::TetFindings<S>& part : findings_) {
+    flattest_ = std::min(flattest_, part.flattest);
     maxTurned_ = std::max(maxTurned_, part.maxTurned);
     turned_ += part.turned;
     total += part.energy;
@@ -185,12 +187,13 @@ template <class S>
 template <class Query>
 void CorotatedTets<S>::ask(Query&& query) {
   const AlignedVector<S> linear = linear_.rotations, quadratic = quadratic_.rotations;
-  const S maxTurned = maxTurned_;
+  const S flattest = flattest_, maxTurned = maxTurned_;
   const double turned = turned_;
   const S* const points = points_;
   query();
   linear_.rotations = linear;
   quadratic_.rotations = quadratic;
+  flattest_ = flattest;
   maxTurned_ = maxTurned;
   turned_ = turned;
   points_ = points;
@@ -227,21 +230,31 @@ const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S fla
     packed.assembled = packed.rotations;
     if (flatAlpha_ > S(0)) packed.alphas.resize(packed.rotations.size() / 4);
   });
-  return corners(alpha, points_, threads);
+  return corners(alpha, flatAlpha_ > S(0) ? flatAlpha_ : alpha, points_, threads);
+}
+
+template <class S>
+const S* CorotatedTets<S>::cornersWithoutFlat(S alpha, ParallelFor* threads) {
+  assert(points_ && alpha > S(0));
+  forBoth([&](auto& packed) {
+    packed.assembled = packed.rotations;
+    packed.alphas.resize(packed.rotations.size() / 4);
+  });
+  return corners(alpha, S(0), points_, threads);
 }
 
 template <class S>
 const S* CorotatedTets<S>::cornersAgain(S alpha, ParallelFor* threads) {
-  return corners(alpha, nullptr, threads);
+  return corners(alpha, flatAlpha_ > S(0) ? flatAlpha_ : alpha, nullptr, threads);
 }
 
 /// points  null: the same tets are flat as before
 template <class S>
-const S* CorotatedTets<S>::corners(S alpha, const S* points, ParallelFor* threads) {
+const S* CorotatedTets<S>::corners(S alpha, S flatAlpha, const S* points, ParallelFor* threads) {
   byPacks(threads, [&](auto work, const auto& loops, std::size_t) {
     work.rotations = const_cast<S*>(work.assembled);  // this kernel only reads them
     work.alpha = alpha;
-    work.flatAlpha = flatAlpha_;
+    work.flatAlpha = flatAlpha;
     work.points = points;
     loops.rotatedGradients(work);
   });

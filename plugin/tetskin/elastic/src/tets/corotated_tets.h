@@ -44,10 +44,15 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// The rotation of tets since `cornersForMatrix`, in radians: root mean square over all rotations, and maximum.
   double meanTurn() const;
   double maxTurn() const;
+  /// The least ratio of a tet's volume to that at rest in the last `forces`, at most 1.
+  double flattest() const { return static_cast<double>(flattest_); }
   /// The corners for BlockMatrix::assemble, with the current rotations.
   /// flatAlpha  if larger than `alpha`: its value where tets were flat or inverted in the last `forces`, whose points
   ///            must still be there
   const S* cornersForMatrix(S alpha, ParallelFor* threads, S flatAlpha = 0);
+  /// The same of a matrix without the tets that were flat or inverted in the last `forces`, to be replaced by one of
+  /// `cornersForMatrix` in this step.
+  const S* cornersWithoutFlat(S alpha, ParallelFor* threads);
   /// The same result again, for a matrix that is assembled from a snapshot's state.
   const S* cornersAgain(S alpha, ParallelFor* threads);
   /// Writes or reads the rotations.
@@ -86,7 +91,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool serializeAssembled(StateStream& stream, Packed<Pack>& packed);
   template <class Pack>
   bool serializeAlphas(StateStream& stream, S alpha, Packed<Pack>& packed);
-  const S* corners(S alpha, const S* points, ParallelFor* threads);
+  const S* corners(S alpha, S flatAlpha, const S* points, ParallelFor* threads);
   /// Calls kernel(work, its loops, number of the task) for all packs.
   template <class Kernel>
   void byPacks(ParallelFor* threads, Kernel&& kernel);
@@ -107,6 +112,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   const std::uint32_t* partOf_ = nullptr;
   S ratio_ = 0;
   S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: no such value
+  S flattest_ = 1;
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task

@@ -73,10 +73,7 @@ btScalar ImpactSide::compliance(const btVector3& at, const btVector3& along) con
 }
 
 void ImpactSide::push(const btVector3& at, const btVector3& impulse) const {
-  if (soft_) {
-    soft_->solve.again = true;
-    return soft_->dynamics->push(component_, tripleOf(at), tripleOf(impulse));
-  }
+  if (soft_) return soft_->dynamics->push(component_, tripleOf(at), tripleOf(impulse));
   if (moves()) rigids_.push(rigids_.at(object_, at), impulse);
 }
 
@@ -84,8 +81,8 @@ double ImpactSide::kept() const {
   return soft_ ? soft_->dynamics->keptInImpact(component_) : 1.0;
 }
 
-double ImpactSide::vibration(ParallelFor* threads) const {
-  return soft_ ? soft_->dynamics->vibrationEnergy(threads) : 0.0;
+double ImpactSide::vibration() const {
+  return soft_ ? soft_->dynamics->vibrationEnergy() : 0.0;
 }
 
 }  // namespace tetskin::bullet_detail

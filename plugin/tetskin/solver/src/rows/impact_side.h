@@ -36,11 +36,12 @@ class ImpactSide {
   btScalar speed(const SideMotion& motion, const btVector3& at, const btVector3& along) const;
   /// Change of velocity per unit impulse, both at a point and in a direction; 0: nothing moves it.
   btScalar compliance(const btVector3& at, const btVector3& along) const;
+  /// Between two steps; of a soft body after its `findMotion`.
   void push(const btVector3& at, const btVector3& impulse) const;
   /// Share of its energy that its material's damping leaves it in an impact.
   double kept() const;
-  /// Energy of its deformation and of its motion beside the rigid one, in joules.
-  double vibration(ParallelFor* threads) const;
+  /// Between two steps: the energy of its deformation and of its motion beside the rigid one, in joules.
+  double vibration() const;
 
  private:
   SolvedBody* soft_;

@@ -106,24 +106,28 @@ Meeting meetingOf(const Impact& impact, const Sides& sides) {
   return meeting;
 }
 
-/// The energy with which the pair is to part.
+/// The energy with which the pair is to part, if its vibrations leave it as much.
 double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& meeting) {
   const double came = meeting.energyAt(meeting.in), parts = meeting.energyAt(meeting.out);
   const double lost = std::max(std::min(impact.lost, came), 0.0);
   const double kept = std::min(sides[0].kept(), sides[1].kept());
   const double elastic = parts + lost * std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, 1.0);
   const double e = static_cast<double>(impact.pair.body->getRestitution() * impact.pair.object->getRestitution());
-  const double wanted = std::max(elastic, std::min(e * e, 1.0) * came);
-  return std::min(wanted, came - sides[0].vibration(nullptr) - sides[1].vibration(nullptr));
+  return std::min(std::max(elastic, e * e * came), came);
 }
 
-void giveBack(const Impact& impact, const Sides& sides, const Meeting& meeting) {
-  if (!(meeting.in > 0.0) || !(meeting.out > 0.0) || !(meeting.compliance > 0.0)) return;
-  const double speed = std::sqrt(2.0 * meeting.compliance * std::max(partingEnergy(impact, sides, meeting), 0.0));
-  const auto impulse = static_cast<btScalar>((speed - meeting.out) / meeting.compliance);
-  if (!(impulse > 0)) return;
-  sides[0].push(meeting.at, impulse * meeting.along);
-  sides[1].push(meeting.at, -impulse * meeting.along);
+/// By how much faster the pair is to part.
+double missingSpeed(const Impact& impact, const Sides& sides, const Meeting& meeting) {
+  if (!(meeting.in > 0.0) || !(meeting.out > 0.0) || !(meeting.compliance > 0.0)) return 0.0;
+  return std::max(std::sqrt(2.0 * meeting.compliance * partingEnergy(impact, sides, meeting)) - meeting.out, 0.0);
+}
+
+/// At the beginning of a step.
+btScalar partingSpeed(const DueImpulse& due, const Sides& sides) {
+  const auto speed = [&](const ImpactSide& side) {
+    return side.speed(side.motion(due.at, false), due.at, due.along);
+  };
+  return speed(sides[0]) - speed(sides[1]);
 }
 
 }  // namespace
@@ -136,6 +140,33 @@ Impact* Impacts::find(const ImpactPair& pair) {
 bool Impacts::includes(const btSoftBody& body) const {
   const auto isOf = [&](const Impact& one) { return one.pair.body == &body || one.pair.object == &body; };
   return std::any_of(list_.begin(), list_.end(), isOf);
+}
+
+void Impacts::giveBack(SolverBodies& bodies, RigidUnknowns& rigids) {
+  if (due_.empty()) return;
+  rigids.clear();  // those of the last step
+  std::vector<btScalar> before;
+  for (const DueImpulse& due : due_) {
+    const Sides sides = sidesOf(due.pair, bodies, rigids);
+    const bool complete = isComplete(due.pair, sides);
+    for (const ImpactSide& side : sides) {
+      if (complete && side.soft()) side.soft()->dynamics->findMotion();
+    }
+    before.push_back(complete ? partingSpeed(due, sides) : 0);
+  }
+  for (std::size_t k = 0; k < due_.size(); ++k) {
+    const DueImpulse& due = due_[k];
+    const Sides sides = sidesOf(due.pair, bodies, rigids);
+    if (!isComplete(due.pair, sides)) continue;
+    const btScalar compliance = sides[0].compliance(due.at, due.along) + sides[1].compliance(due.at, due.along);
+    const double left = std::max(due.energy - sides[0].vibration() - sides[1].vibration(), 0.0);
+    const auto fastest = static_cast<btScalar>(std::sqrt(2.0 * static_cast<double>(compliance) * left));
+    const btScalar speed = partingSpeed(due, sides), missing = std::min(before[k] + due.speed, fastest) - speed;
+    if (!(missing > 0 && compliance > 0)) continue;
+    sides[0].push(due.at, missing / compliance * due.along);
+    sides[1].push(due.at, -missing / compliance * due.along);
+  }
+  due_.clear();
 }
 
 void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds) {
@@ -188,21 +219,37 @@ void Impacts::finish(const ContactRows& rows, SolverBodies& bodies, RigidUnknown
     const Meeting meeting = met ? meetingOf(impact, sides) : Meeting();
     const bool over = impact.quiet > 0 && (meeting.out > 0.0 || impact.quiet >= kQuietSteps);
     if (!over) left.push_back(impact);
-    if (over && met) giveBack(impact, sides, meeting);
+    if (!over || !met) continue;
+    const auto speed = static_cast<btScalar>(missingSpeed(impact, sides, meeting));
+    const double came = meeting.energyAt(meeting.in);
+    const btVector3 carried = seconds * sides[0].motion(meeting.at, true).linear;
+    if (speed > 0) due_.push_back({impact.pair, meeting.at + carried, meeting.along, speed, came});
   }
   list_ = std::move(left);
 }
 
 void Impacts::forget(const btCollisionObject& gone) {
-  const auto isOf = [&](const Impact& one) { return one.pair.body == &gone || one.pair.object == &gone; };
+  const auto isOf = [&](const auto& one) { return one.pair.body == &gone || one.pair.object == &gone; };
   list_.erase(std::remove_if(list_.begin(), list_.end(), isOf), list_.end());
+  due_.erase(std::remove_if(due_.begin(), due_.end(), isOf), due_.end());
+}
+
+void Impacts::shift(const btVector3& by) {
+  for (DueImpulse& due : due_) due.at += by;
 }
 
 void Impacts::serialize(WorldStream& stream) {
+  const auto serializePair = [&](ImpactPair& pair) {
+    stream.object(pair.body);
+    stream.object(pair.object);
+    stream(pair.component, pair.otherComponent);
+  };
+  stream.each(due_, [&](DueImpulse& due) {
+    serializePair(due.pair);
+    stream(due.at, due.along, due.speed, due.energy);
+  });
   stream.each(list_, [&](Impact& impact) {
-    stream.object(impact.pair.body);
-    stream.object(impact.pair.object);
-    stream(impact.pair.component, impact.pair.otherComponent);
+    serializePair(impact.pair);
     for (SideMotion& motion : impact.before) stream(motion.linear, motion.field[0], motion.field[1], motion.field[2]);
     stream(impact.fallen, impact.push, impact.arm, impact.weight, impact.lost, impact.quiet);
   });

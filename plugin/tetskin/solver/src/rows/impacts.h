@@ -49,23 +49,35 @@ struct Impact {
   int quiet = 0;                     ///< steps since it was last felt
 };
 
+/// What an impact gives back: the pair parts faster by `speed`. It acts from the beginning of the next step on, so that
+/// what else touches the two resists it.
+struct DueImpulse {
+  ImpactPair pair;
+  btVector3 at{0, 0, 0}, along{0, 0, 0};  ///< place and direction of the impulse on the first one, world space
+  btScalar speed = 0;
+  double energy = 0.0;  ///< with which they came: they part with no more, including their vibrations
+};
+
 class Impacts {
  public:
+  /// At the beginning of a step, when velocities are known: gives back what is due.
+  void giveBack(SolverBodies& bodies, RigidUnknowns& rigids);
   /// Before a step's solve, when its rows are known: finds those that begin.
   void begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
-  /// When velocities are known: adds what the step has taken, and gives back what is due where an impact is over.
+  /// When velocities are solved: adds what the step has taken, and finds what is due where an impact is over.
   void finish(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
   /// Whether some impact of the body goes on.
   bool includes(const btSoftBody& body) const;
 
   void forget(const btCollisionObject& gone);
-  /// Writes or reads those that go on.
+  void shift(const btVector3& by);
   void serialize(WorldStream& stream);
 
  private:
   Impact* find(const ImpactPair& pair);
 
   std::vector<Impact> list_;  ///< in the order in which they began
+  std::vector<DueImpulse> due_;
 };
 
 }  // namespace tetskin::bullet_detail

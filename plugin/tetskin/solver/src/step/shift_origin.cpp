@@ -177,6 +177,7 @@ void DeformableSolver::Impl::shift(World& world, const btVector3& by) {
   rigids.paths().shift(by);
   sleepers.shift(by, changed);
   stillness.shift(by);
+  impacts.shift(by);
   if (const auto record = recorded.lock()) record->shift(by);
   for (int i = 0; i < forces().size(); ++i) {
     if (InactiveForce* own = inactiveForce(forces()[i])) own->shift(by);

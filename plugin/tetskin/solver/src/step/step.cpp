@@ -222,6 +222,7 @@ void DeformableSolver::Impl::predict() {
     body.dynamics->setDeterministic(deterministic);
     staggerHeld(body);
   });
+  impacts.giveBack(bodies, rigids);
   for (SolvedBody& body : bodies.bodies()) prepareSearch(body);
   for (SolvedSystem& system : bodies.systems()) {
     SolvedBody& first = bodies.bodies()[system.bodies.front()];
