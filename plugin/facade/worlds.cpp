@@ -192,4 +192,10 @@ void setFriction(World::RigidBody& rigid, double friction) {
   alive(rigid).setFriction(static_cast<btScalar>(friction));
 }
 
+void setRestitution(btCollisionObject& object, double restitution) {
+  if (!(restitution >= 0.0 && restitution <= 1.0))
+    fail(StatusCode::InvalidOption, "restitution: must be from 0 to 1");
+  object.setRestitution(static_cast<btScalar>(restitution));
+}
+
 }  // namespace tetskin::facade

@@ -47,6 +47,7 @@ struct Placement {
   option(SoftBodyOptions, double, poissonRatio, poisson_ratio, 0.3)                     \
   option(SoftBodyOptions, double, stiffnessDamping, stiffness_damping, 0.02)            \
   option(SoftBodyOptions, double, friction, friction, 0.5)                              \
+  option(SoftBodyOptions, double, restitution, restitution, 0)                          \
   option(SoftBodyOptions, std::optional<double>, margin, margin)                        \
   option(SoftBodyOptions, double, solverTolerance, solver_tolerance, 0.005)             \
   option(SoftBodyOptions, int, maxIterations, max_iterations, 100)                      \
@@ -107,5 +108,6 @@ void setPinnedPositions(World::Body& body, const std::vector<int>& nodes, const 
 std::vector<unsigned char> pinnedOf(const World::Body& body);
 void setFriction(World::Body& body, double friction);
 void setFriction(World::RigidBody& rigid, double friction);
+void setRestitution(btCollisionObject& object, double restitution);
 
 }  // namespace tetskin::facade

@@ -297,6 +297,8 @@ export interface BodyOptions {
   stiffnessDamping?: number;
   /** 0 to 1; 0.5 */
   friction?: number;
+  /** 0 to 1, multiplied by that of what it hits: the least share of the speed of approach with which they part; 0 */
+  restitution?: number;
   /** How the surface follows the tets; "linear" */
   interpolation?: "linear" | "quadratic";
   /** "none" */
@@ -445,6 +447,8 @@ export interface RigidBody extends Thing {
   get angularVelocity(): Float64Array;
   set angularVelocity(velocity: Vector);
   friction: number;
+  /** 0 to 1; multiplied by that of what it hits */
+  restitution: number;
   readonly mass: number;
   readonly kinematic: boolean;
   /** Mass times velocity, at a point in world space, or at the centre of mass. */
@@ -480,6 +484,7 @@ export interface Body extends Thing {
   poissonRatio: number;
   stiffnessDamping: number;
   friction: number;
+  restitution: number;
   /** Its own gravity; null: the world's. */
   setGravity(gravity: Vector | null): void;
   /** Pins nodes at their current positions, or releases them. */

@@ -209,36 +209,94 @@ BodyDynamics<double> stepsOf(const AssembledBody<double>& body, int steps) {
   return dynamics;
 }
 
-TEST(BodyDynamics, ABodyThatTurnsOutToBeTouchedTakesBackwardEulersStepAndSomeMore) {
-  const AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
-  EXPECT_FALSE(stepsOf(body, 1).isSecondOrder());
-  BodyDynamics<double> free = stepsOf(body, 40), touched = stepsOf(body, 40);
-  ASSERT_TRUE(free.isSecondOrder());
-  EXPECT_LT(free.alpha(), kAlpha);
-  touched.beTouched(nullptr);
-  EXPECT_FALSE(touched.isSecondOrder());
-  EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + kSeconds));
-  double history = 0.0, rest = 0.0;
+/// What the right side has beside the momentum and the elastic forces, node by node.
+VectorXd carriedBy(const AssembledBody<double>& body, const BodyDynamics<double>& dynamics) {
+  VectorXd carried(static_cast<Eigen::Index>(3 * body.nodes.size()));
   for (std::size_t n = 0; n < body.nodes.size(); ++n) {
-    double with[3], without[3];
-    free.rightSide(n, with);
-    touched.rightSide(n, without);
+    double right[3];
+    dynamics.rightSide(n, right);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double impulse = kSeconds * touched.force(n)[k] +
-                             body.masses[n] * touched.deviation()[touched.matrix().wideOf(n) + k * kernels::kGroup];
-      history += std::abs(with[k] - without[k]);
-      rest += std::abs(without[k] - impulse);
+      const double deviation = dynamics.deviation()[dynamics.matrix().wideOf(n) + k * kernels::kGroup];
+      carried[static_cast<Eigen::Index>(3 * n + k)] =
+          right[k] - kSeconds * dynamics.force(n)[k] - body.masses[n] * deviation;
     }
   }
-  EXPECT_GT(history, 1e-6);
-  EXPECT_LT(rest, 1e-12);
-  touched.findResidual(nullptr);
-  touched.remember(SolvedWith::ElasticityAlone, nullptr);
-  EXPECT_FALSE(touched.remembers());
-  for (int k = 0; k < 7; ++k) touched.predict({kSeconds}, nullptr);
-  EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + kSeconds));
-  touched.predict({kSeconds}, nullptr);
-  EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * kDamping);
+  return carried;
+}
+
+/// (A - M) u of the velocities u with which the step has begun.
+VectorXd stiffnessTimesDeviation(const AssembledBody<double>& body, const BodyDynamics<double>& dynamics) {
+  const VectorXd began = body.fromWide(dynamics.deviation());
+  AlignedVector<double> points(4 * dynamics.matrix().slotCount(), 0.0), product(dynamics.matrix().wideSize(), 0.0);
+  VectorXd momentum(began.size());
+  for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = static_cast<Eigen::Index>(3 * n + k);
+      points[4 * dynamics.matrix().slotOf(n) + k] = began[at];
+      momentum[at] = body.masses[n] * began[at];
+    }
+  }
+  dynamics.matrix().multiply(points.data(), product.data(), nullptr);
+  return body.fromWide(product.data()) - momentum;
+}
+
+TEST(BodyDynamics, ABodyThatTurnsOutToBeTouchedCarriesOnWhatItBeginsWith) {
+  const AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  EXPECT_FALSE(stepsOf(body, 1).isSecondOrder());
+  for (const bool impact : {false, true}) {
+    BodyDynamics<double> touched = stepsOf(body, 40);
+    ASSERT_TRUE(touched.isSecondOrder());
+    EXPECT_GT(carriedBy(body, touched).norm(), 1e-6) << "of the steps before";
+    touched.beTouched(impact, nullptr);
+    EXPECT_TRUE(touched.isSecondOrder());
+    EXPECT_EQ(touched.isImpact(), impact);
+    const double half = 0.5 * kSeconds, share = (impact ? 1.0 : 0.5) * half / (kDamping + half);
+    EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + half));
+    const VectorXd expected = share * stiffnessTimesDeviation(body, touched);
+    EXPECT_GT(expected.norm(), 1e-6);
+    EXPECT_LT((carriedBy(body, touched) - expected).norm(), 1e-10 * expected.norm());
+    touched.findResidual(nullptr);
+    touched.remember(SolvedWith::ElasticityAlone, nullptr);
+    EXPECT_FALSE(touched.remembers());
+    for (int k = 0; k < 7; ++k) {
+      touched.predict({kSeconds}, nullptr);
+      EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * (kDamping + half)) << k << " steps later";
+    }
+    touched.predict({kSeconds}, nullptr);
+    EXPECT_DOUBLE_EQ(touched.alpha(), kSeconds * kDamping);
+  }
+}
+
+/// The nodes of a tet's first corner are moved through the opposite face.
+TEST(BodyDynamics, FlatTetsCarryOnNothingAndWhereABodyIsHeldFlatNothingDoes) {
+  const AssembledBody<double> body(cageForDynamics(), 0.0, kAlpha);
+  for (const bool impact : {false, true}) {
+    BodyDynamics<double> dynamics = stepsOf(body, 1);
+    const Tet tet = body.restTets().tets.front();
+    double centre[3] = {};
+    for (std::size_t corner = 1; corner < 4; ++corner) {
+      for (std::size_t k = 0; k < 3; ++k) centre[k] += dynamics.point(static_cast<std::size_t>(tet[corner]))[k] / 3.0;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      double& x = dynamics.point(static_cast<std::size_t>(tet[0]))[k];
+      x += 1.1 * (centre[k] - x);
+    }
+    StepStart start{kSeconds};
+    start.touched = true;
+    start.impact = impact;
+    dynamics.predict(start, nullptr);
+    const VectorXd carried = carriedBy(body, dynamics);
+    const double all = (0.5 * kSeconds / (kDamping + 0.5 * kSeconds)) * stiffnessTimesDeviation(body, dynamics).norm();
+    EXPECT_EQ(dynamics.isSecondOrder(), impact);
+    if (!impact) {
+      EXPECT_LT(carried.norm(), 1e-10);
+      continue;
+    }
+    EXPECT_GT(carried.norm(), 0.01 * all);
+    VectorXd sum = VectorXd::Zero(3);
+    for (Eigen::Index n = 0; n < carried.size() / 3; ++n) sum += carried.segment<3>(3 * n);
+    EXPECT_LT(sum.norm(), 1e-10 * carried.norm()) << "internal forces";
+  }
 }
 
 #ifndef NDEBUG
@@ -252,7 +310,7 @@ TEST(BodyDynamicsDeathTest, CallsInAnotherOrderAreAsserted) {
   dynamics.predict({kSeconds}, nullptr);
   EXPECT_DEATH(dynamics.solve(gradient, {}, 1, nullptr), "stage_");
   dynamics.findResidual(nullptr);
-  dynamics.beTouched(nullptr);
+  dynamics.beTouched(false, nullptr);
   EXPECT_DEATH(dynamics.remember(SolvedWith::ElasticityAlone, nullptr), "stage_") << "the right side is another one";
   dynamics.findResidual(nullptr);
   dynamics.remember(SolvedWith::ElasticityAlone, nullptr);
@@ -566,14 +624,14 @@ TYPED_TEST(BodyDynamicsOf, YieldsRigidlyToAnImpulseOnThePartOfANode) {
     const Vector3d point = body.nodes[first + 2] + Vector3d(0.1, 0.4, -0.2), direction = Vector3d(1, 2, -2) / 3.0;
     const Eigen::Matrix<double, 6, 1> push = rigidVelocityAt(point, {0, 0, 0}).transpose() * direction;
     const double expected = push.dot(solved(rigidMass(body.nodes, masses, {0, 0, 0}), push));
-    const double found = dynamics.rigidCompliance(first + 2, {point.x(), point.y(), point.z()},
+    const double found = dynamics.rigidCompliance(dynamics.componentOf(first + 2), {point.x(), point.y(), point.z()},
                                                   {direction.x(), direction.y(), direction.z()});
     EXPECT_NEAR(found, expected, 500.0 * this->kEpsilon * expected);
   }
   BodyDynamics<TypeParam> masses({}, 5);  // nodes that no tet connects
   masses.setMass(2, 1);
   masses.predict({kSeconds}, nullptr);
-  EXPECT_EQ(masses.rigidCompliance(2, {1, 2, 3}, {1, 0, 0}), 0.0);
+  EXPECT_EQ(masses.rigidCompliance(0, {1, 2, 3}, {1, 0, 0}), 0.0);
 }
 
 }  // namespace

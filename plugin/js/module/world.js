@@ -208,6 +208,7 @@ properties(RigidBody, {
   velocity: [kVector, "rigidVelocity", "setRigidVelocity"],
   angularVelocity: [kVector, "rigidAngularVelocity", "setRigidAngularVelocity"],
   friction: [kNumber, "rigidFriction", "setRigidFriction"],
+  restitution: [kNumber, "rigidRestitution", "setRigidRestitution"],
   mass: [kNumber, "rigidMass"],
   kinematic: [kBoolean, "rigidKinematic"],
 });
@@ -279,4 +280,5 @@ properties(Body, {
   poissonRatio: [kNumber, "poissonRatio", "setPoissonRatio"],
   stiffnessDamping: [kNumber, "stiffnessDamping", "setStiffnessDamping"],
   friction: [kNumber, "bodyFriction", "setBodyFriction"],
+  restitution: [kNumber, "bodyRestitution", "setBodyRestitution"],
 });

@@ -138,6 +138,12 @@ double friction(BodyHandle& body) {
 void setFriction(BodyHandle& body, double friction) {
   facade::setFriction(*body.state, friction);
 }
+double restitution(BodyHandle& body) {
+  return static_cast<double>(alive(*body.state).body().getRestitution());
+}
+void setRestitution(BodyHandle& body, double restitution) {
+  facade::setRestitution(alive(*body.state).body(), restitution);
+}
 void setGravity(BodyHandle& body, Vec3 gravity) {
   check(alive(*body.state).setGravity(toBullet(gravity, "gravity")));
 }
@@ -191,6 +197,8 @@ EMSCRIPTEN_BINDINGS(bodies) {
   expose<&write<&DeformableBody::setStiffnessDamping>>("setStiffnessDamping");
   expose<&friction>("bodyFriction");
   expose<&setFriction>("setBodyFriction");
+  expose<&restitution>("bodyRestitution");
+  expose<&setRestitution>("setBodyRestitution");
   expose<&setGravity>("setBodyGravity");
   expose<&followWorldGravity>("followWorldGravity");
   expose<&reset>("resetBody");

@@ -91,6 +91,12 @@ double friction(RigidHandle& rigid) {
 void setFriction(RigidHandle& rigid, double friction) {
   facade::setFriction(*rigid.state, friction);
 }
+double restitution(RigidHandle& rigid) {
+  return static_cast<double>(alive(*rigid.state).getRestitution());
+}
+void setRestitution(RigidHandle& rigid, double restitution) {
+  facade::setRestitution(alive(*rigid.state), restitution);
+}
 double mass(RigidHandle& rigid) {
   return static_cast<double>(alive(*rigid.state).getMass());
 }
@@ -136,6 +142,8 @@ EMSCRIPTEN_BINDINGS(rigid_bodies) {
   expose<&setAngularVelocity>("setRigidAngularVelocity");
   expose<&friction>("rigidFriction");
   expose<&setFriction>("setRigidFriction");
+  expose<&restitution>("rigidRestitution");
+  expose<&setRestitution>("setRigidRestitution");
   expose<&mass>("rigidMass");
   expose<&kinematic>("rigidKinematic");
   expose<&applyImpulse>("applyRigidImpulse");

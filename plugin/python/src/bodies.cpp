@@ -206,6 +206,11 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
                    locked([](BodyHandle& b, double friction) { facade::setFriction(*b.state, friction); }),
                    "0 to 1; multiplied by that of rigid bodies.")
+      .def_prop_rw("restitution",
+                   number([](DeformableBody& b) { return static_cast<double>(b.body().getRestitution()); }),
+                   locked([](BodyHandle& b, double e) { facade::setRestitution(facade::alive(*b.state).body(), e); }),
+                   "0 to 1; multiplied by that of the object that it hits: the least share of the speed of approach "
+                   "with which they part.")
       .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
                    "Total, without pinned nodes.")
       .def("set_gravity", locked([](BodyHandle& b, const std::optional<Vec3>& gravity) {

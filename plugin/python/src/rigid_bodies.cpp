@@ -127,6 +127,9 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("friction", read([](btRigidBody& b) { return static_cast<double>(b.getFriction()); }),
                    locked([](RigidHandle& r, double friction) { setFriction(*r.state, friction); }),
                    "Coulomb's coefficient, which is multiplied by that of the touched object.")
+      .def_prop_rw("restitution", read([](btRigidBody& b) { return static_cast<double>(b.getRestitution()); }),
+                   locked([](RigidHandle& r, double e) { facade::setRestitution(alive(r), e); }),
+                   "0 to 1; multiplied by that of the object that it hits.")
       .def_prop_ro("kinematic", read([](btRigidBody& b) { return b.isKinematicObject(); }))
       .def_prop_ro(
           "removed", [](const RigidHandle& r) { return r.state->removed; },

@@ -36,6 +36,8 @@ Status checkOptions(const SoftBodyOptions& options) {
   }
   if (!(options.friction >= 0.0 && options.friction <= 1.0))
     return {StatusCode::InvalidOption, "friction: that of a soft body must be from 0 to 1"};
+  if (!(options.restitution >= 0.0 && options.restitution <= 1.0))
+    return {StatusCode::InvalidOption, "restitution: that of a soft body must be from 0 to 1"};
   if (options.margin && !(*options.margin >= 0.0 && finite(*options.margin)))
     return {StatusCode::InvalidOption, "margin: that of a soft body must be finite, and not negative"};
   if ((options.youngsModulus && !positive(*options.youngsModulus)) || !(options.relativeStiffness > 0.0) ||
@@ -105,6 +107,7 @@ void scaleMeasures(const std::vector<double>& scale, btSoftBody& body) {
 
 void configure(const TetMesh& cage, const SoftBodyOptions& options, btSoftBody& body) {
   collideWithRigidBodies(cage, options.margin, options.friction, body);
+  body.setRestitution(static_cast<btScalar>(options.restitution));
   if (options.forceModel == ForceModel::MassSpring) {
     body.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
     body.m_cfg.piterations = kMassSpringIterations;

@@ -29,6 +29,8 @@ constexpr double kStiff = 1e3;
 /// The same, without damping, up to which a step carries on the whole of what it begins with. Vibrations that are much
 /// faster overshoot: a cube of 60 gets 1.4 times the energy of its fall.
 constexpr double kResolvable = 8.0;
+/// Relative difference in length of two steps that count as equally long.
+constexpr double kSameLength = 0.1;
 /// Value of dt^2 times that sum over the inertia, above which a rotation by a tenth of a radian that arises within a
 /// step stores noticeable energy.
 constexpr double kFeelsTurns = 1.0;
@@ -170,6 +172,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   impact_ = start.impact;
   if (!start.continues) history_.forget();
   forceSeconds_ = seconds * forceShare(seconds, start.staggered);
+  sameLength_ = std::abs(seconds - lastSeconds_) <= kSameLength * seconds;
   lastSeconds_ = seconds;
   stage_ = Stage::Begun;
   places_.take(points_);
@@ -206,15 +209,16 @@ template <class S>
 double BodyDynamics<S>::carriedShare() const {
   constexpr double kLasting = 0.5;
   const double number = lastSeconds_ * lastSeconds_ * stiffnessOverInertia_;
-  return (impact_ || untouched_ > 0 ? 1.0 : kLasting) * std::min(1.0, kResolvable / number);
+  return (lasts() ? kLasting : 1.0) * std::min(1.0, kResolvable / number);
 }
 
 /// What is squashed nearly flat is stiffer than its matrix by more than the scheme bears: in an impact, flat tets carry
-/// on nothing; where a body is held flat, nothing does.
+/// on nothing; where a body is held flat, nothing does. Nor does anything where steps vary in length: an undamped box
+/// that lands in steps of 4 and 32 ms in turn would explode.
 template <class S>
 bool BodyDynamics<S>::mayCarryOn() const {
   constexpr double kLeastVolume = 0.15;
-  return tets_ && !stiff_ && (impact_ || tets_->flattest() >= kLeastVolume);
+  return tets_ && !stiff_ && sameLength_ && (!lasts() || tets_->flattest() >= kLeastVolume);
 }
 
 /// The angle by which tets may rotate before the matrix is assembled anew, relative to that of a soft body.
@@ -241,11 +245,11 @@ double BodyDynamics<S>::matrixAlpha() const {
 
 template <class S>
 void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
-  const double seconds = lastSeconds_,
-               flat = pressed_                ? kFlatAlpha * seconds * seconds
-                      : scheme_.carried > 0.0 ? backwardEuler(seconds, damping_).alpha(seconds)
-                                              : 0.0;
+  const double seconds = lastSeconds_, flat = pressed_                ? kFlatAlpha * seconds * seconds
+                                              : scheme_.carried > 0.0 ? backwardEuler(seconds, damping_).alpha(seconds)
+                                                                      : 0.0;
   const auto flatAlpha = static_cast<S>(flat);
+  changed_ = true;  // until it is done: memory may run out
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr,
                    tets_ ? tets_->ratio() : S(0), threads);
   alpha_ = alpha;
@@ -306,6 +310,7 @@ void BodyDynamics<S>::carry(ParallelFor* threads) {
   carried_.resize(matrix_.wideSize());
   toPoints(began_.data(), relative_);
   const bool flat = tets_->flattest() < kernels::kFlatVolume;
+  changed_ |= flat;
   if (flat) matrix_.assemble(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), tets_->ratio(), threads);
   matrix_.multiply(relative_.data(), carried_.data(), threads);
   if (flat) assemble(alpha_, threads);

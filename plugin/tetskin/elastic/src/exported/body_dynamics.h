@@ -152,10 +152,11 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// squared ratio of a step to the time in which a deformation recedes.
   double stiffnessNumber() const { return stiffnessNumber_; }
   double alpha() const { return alpha_; }
-  /// What alpha would be over what it is, if the step had this length, by backward Euler's scheme.
+  /// What alpha would be over what it is, if the step had this length and, in contact, carried on what it begins with.
   double alphaRatio(double seconds) const {
-    const double now = lastSeconds_ * (lastSeconds_ + damping_);
-    return now > 0.0 ? seconds * (seconds + damping_) / now : 1.0;
+    const bool carries = !stiff_ && untouched_ < kUntouched;
+    const double now = lastSeconds_ * ((scheme_.carried > 0.0 ? 0.5 : 1.0) * lastSeconds_ + damping_);
+    return now > 0.0 ? seconds * ((carries ? 0.5 : 1.0) * seconds + damping_) / now : 1.0;
   }
   /// The square of the norm of impulses that change all velocities by this speed.
   double squaredImpulses(double speed) const { return speed * speed * unitImpulses_; }
@@ -249,6 +250,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   NodeStates<S> nodes() const { return {matrix_, places_, velocities_}; }
   LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_}; }
   void chooseScheme();
+  /// A contact that neither stops it nor throws it back.
+  bool lasts() const { return untouched_ == 0 && !impact_; }
   bool mayCarryOn() const;
   double carriedShare() const;
   void carry(ParallelFor* threads);
@@ -279,7 +282,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double damping_ = 0.0;
   double alpha_ = 0.0;  ///< of the last assembly
   Stage stage_ = Stage::Between;
-  bool stiff_ = false, pressed_ = false, secondOrder_ = false, impact_ = false, deterministic_ = false;
+  bool stiff_ = false, pressed_ = false, secondOrder_ = false, impact_ = false, sameLength_ = false,
+       deterministic_ = false;
   bool changed_ = true;      ///< masses or material have changed since the last assembly
   bool remembered_ = false;  ///< the last step
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen

@@ -204,11 +204,10 @@ void warmStart(const SolvedBody& body, const btVector3& remainder, const btTrans
 
 /// Inverse effective mass of an end's point in a direction: that of its nodes alone, plus that of the rigid motion of
 /// their component.
-/// seconds  length of the step that it is for
+/// stiffer  factor of the stiffness of the nodes' neighbourhood
 double compliance(const SolvedBody& body, const CarriedPoint& point, const btVector3& position,
-                  const btVector3& direction, double seconds) {
+                  const btVector3& direction, double stiffer) {
   assert(point.count > 0);
-  const double stiffer = body.dynamics->alphaRatio(seconds);
   double sum = 0.0;
   for (std::uint32_t k = 0; k < point.count; ++k) {
     btScalar inverse[6];
@@ -224,14 +223,22 @@ double compliance(const SolvedBody& body, const CarriedPoint& point, const btVec
   return sum + body.dynamics->rigidCompliance(body.dynamics->componentOf(node), numbersOf(position), numbersOf(direction));
 }
 
-/// seconds  length of the step that it is for
+/// By end: how much stiffer a soft body's matrix is in a step of this length; 1 for a rigid body.
+std::array<double, 2> alphaRatios(const SolverBodies& bodies, const ContactRow& row, double seconds) {
+  const auto ratio = [&](const RowEnd& end) {
+    return end.isSoft() ? bodies.bodies()[end.body].dynamics->alphaRatio(seconds) : 1.0;
+  };
+  return {ratio(row.ends[0]), ratio(row.ends[1])};
+}
+
+/// stiffer  by end: see `compliance`
 double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const RowOrigin& origin,
-                     const RigidUnknowns& rigids, double seconds) {
+                     const RigidUnknowns& rigids, const std::array<double, 2>& stiffer) {
   const auto along = [&](const btVector3& direction) {
     double sum = 0.0;
     for (std::size_t e = 0; e < 2; ++e) {
       const RowEnd& end = row.ends[e];
-      sum += end.isSoft() ? compliance(bodies.bodies()[end.body], origin.points[e], origin.position, direction, seconds)
+      sum += end.isSoft() ? compliance(bodies.bodies()[end.body], origin.points[e], origin.position, direction, stiffer[e])
                           : rigids.compliance(end.rigid, direction);
     }
     return sum;
@@ -479,14 +486,14 @@ btScalar ContactRows::sharing(std::size_t row) const {
 
 /// A node shared by several rows gets no stiffer than with one row.
 void ContactRows::setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds) {
-  const auto now = static_cast<double>(seconds);
   followStep(seconds);
   listLoads(bodies, seconds);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     ContactRow& row = rows_[r];
     if (row.constant) continue;
-    const double mass = effectiveMass(bodies, row, origins_[r], rigids, now);
-    const double usualMass = now == usualStep_ ? mass : effectiveMass(bodies, row, origins_[r], rigids, usualStep_);
+    const std::array<double, 2> asIs = {1.0, 1.0}, asUsual = alphaRatios(bodies, row, usualStep_);
+    const double mass = effectiveMass(bodies, row, origins_[r], rigids, asIs);
+    const double usualMass = asUsual == asIs ? mass : effectiveMass(bodies, row, origins_[r], rigids, asUsual);
     // A higher stiffness makes no visible difference, and would amplify the residual of the solve.
     const bool mounted = !row.ends[1].isSoft() && row.ends[1].rigid.unknown < 0;
     const double times = !row.joined ? kStiffness * stiffening(bodies, row, seconds)
