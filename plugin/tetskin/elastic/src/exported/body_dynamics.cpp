@@ -176,6 +176,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   lastSeconds_ = seconds;
   stage_ = Stage::Begun;
   places_.take(points_);
+  matrix_.free();
   if (!tets_) {
     chooseScheme();
     assembleIfNeeded(1.0, threads);

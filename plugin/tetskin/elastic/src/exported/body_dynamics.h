@@ -116,7 +116,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   /// The beginning of a step: computes the rigid motion, the forces at the points that it reaches, the matrix if it
   /// must change, and the right side. The solution is a velocity relative to the rigid motion; it begins with its last
-  /// value for a soft body, and with 0 for a stiff one.
+  /// value for a soft body, and with 0 for a stiff one. What held nodes in the last step no longer does.
   void predict(const StepStart& start, ParallelFor* threads);
   /// The body turns out to have contacts in this step, which becomes one of a touched body: its right side is another
   /// one, and the residual is unknown.

@@ -253,7 +253,6 @@ void DeformableSolver::Impl::predictVelocities(SolvedBody& body, ParallelFor* in
   Dynamics& dynamics = *body.dynamics;
   dynamics.predict(body.start, inner);
   body.solve.unseenSpeed = unseenSpeed(body);
-  dynamics.matrix().free();
   if (body.solve.deferred) return;
   dynamics.findResidual(inner);
   if (body.elastic) solveAlone(body, body.before.any ? 0 : body.settings->iterations, inner);
