@@ -63,8 +63,8 @@ SideMotion ImpactSide::motion(const btVector3& at, bool solved) const {
   return motion;
 }
 
-btScalar ImpactSide::speed(const SideMotion& motion, const btVector3& at, const btVector3& along) const {
-  return along.dot(motion.linear + motion.field * (at - centre()));
+btVector3 ImpactSide::velocity(const SideMotion& motion, const btVector3& at) const {
+  return motion.linear + motion.field * (at - centre());
 }
 
 btScalar ImpactSide::compliance(const btVector3& at, const btVector3& along) const {

@@ -32,8 +32,8 @@ class ImpactSide {
   /// At the beginning of the step, with what acts on it beside contacts and elasticity; or as the step has solved it. A
   /// link's is that of the point.
   SideMotion motion(const btVector3& at, bool solved) const;
-  /// The velocity of a point in a direction, by a motion.
-  btScalar speed(const SideMotion& motion, const btVector3& at, const btVector3& along) const;
+  /// The velocity of a point by a motion.
+  btVector3 velocity(const SideMotion& motion, const btVector3& at) const;
   /// Change of velocity per unit impulse, both at a point and in a direction; 0: nothing moves it.
   btScalar compliance(const btVector3& at, const btVector3& along) const;
   /// Between two steps; of a soft body after its `findMotion`.

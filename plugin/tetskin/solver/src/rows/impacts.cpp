@@ -12,7 +12,7 @@
 namespace tetskin::bullet_detail {
 namespace {
 
-/// Steps without a push that is felt after which an impact is over, if the pair has not parted.
+/// Steps without a push that is felt after which an impact is over, if the pair still approaches.
 constexpr int kQuietSteps = 8;
 
 /// The change of velocity in a step from which on contacts count as an impact: twice what a body at rest takes.
@@ -80,9 +80,15 @@ double lossOf(const ContactRow& row, const RowOrigin& origin, const SolverBodies
   return static_cast<double>(-impulse * (before + after) / 2);
 }
 
+/// Of the first one's point beside the second one's.
+btVector3 relativeVelocity(const Sides& sides, const std::array<SideMotion, 2>& motions, const btVector3& at) {
+  return sides[0].velocity(motions[0], at) - sides[1].velocity(motions[1], at);
+}
+
 /// How a pair meets and parts, as two rigid bodies.
 struct Meeting {
   btVector3 at, along;         ///< the mean place and direction of the pushes on the first one, world space
+  btVector3 came;              ///< relative velocity before
   double in = 0.0, out = 0.0;  ///< speeds of approach and of parting; below 0: the other way
   double compliance = 0.0;     ///< of both
   double energyAt(double speed) const { return 0.5 * speed * speed / compliance; }
@@ -93,14 +99,12 @@ Meeting meetingOf(const Impact& impact, const Sides& sides) {
   Meeting meeting;
   meeting.along = impact.push.normalized();
   meeting.at = sides[0].centre() + impact.arm / impact.weight;
-  const auto parting = [&](const SideMotion& first, const SideMotion& second) {
-    return static_cast<double>(sides[0].speed(first, meeting.at, meeting.along) -
-                               sides[1].speed(second, meeting.at, meeting.along));
-  };
   // The step in which it began has added the whole of its gravity, which acted until they met alone.
-  const auto fallen = static_cast<double>(std::max(-impact.fallen.dot(meeting.along), btScalar(0)));
-  meeting.in = -parting(impact.before[0], impact.before[1]) - fallen;
-  meeting.out = parting(sides[0].motion(meeting.at, true), sides[1].motion(meeting.at, true));
+  const btVector3 fallen = std::max(-impact.fallen.dot(meeting.along), btScalar(0)) * meeting.along;
+  meeting.came = relativeVelocity(sides, impact.before, meeting.at) + fallen;
+  const std::array<SideMotion, 2> now = {sides[0].motion(meeting.at, true), sides[1].motion(meeting.at, true)};
+  meeting.in = static_cast<double>(-meeting.along.dot(meeting.came));
+  meeting.out = static_cast<double>(meeting.along.dot(relativeVelocity(sides, now, meeting.at)));
   for (const ImpactSide& side : sides)
     meeting.compliance += static_cast<double>(side.compliance(meeting.at, meeting.along));
   return meeting;
@@ -108,7 +112,7 @@ Meeting meetingOf(const Impact& impact, const Sides& sides) {
 
 /// The energy with which the pair is to part, if its vibrations leave it as much.
 double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& meeting) {
-  const double came = meeting.energyAt(meeting.in), parts = meeting.energyAt(meeting.out);
+  const double came = meeting.energyAt(meeting.in), parts = meeting.energyAt(std::max(meeting.out, 0.0));
   const double lost = std::max(std::min(impact.lost, came), 0.0);
   const double kept = std::min(sides[0].kept(), sides[1].kept());
   const double elastic = parts + lost * std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, 1.0);
@@ -118,16 +122,53 @@ double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& me
 
 /// By how much faster the pair is to part.
 double missingSpeed(const Impact& impact, const Sides& sides, const Meeting& meeting) {
-  if (!(meeting.in > 0.0) || !(meeting.out > 0.0) || !(meeting.compliance > 0.0)) return 0.0;
+  if (!(meeting.in > 0.0) || !(meeting.compliance > 0.0)) return 0.0;
   return std::max(std::sqrt(2.0 * meeting.compliance * partingEnergy(impact, sides, meeting)) - meeting.out, 0.0);
 }
 
 /// At the beginning of a step.
-btScalar partingSpeed(const DueImpulse& due, const Sides& sides) {
-  const auto speed = [&](const ImpactSide& side) {
-    return side.speed(side.motion(due.at, false), due.at, due.along);
+btVector3 velocityNow(const DueImpulse& due, const Sides& sides) {
+  return relativeVelocity(sides, {sides[0].motion(due.at, false), sides[1].motion(due.at, false)}, due.at);
+}
+
+/// The pair's change of velocity at a point per unit impulse there, of all directions.
+btMatrix3x3 complianceOf(const Sides& sides, const btVector3& at) {
+  const auto along = [&](const btVector3& direction) {
+    return sides[0].compliance(at, direction) + sides[1].compliance(at, direction);
   };
-  return speed(sides[0]) - speed(sides[1]);
+  btMatrix3x3 all;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      btVector3 first(0, 0, 0), second(0, 0, 0);
+      first[i] = second[j] = 1;
+      all[i][j] = all[j][i] = (along(first + second) - along(first - second)) / 4;
+    }
+  }
+  return all;
+}
+
+/// The largest impulse by which the pair has no more energy than when it came. Impacts of a body with several objects
+/// are given back one after the other, along directions that may differ.
+double largestImpulse(const DueImpulse& due, const Sides& sides, const btVector3& now) {
+  const btMatrix3x3 compliance = complianceOf(sides, due.at), inverse = compliance.inverse();
+  const auto energyOf = [&](const btVector3& velocity) {
+    return 0.5 * static_cast<double>(velocity.dot(inverse * velocity));
+  };
+  const double left = energyOf(due.came) - energyOf(now) - sides[0].vibration() - sides[1].vibration(),
+               along = static_cast<double>(due.along.dot(compliance * due.along)),
+               speed = static_cast<double>(due.along.dot(now));
+  return left > 0.0 && along > 0.0 ? (std::sqrt(speed * speed + 2.0 * along * left) - speed) / along : 0.0;
+}
+
+/// True if the pair's contacts have pushed by more than at rest. What is pinched between two objects is pushed by both,
+/// for as long as it lies there, but not on the whole.
+bool isFelt(const ImpactPair& pair, const btVector3& push, const PushSums& sums, const Sides& sides, btScalar least) {
+  const btScalar mass = sides[1].moves() ? std::min(sides[0].mass(), sides[1].mass()) : sides[0].mass();
+  const auto isPushed = [&](const ImpactSide& side, const btCollisionObject* body, std::uint64_t component) {
+    return side.soft() && sums.of(body, component).length() > side.mass() * least;
+  };
+  return push.length() > mass * least &&
+         (isPushed(sides[0], pair.body, pair.component) || isPushed(sides[1], pair.object, pair.otherComponent));
 }
 
 }  // namespace
@@ -145,26 +186,26 @@ bool Impacts::includes(const btSoftBody& body) const {
 void Impacts::giveBack(SolverBodies& bodies, RigidUnknowns& rigids) {
   if (due_.empty()) return;
   rigids.clear();  // those of the last step
-  std::vector<btScalar> before;
+  std::vector<btScalar> wanted;
   for (const DueImpulse& due : due_) {
     const Sides sides = sidesOf(due.pair, bodies, rigids);
     const bool complete = isComplete(due.pair, sides);
     for (const ImpactSide& side : sides) {
       if (complete && side.soft()) side.soft()->dynamics->findMotion();
     }
-    before.push_back(complete ? partingSpeed(due, sides) : 0);
+    wanted.push_back(complete ? due.along.dot(velocityNow(due, sides)) + due.speed : 0);
   }
   for (std::size_t k = 0; k < due_.size(); ++k) {
     const DueImpulse& due = due_[k];
     const Sides sides = sidesOf(due.pair, bodies, rigids);
     if (!isComplete(due.pair, sides)) continue;
+    const btVector3 now = velocityNow(due, sides);
     const btScalar compliance = sides[0].compliance(due.at, due.along) + sides[1].compliance(due.at, due.along);
-    const double left = std::max(due.energy - sides[0].vibration() - sides[1].vibration(), 0.0);
-    const auto fastest = static_cast<btScalar>(std::sqrt(2.0 * static_cast<double>(compliance) * left));
-    const btScalar speed = partingSpeed(due, sides), missing = std::min(before[k] + due.speed, fastest) - speed;
-    if (!(missing > 0 && compliance > 0)) continue;
-    sides[0].push(due.at, missing / compliance * due.along);
-    sides[1].push(due.at, -missing / compliance * due.along);
+    const auto impulse = static_cast<btScalar>(
+        std::min(static_cast<double>((wanted[k] - due.along.dot(now)) / compliance), largestImpulse(due, sides, now)));
+    if (!(impulse > 0)) continue;
+    sides[0].push(due.at, impulse * due.along);
+    sides[1].push(due.at, -impulse * due.along);
   }
   due_.clear();
 }
@@ -191,41 +232,48 @@ void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns
 
 void Impacts::finish(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds) {
   if (list_.empty()) return;
-  for (Impact& impact : list_) ++impact.quiet;
-  std::vector<btScalar> felt(list_.size(), 0);
-  for (const ContactRow& row : rows.rows()) {
-    const RowOrigin& origin = rows.originOf(row);
-    const btScalar impulse = row.normal.dot(row.impulse);
-    if (!(impulse > 0) || !isElasticContact(row, origin, bodies)) continue;
-    const SolvedBody& first = bodies.bodies()[row.ends[0].body];
-    const ImpactPair pair = pairOf(row, origin, bodies);
-    Impact* impact = find(pair);
-    if (!impact) continue;
-    const ImpactSide side(&bodies.bodies()[row.ends[0].body], pair.component, *first.body, rigids);
-    impact->push += impulse * row.normal;
-    impact->arm += impulse * (origin.position - side.centre());
-    impact->weight += impulse;
-    impact->lost += lossOf(row, origin, bodies);
-    felt[static_cast<std::size_t>(impact - list_.data())] += impulse;
-  }
+  const PushSums sums = addPushes(rows, bodies, rigids);
   std::vector<Impact> left;
   for (std::size_t k = 0; k < list_.size(); ++k) {
     Impact& impact = list_[k];
     const Sides sides = sidesOf(impact.pair, bodies, rigids);
     if (!isComplete(impact.pair, sides)) continue;
-    const btScalar mass = sides[1].moves() ? std::min(sides[0].mass(), sides[1].mass()) : sides[0].mass();
-    if (felt[k] > mass * leastImpact(*sides[0].soft(), seconds)) impact.quiet = 0;
+    const btScalar least = leastImpact(*sides[0].soft(), seconds);
+    impact.quiet = isFelt(impact.pair, sums.ofPairs[k], sums, sides, least) ? 0 : impact.quiet + 1;
     const bool met = impact.weight > 0 && !impact.push.fuzzyZero();
     const Meeting meeting = met ? meetingOf(impact, sides) : Meeting();
-    const bool over = impact.quiet > 0 && (meeting.out > 0.0 || impact.quiet >= kQuietSteps);
+    const bool stopped = meeting.out > -static_cast<double>(least);  // light touches may come before the impact itself
+    const bool over = impact.quiet > 0 && (stopped || impact.quiet >= kQuietSteps);
     if (!over) left.push_back(impact);
-    if (!over || !met) continue;
+    if (!over || !met || !stopped) continue;
     const auto speed = static_cast<btScalar>(missingSpeed(impact, sides, meeting));
-    const double came = meeting.energyAt(meeting.in);
     const btVector3 carried = seconds * sides[0].motion(meeting.at, true).linear;
-    if (speed > 0) due_.push_back({impact.pair, meeting.at + carried, meeting.along, speed, came});
+    if (speed > 0) due_.push_back({impact.pair, meeting.at + carried, meeting.along, speed, meeting.came});
   }
   list_ = std::move(left);
+}
+
+PushSums Impacts::addPushes(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids) {
+  PushSums sums;
+  sums.ofPairs.resize(list_.size(), btVector3(0, 0, 0));
+  for (const ContactRow& row : rows.rows()) {
+    const RowOrigin& origin = rows.originOf(row);
+    const btScalar impulse = row.normal.dot(row.impulse);
+    if (!(impulse > 0) || !isElasticContact(row, origin, bodies)) continue;
+    SolvedBody& first = bodies.bodies()[row.ends[0].body];
+    const ImpactPair pair = pairOf(row, origin, bodies);
+    sums.on(pair.body, pair.component) += impulse * row.normal;
+    if (row.ends[1].isSoft()) sums.on(pair.object, pair.otherComponent) -= impulse * row.normal;
+    Impact* impact = find(pair);
+    if (!impact) continue;
+    const ImpactSide side(&first, pair.component, *first.body, rigids);
+    impact->push += impulse * row.normal;
+    impact->arm += impulse * (origin.position - side.centre());
+    impact->weight += impulse;
+    impact->lost += lossOf(row, origin, bodies);
+    sums.ofPairs[static_cast<std::size_t>(impact - list_.data())] += impulse * row.normal;
+  }
+  return sums;
 }
 
 void Impacts::forget(const btCollisionObject& gone) {
@@ -246,7 +294,7 @@ void Impacts::serialize(WorldStream& stream) {
   };
   stream.each(due_, [&](DueImpulse& due) {
     serializePair(due.pair);
-    stream(due.at, due.along, due.speed, due.energy);
+    stream(due.at, due.along, due.speed, due.came);
   });
   stream.each(list_, [&](Impact& impact) {
     serializePair(impact.pair);

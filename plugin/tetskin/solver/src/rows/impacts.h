@@ -22,6 +22,8 @@
 #include <tetskin/solver/src/rows/contact_rows.h>
 #include <tetskin/solver/src/rows/impact_side.h>
 
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace tetskin::bullet_detail {
@@ -55,7 +57,23 @@ struct DueImpulse {
   ImpactPair pair;
   btVector3 at{0, 0, 0}, along{0, 0, 0};  ///< place and direction of the impulse on the first one, world space
   btScalar speed = 0;
-  double energy = 0.0;  ///< with which they came: they part with no more, including their vibrations
+  /// The relative velocity with which they came: they part with no more energy than that, including their vibrations.
+  btVector3 came{0, 0, 0};
+};
+
+/// Sums of the normal impulses of a step's contacts.
+struct PushSums {
+  std::vector<btVector3> ofPairs;  ///< by impact, on the first one of its pair
+  /// By component of a soft body, from everything.
+  std::map<std::pair<const btCollisionObject*, std::uint64_t>, btVector3> ofComponents;
+
+  btVector3& on(const btCollisionObject* body, std::uint64_t component) {
+    return ofComponents.try_emplace({body, component}, btVector3(0, 0, 0)).first->second;
+  }
+  btVector3 of(const btCollisionObject* body, std::uint64_t component) const {
+    const auto found = ofComponents.find({body, component});
+    return found == ofComponents.end() ? btVector3(0, 0, 0) : found->second;
+  }
 };
 
 class Impacts {
@@ -75,6 +93,8 @@ class Impacts {
 
  private:
   Impact* find(const ImpactPair& pair);
+  /// Adds the step's pushes, and what they have taken, to the impacts.
+  PushSums addPushes(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids);
 
   std::vector<Impact> list_;  ///< in the order in which they began
   std::vector<DueImpulse> due_;
