@@ -170,9 +170,11 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   pressed_ = start.pressed;
   untouched_ = start.touched ? 0 : std::min(untouched_ + 1, kUntouched);
   impact_ = start.impact;
+  continues_ = start.continues && solved_;
+  solved_ = false;
   if (!start.continues) history_.forget();
   forceSeconds_ = seconds * forceShare(seconds, start.staggered);
-  sameLength_ = std::abs(seconds - lastSeconds_) <= kSameLength * seconds;
+  sameLength_ = lastSeconds_ == 0.0 || std::abs(seconds - lastSeconds_) <= kSameLength * seconds;
   lastSeconds_ = seconds;
   stage_ = Stage::Begun;
   places_.take(points_);
@@ -281,6 +283,7 @@ void BodyDynamics<S>::beginElastic(ParallelFor* threads) {
   assert(tets_ && forceSeconds_ > 0.0 && stage_ == Stage::Begun);
   S* solution = matrix_.solution();
   loneSolve_.beginStep(matrix_);
+  keepLastSolution();
   const auto dt = static_cast<S>(forceSeconds_);
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
     const S mass = matrix_.massAt(slot);
@@ -303,13 +306,23 @@ void BodyDynamics<S>::beginElastic(ParallelFor* threads) {
   carry(threads);
 }
 
+/// The deviation from rigid motion that the last step has ended with, turned with the body. What the step begins with
+/// also deviates because nodes fly straight on where the body turns.
+template <class S>
+void BodyDynamics<S>::keepLastSolution() {
+  last_.assign(matrix_.wideSize(), S(0));
+  if (!continues_ || stiff_) return;
+  std::copy_n(matrix_.solution(), matrix_.wideSize(), last_.data());
+  turnWide(last_.data(), components_.turns(), components_.bySlot());
+}
+
 /// Adds the share of (A - M) u that the scheme carries on, without the flat tets' part of A.
 template <class S>
 void BodyDynamics<S>::carry(ParallelFor* threads) {
   carried_.clear();
   if (!(scheme_.carried > 0.0)) return;
   carried_.resize(matrix_.wideSize());
-  toPoints(began_.data(), relative_);
+  toPoints(last_.data(), relative_);
   const bool flat = tets_->flattest() < kernels::kFlatVolume;
   changed_ |= flat;
   if (flat) matrix_.assemble(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), tets_->ratio(), threads);
@@ -320,7 +333,7 @@ void BodyDynamics<S>::carry(ParallelFor* threads) {
     const S mass = matrix_.massAt(slot);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = wide + k * kGroup;
-      carried_[at] = mass != S(0) ? share * (carried_[at] - mass * began_[at]) : S(0);
+      carried_[at] = mass != S(0) ? share * (carried_[at] - mass * last_[at]) : S(0);
       rightSide_[at] += carried_[at];
     }
   });
@@ -376,6 +389,9 @@ void BodyDynamics<S>::remember(SolvedWith what, ParallelFor* threads) {
     if (!secondOrder_) history_.clear(matrix_.wideSize());
     history_.keep(matrix_, what == SolvedWith::Others ? image_ : rightSide_, scheme_, lastSeconds_, forceSeconds_);
     remembered_ = true;
+  }
+  solved_ = tets_ && !stiff_;
+  if (solved_) {
     near_ = static_cast<S>(kNear * components_.largestRadius());
     length_ = static_cast<S>(lastSeconds_);
   }
@@ -556,9 +572,11 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
   setDeterministic(deterministic);  // a step that found it changed would make the matrix anew
   bool changed = changed_ || outdated;
   bool known = history_.isKnown() && remembered_ && continues && !changed;
+  bool solved = solved_ && continues;
   double alpha = alpha_;
   stream(changed);
   stream(known);
+  stream(solved);
   stream(alpha);
   stream(stiffnessOverInertia_);
   stream(untouched_);
@@ -573,13 +591,14 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
     alpha_ = alpha;
     changed_ = changed;
     remembered_ = known;
+    solved_ = solved;
     history_.forget();
     stage_ = Stage::Between;
   }
-  if (!known) return;
+  if (!known && !solved) return;
   stream(length_);
   stream(near_);
-  history_.serialize(stream, matrix_);
+  if (known) history_.serialize(stream, matrix_);
   serializeReached(stream, reached);
 }
 

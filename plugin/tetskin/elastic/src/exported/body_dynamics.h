@@ -100,7 +100,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// True if the node is where the last step has brought it, and as fast, except for invisible differences.
   bool continues(std::size_t node, const S* point, const S* velocity) const;
   /// True if the last step is remembered for the next one.
-  bool remembers() const { return history_.isKnown(); }
+  bool remembers() const { return history_.isKnown() || solved_; }
 
   /// Finds the rigid motions that its nodes' velocities have now: `rigidVelocity`, `rigidCompliance` and `centreOf` are
   /// those of now, and `push` may be called, until `predict`.
@@ -255,6 +255,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   bool mayCarryOn() const;
   double carriedShare() const;
   void carry(ParallelFor* threads);
+  void keepLastSolution();
   void begin();
   void beginElastic(ParallelFor* threads);
   void assembleIfNeeded(double turnFraction, ParallelFor* threads);
@@ -273,8 +274,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   LoneSolve<S> loneSolve_;
   ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
-      forces_;  ///< by slot; moved_: displacements of x0, see NodePlaces
-  AlignedVector<S> carried_;
+      forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces
+  AlignedVector<S> carried_, last_;     ///< in the wide layout, see `carry`
   AlignedVector<S> rightSide_, image_;  ///< in the wide layout
   AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
   AlignedVector<S> acting_;             ///< in the wide layout: impulses, see `solve`
@@ -286,6 +287,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
        deterministic_ = false;
   bool changed_ = true;      ///< masses or material have changed since the last assembly
   bool remembered_ = false;  ///< the last step
+  bool solved_ = false;      ///< the last step was, of a body that is not stiff
+  bool continues_ = false;   ///< the step begins where that one has ended
   /// Steps after which a body that was touched counts as free: its matrix is made anew then, which is not to happen
   /// each time that it bounces.
   static constexpr int kUntouched = 8;

@@ -184,6 +184,7 @@ bool Impacts::includes(const btSoftBody& body) const {
 }
 
 void Impacts::giveBack(SolverBodies& bodies, RigidUnknowns& rigids) {
+  given_.clear();
   if (due_.empty()) return;
   rigids.clear();  // those of the last step
   std::vector<btScalar> wanted;
@@ -204,6 +205,7 @@ void Impacts::giveBack(SolverBodies& bodies, RigidUnknowns& rigids) {
     const auto impulse = static_cast<btScalar>(
         std::min(static_cast<double>((wanted[k] - due.along.dot(now)) / compliance), largestImpulse(due, sides, now)));
     if (!(impulse > 0)) continue;
+    given_.push_back({due.pair, due.at, impulse * due.along});
     sides[0].push(due.at, impulse * due.along);
     sides[1].push(due.at, -impulse * due.along);
   }
@@ -280,6 +282,7 @@ void Impacts::forget(const btCollisionObject& gone) {
   const auto isOf = [&](const auto& one) { return one.pair.body == &gone || one.pair.object == &gone; };
   list_.erase(std::remove_if(list_.begin(), list_.end(), isOf), list_.end());
   due_.erase(std::remove_if(due_.begin(), due_.end(), isOf), due_.end());
+  given_.erase(std::remove_if(given_.begin(), given_.end(), isOf), given_.end());
 }
 
 void Impacts::shift(const btVector3& by) {

@@ -61,6 +61,12 @@ struct DueImpulse {
   btVector3 came{0, 0, 0};
 };
 
+/// An impulse that a step has begun with, on the first one of the pair; the other one gets the opposite.
+struct GivenImpulse {
+  ImpactPair pair;
+  btVector3 at{0, 0, 0}, impulse{0, 0, 0};
+};
+
 /// Sums of the normal impulses of a step's contacts.
 struct PushSums {
   std::vector<btVector3> ofPairs;  ///< by impact, on the first one of its pair
@@ -84,6 +90,8 @@ class Impacts {
   void begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
   /// When velocities are solved: adds what the step has taken, and finds what is due where an impact is over.
   void finish(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
+  /// Those of this step.
+  const std::vector<GivenImpulse>& given() const { return given_; }
   /// Whether some impact of the body goes on.
   bool includes(const btSoftBody& body) const;
 
@@ -98,6 +106,7 @@ class Impacts {
 
   std::vector<Impact> list_;  ///< in the order in which they began
   std::vector<DueImpulse> due_;
+  std::vector<GivenImpulse> given_;
 };
 
 }  // namespace tetskin::bullet_detail

@@ -77,7 +77,8 @@ bool isAnyAwake(const SolverBodies& bodies, const Participants& participants) {
 
 // ---- a substep
 
-void RecordedForces::record(const SolverBodies& bodies, const ContactRows& rows, btScalar seconds) {
+void RecordedForces::record(const SolverBodies& bodies, const ContactRows& rows, const std::vector<GivenImpulse>& given,
+                            btScalar seconds) {
   assert(seconds > 0);
   if (stepBegins()) beginStep();
   seconds_ += seconds;
@@ -92,6 +93,7 @@ void RecordedForces::record(const SolverBodies& bodies, const ContactRows& rows,
   for (const ContactRow& row : rows.rows()) {
     if (row.ends[0].isSoft() && !row.impulse.isZero()) add(bodies, row, rows.originOf(row), seconds);
   }
+  for (const GivenImpulse& one : given) add(one);
 }
 
 /// Bullet does not report the beginning of a stepSimulation. But it sets m_fixedTimeStep there, and reads it only for
@@ -155,6 +157,22 @@ void RecordedForces::add(const SolverBodies& bodies, const ContactRow& row, cons
   }
   if (!row.joined && world_.getDebugDrawer()) {
     points_.push_back({participants, origin.position, row.normal, arrowOf(row.impulse / seconds, body)});
+  }
+}
+
+void RecordedForces::add(const GivenImpulse& given) {
+  Participants participants;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const btCollisionObject* object = e == 0 ? given.pair.body : given.pair.object;
+    participants[e] = {object, btSoftBody::upcast(object), idInWorld(*object)};
+  }
+  if (participants[0].object == participants[1].object) return;
+  Pair& pair = pairOf(participants);
+  const bool turned = pair.participants[0].object != participants[0].object;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const btSoftBody* soft = participants[e].soft;
+    const btVector3 about = soft ? weightOf(*soft).centroid : participants[e].object->getWorldTransform().getOrigin();
+    addImpulse(btScalar(signOf(e)) * given.impulse, given.at - about, pair.impulses[turned ? 1 - e : e].contact);
   }
 }
 

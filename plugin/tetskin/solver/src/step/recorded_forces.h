@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Internal to ForceRecord: the impulses of the rows, summed per stepSimulation and pair of objects.
+// Internal to ForceRecord: the impulses of the rows, and what impacts give back, summed per stepSimulation and pair of
+// objects.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <tetskin/solver/deformable_world.h>
 #include <tetskin/solver/src/rows/contact_rows.h>
+#include <tetskin/solver/src/rows/impacts.h>
 #include <tetskin/solver/src/rows/solver_bodies.h>
 
 #include <array>
@@ -25,7 +27,8 @@ class RecordedForces {
   RecordedForces& operator=(const RecordedForces&) = delete;
 
   /// Call it in each substep after the solve.
-  void record(const SolverBodies& bodies, const ContactRows& rows, btScalar seconds);
+  void record(const SolverBodies& bodies, const ContactRows& rows, const std::vector<GivenImpulse>& given,
+              btScalar seconds);
   /// other  null: the sum over all objects
   AppliedForces on(const btCollisionObject& object, const btCollisionObject* other) const;
 
@@ -70,6 +73,7 @@ class RecordedForces {
   void dropRemoved();
   void listPairs();
   void add(const SolverBodies& bodies, const ContactRow& row, const RowOrigin& origin, btScalar seconds);
+  void add(const GivenImpulse& given);
   Pair& pairOf(const Participants& participants);
   AppliedForces forcesOf(const Pair& pair, std::size_t side) const;
   btVector3 armOf(const CarriedPoint& point, const Participant& participant, const btVector3& position);

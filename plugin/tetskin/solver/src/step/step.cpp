@@ -427,7 +427,7 @@ void DeformableSolver::Impl::finishContacts() {
   rows.finish(bodies, dt());
   impacts.finish(rows, bodies, rigids, dt());
   for (RowSource* source : rowSources()) source->finish(dt());
-  if (const auto record = recorded.lock()) record->record(bodies, rows, dt());
+  if (const auto record = recorded.lock()) record->record(bodies, rows, impacts.given(), dt());
 }
 
 // ---- write back
