@@ -20,7 +20,7 @@ constexpr btScalar kSizesPerSecond = btScalar(0.1);
 /// Bound of a point's way while the body waits, in body sizes, at a threshold of 1: a body that sways by less stays
 /// where it is for all that can be seen.
 constexpr btScalar kSway = btScalar(0.25);
-/// A body that sways has come back to less than this part of its way: one that drifts never does.
+/// A body that sways comes back to less than this part of its way, again and again: one that drifts never does.
 constexpr btScalar kBack = btScalar(0.5);
 /// Bound of the drift of a body that is still, in body sizes per second, at a threshold of 1.
 constexpr btScalar kDrift = btScalar(0.0125);
@@ -239,22 +239,23 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   const bool begins = wait.newer.points.size() != motion.points.size();
   const btScalar way = begins ? btScalar(0) : wayFrom(wait.older, motion.points);
   if (begins || way > kSway * threshold * size + rounding) {
-    wait.still = wait.older = wait.newer = {motion.points, 0, 0};
+    wait.still = wait.older = wait.newer = {motion.points, 0, 0, 0};
     if (!begins) return false;
   }
   const btScalar drift = kDrift * threshold * size * sleepAfter + rounding;
-  if (wayFrom(wait.still, motion.points) > drift) wait.still = {motion.points, 0, 0};
+  if (wayFrom(wait.still, motion.points) > drift) wait.still = {motion.points, 0, 0, 0};
   btScalar moved = wayFrom(wait.newer, motion.points);
   const btScalar half = seconds / 2;
   const bool isStill = !(wait.still.seconds + half < sleepAfter);
-  const bool sways = motion.sticks && !(wait.older.seconds + half < sleepAfter) && way < kBack * wait.older.farthest;
+  const bool sways = motion.sticks && !(wait.older.seconds + half < sleepAfter) &&
+                     !(way > wait.older.returned);
   const bool isCalm = isSlow(motion.squaredSpeed, unit, kCalm * kCalm * threshold * threshold);
   wait.rests = isBalanced(motion, rounding, seconds, wait.velocity) && isCalm && (isStill || sways);
   wait.speed = threshold * unit + rounding / seconds;
   for (Past* past : {&wait.still, &wait.older, &wait.newer}) past->seconds += seconds;
   if (!(wait.newer.seconds < sleepAfter)) {
     wait.older = std::move(wait.newer);
-    wait.newer = {motion.points, 0, 0};
+    wait.newer = {motion.points, 0, 0, 0};
     moved = 0;
   }
   wait.displacement = moved + kCalm * threshold * unit * seconds + drift;
@@ -280,6 +281,7 @@ btScalar Stillness::wayFrom(Past& past, const std::vector<btVector3>& points) {
   for (std::size_t k = 0; k < points.size(); ++k) squared = std::max(squared, (points[k] - past.points[k]).length2());
   const btScalar way = btSqrt(squared);
   past.farthest = std::max(past.farthest, way);
+  if (way < kBack * past.farthest) past.returned = past.farthest;
   return way;
 }
 
@@ -321,7 +323,7 @@ void Stillness::serialize(WorldStream& stream) {
   stream.byObject(waits_, [&](const btCollisionObject&, Wait& wait) {
     for (Past* past : {&wait.still, &wait.older, &wait.newer}) {
       stream.each(past->points, [&](btVector3& point) { stream(point); });
-      stream(past->seconds, past->farthest);
+      stream(past->seconds, past->farthest, past->returned);
     }
     stream(wait.velocity, wait.displacement, wait.speed, wait.rests);
     if (stream.restoring()) wait.step = step_;

@@ -51,6 +51,7 @@ class Stillness {
     std::vector<btVector3> points;
     btScalar seconds = 0;   ///< since then
     btScalar farthest = 0;  ///< the longest way of a point from there since then
+    btScalar returned = 0;  ///< the longest from which it has come back
   };
   /// A body that waits to fall asleep.
   struct Wait {
