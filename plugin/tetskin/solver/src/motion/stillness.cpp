@@ -250,7 +250,7 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   const bool sways = motion.sticks && !(wait.older.seconds + half < sleepAfter) &&
                      !(way > wait.older.returned);
   const bool isCalm = isSlow(motion.squaredSpeed, unit, kCalm * kCalm * threshold * threshold);
-  wait.rests = isBalanced(motion, rounding, seconds, wait.velocity) && isCalm && (isStill || sways);
+  wait.rests = isBalanced(motion, rounding, seconds, wait) && isCalm && (isStill || sways);
   wait.speed = threshold * unit + rounding / seconds;
   for (Past* past : {&wait.still, &wait.older, &wait.newer}) past->seconds += seconds;
   if (!(wait.newer.seconds < sleepAfter)) {
@@ -262,18 +262,21 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   return true;
 }
 
-/// mean  the velocity of the centroid, averaged over the last steps: takes that of this step
-bool Stillness::isBalanced(const Motion& motion, btScalar rounding, btScalar seconds, btVector3& mean) {
+/// True if the forces on the body balance. Those along gravity must have done so for as long as the body waits: where a
+/// swinging stack turns, its velocity has no mean, but it weighs too much or too little.
+bool Stillness::isBalanced(const Motion& motion, btScalar rounding, btScalar seconds, Wait& wait) const {
   const btScalar gravity = motion.gravity.length();
   const btScalar time =
       kMeanTime * btSqrt(motion.size / std::max(gravity, kSizesPerSecond * kSizesPerSecond * motion.size));
-  mean += std::min(seconds / time, btScalar(1)) * (motion.velocity - mean);
+  wait.velocity += std::min(seconds / time, btScalar(1)) * (motion.velocity - wait.velocity);
   if (!(gravity > 0)) return true;
-  const btVector3 off = motion.velocity - mean;
+  const btVector3 off = motion.velocity - wait.velocity;
   const btScalar along = btFabs(off.dot(motion.gravity)) / gravity;
   const btScalar allowed =
       kUnbalanced * motion.threshold * gravity * time + (motion.touched ? rounding / seconds : btScalar(0));
-  return !(along > allowed) && !(off.length() > (motion.sticks ? kHeld : btScalar(1)) * allowed);
+  wait.balanced = along > allowed ? btScalar(0) : wait.balanced + seconds;
+  const bool lasts = !(wait.balanced < sleepAfter);
+  return lasts && !(off.length() > (motion.sticks ? kHeld : btScalar(1)) * allowed);
 }
 
 btScalar Stillness::wayFrom(Past& past, const std::vector<btVector3>& points) {
@@ -325,7 +328,7 @@ void Stillness::serialize(WorldStream& stream) {
       stream.each(past->points, [&](btVector3& point) { stream(point); });
       stream(past->seconds, past->farthest, past->returned);
     }
-    stream(wait.velocity, wait.displacement, wait.speed, wait.rests);
+    stream(wait.velocity, wait.balanced, wait.displacement, wait.speed, wait.rests);
     if (stream.restoring()) wait.step = step_;
   });
 }

@@ -58,6 +58,7 @@ class Stillness {
     Past still;         ///< since it has been still
     Past older, newer;  ///< the older one is as old as the body must wait, or up to twice that
     btVector3 velocity{0, 0, 0};  ///< of its centroid, averaged over the last steps
+    btScalar balanced = 0;        ///< seconds for which the forces along gravity have balanced
     btScalar displacement = 0;    ///< bound of a point's way from `newer` until the next step begins
     btScalar speed = 0;           ///< bound of a point's speed
     bool rests = false;           ///< has been seen at rest for long enough
@@ -70,7 +71,7 @@ class Stillness {
   void sleepByIslands(const btCollisionObjectArray& objects, std::vector<btSoftBody*>& asleep);
   bool rests(const btCollisionObject& object) const;
   static btScalar wayFrom(Past& past, const std::vector<btVector3>& points);
-  static bool isBalanced(const Motion& motion, btScalar rounding, btScalar seconds, btVector3& mean);
+  bool isBalanced(const Motion& motion, btScalar rounding, btScalar seconds, Wait& wait) const;
   void waitForEachOther(const std::vector<btCollisionObject*>& members, btScalar seconds) const;
 
   std::unordered_map<const btCollisionObject*, Wait> waits_;
