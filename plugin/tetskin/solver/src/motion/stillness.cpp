@@ -32,7 +32,7 @@ constexpr btScalar kUnbalanced = btScalar(0.025), kMeanTime = btScalar(0.3);
 constexpr btScalar kHeld = 5;
 /// Fraction of the sleep threshold that points must be below when a body falls asleep: faster ones still swing, and
 /// load one support after the other.
-constexpr btScalar kCalm = btScalar(0.1);
+constexpr btScalar kCalm = btScalar(0.2);
 /// Bullet's thresholds of rigid bodies (0.8 unless the application sets it) over those of soft ones.
 constexpr btScalar kRigidThreshold = 20;
 /// Rounding of positions, in units of the last digit: far from the origin, nodes at rest occasionally jump by one, and
@@ -236,10 +236,12 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   Wait& wait = waits_[&object];
   wait.step = step_;
   wait.rests = false;
-  const bool begins = wait.newer.points.size() != motion.points.size();
+  const bool begins =
+      wait.newer.points.size() != motion.points.size() || !(object.getDeactivationTime() > wait.clock);
   const btScalar way = begins ? btScalar(0) : wayFrom(wait.older, motion.points);
   if (begins || way > kSway * threshold * size + rounding) {
     wait.still = wait.older = wait.newer = {motion.points, 0, 0, 0};
+    wait.balanced = 0;
     if (!begins) return false;
   }
   const btScalar drift = kDrift * threshold * size * sleepAfter + rounding;
@@ -295,7 +297,7 @@ bool Stillness::rests(const btCollisionObject& object) const {
 
 /// They fall asleep together. Each is as long still as the one that has been still for the shortest time. Bullet's
 /// islands do not know contacts of soft bodies, nor joints. Multibodies have their own timer.
-void Stillness::waitForEachOther(const std::vector<btCollisionObject*>& members, btScalar seconds) const {
+void Stillness::waitForEachOther(const std::vector<btCollisionObject*>& members, btScalar seconds) {
   bool all = gDeactivationTime > 0 && !gDisableDeactivation, softs = all;
   btScalar shortest = BT_LARGE_FLOAT;
   for (const btCollisionObject* member : members) {
@@ -308,6 +310,7 @@ void Stillness::waitForEachOther(const std::vector<btCollisionObject*>& members,
   if (!softs) shortest = std::min(shortest, std::max(gDeactivationTime - 2 * seconds, btScalar(0)));
   for (btCollisionObject* member : members) {
     setTime(*member, std::min(shortest, member->getDeactivationTime()));
+    if (const auto wait = waits_.find(member); wait != waits_.end()) wait->second.clock = member->getDeactivationTime();
     if (all && member->getActivationState() == ACTIVE_TAG) member->setActivationState(WANTS_DEACTIVATION);
   }
 }
@@ -328,7 +331,7 @@ void Stillness::serialize(WorldStream& stream) {
       stream.each(past->points, [&](btVector3& point) { stream(point); });
       stream(past->seconds, past->farthest, past->returned);
     }
-    stream(wait.velocity, wait.balanced, wait.displacement, wait.speed, wait.rests);
+    stream(wait.velocity, wait.balanced, wait.clock, wait.displacement, wait.speed, wait.rests);
     if (stream.restoring()) wait.step = step_;
   });
 }

@@ -59,6 +59,7 @@ class Stillness {
     Past older, newer;  ///< the older one is as old as the body must wait, or up to twice that
     btVector3 velocity{0, 0, 0};  ///< of its centroid, averaged over the last steps
     btScalar balanced = 0;        ///< seconds for which the forces along gravity have balanced
+    btScalar clock = 0;           ///< Bullet's count when the step had been judged: falls if something wakes the body
     btScalar displacement = 0;    ///< bound of a point's way from `newer` until the next step begins
     btScalar speed = 0;           ///< bound of a point's speed
     bool rests = false;           ///< has been seen at rest for long enough
@@ -72,7 +73,7 @@ class Stillness {
   bool rests(const btCollisionObject& object) const;
   static btScalar wayFrom(Past& past, const std::vector<btVector3>& points);
   bool isBalanced(const Motion& motion, btScalar rounding, btScalar seconds, Wait& wait) const;
-  void waitForEachOther(const std::vector<btCollisionObject*>& members, btScalar seconds) const;
+  void waitForEachOther(const std::vector<btCollisionObject*>& members, btScalar seconds);
 
   std::unordered_map<const btCollisionObject*, Wait> waits_;
   Motion motion_;  ///< scratch
