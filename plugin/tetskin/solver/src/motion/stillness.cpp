@@ -19,7 +19,7 @@ constexpr btScalar kGravityOfThreshold = btScalar(9.81);
 constexpr btScalar kSizesPerSecond = btScalar(0.1);
 /// Bound of a point's way while the body waits, in body sizes, at a threshold of 1: a body that sways by less stays
 /// where it is for all that can be seen.
-constexpr btScalar kSway = btScalar(0.25);
+constexpr btScalar kSway = btScalar(0.5);
 /// A body that sways comes back to less than this part of its way, again and again: one that drifts never does.
 constexpr btScalar kBack = btScalar(0.5);
 /// Bound of the drift of a body that is still, in body sizes per second, at a threshold of 1.
@@ -238,15 +238,20 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   wait.rests = false;
   const bool begins =
       wait.newer.points.size() != motion.points.size() || !(object.getDeactivationTime() > wait.clock);
-  const btScalar way = begins ? btScalar(0) : wayFrom(wait.older, motion.points);
-  if (begins || way > kSway * threshold * size + rounding) {
+  const btScalar farthest = kSway * threshold * size + rounding;
+  btScalar way = begins ? btScalar(0) : wayFrom(wait.older, motion.points);
+  btScalar moved = begins ? btScalar(0) : wayFrom(wait.newer, motion.points);
+  if (way > farthest && !(moved > farthest)) {
+    wait.older = wait.newer;
+    way = moved;
+  }
+  if (begins || way > farthest) {
     wait.still = wait.older = wait.newer = {motion.points, 0, 0, 0};
     wait.balanced = 0;
     if (!begins) return false;
   }
   const btScalar drift = kDrift * threshold * size * sleepAfter + rounding;
   if (wayFrom(wait.still, motion.points) > drift) wait.still = {motion.points, 0, 0, 0};
-  btScalar moved = wayFrom(wait.newer, motion.points);
   const btScalar half = seconds / 2;
   const bool isStill = !(wait.still.seconds + half < sleepAfter);
   const bool sways = motion.sticks && !(wait.older.seconds + half < sleepAfter) &&
@@ -256,7 +261,8 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   wait.speed = threshold * unit + rounding / seconds;
   for (Past* past : {&wait.still, &wait.older, &wait.newer}) past->seconds += seconds;
   if (!(wait.newer.seconds < sleepAfter)) {
-    wait.older = std::move(wait.newer);
+    // While a body sways as it is known to do, its past stays: others that it waits for sway in their own time.
+    if (way > wait.older.returned) wait.older = std::move(wait.newer);
     wait.newer = {motion.points, 0, 0, 0};
     moved = 0;
   }
