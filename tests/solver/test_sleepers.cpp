@@ -127,7 +127,8 @@ class StillBody : public testing::Test {
   }
   btSoftBody& body() { return made->body(); }
   /// The seconds after which it rests, from now on; 5 if it does not before.
-  double restsAfter(Stillness& by, const std::function<void(int)>& before = [](int) {}) {
+  double restsAfter(
+      Stillness& by, const std::function<void(int)>& before = [](int) {}) {
     body().setActivationState(ACTIVE_TAG);
     for (int step = 0; step < 300; ++step) {
       if (body().getActivationState() == WANTS_DEACTIVATION) return step / 60.0;
@@ -160,7 +161,11 @@ TEST_F(StillBody, RestsAfterTheTimeThatItMustWait) {
   patient.sleepAfter = 2;
   EXPECT_NEAR(restsAfter(patient), 2.0, 0.04);
   Stillness woken;
-  EXPECT_NEAR(restsAfter(woken, [&](int step) { if (step == 20) body().activate(); }), 0.85, 0.04);
+  EXPECT_NEAR(restsAfter(woken,
+                         [&](int step) {
+                           if (step == 20) body().activate();
+                         }),
+              0.85, 0.04);
 }
 
 TEST_F(StillBody, DriftsByLessThanAboutAFortiethOfAPercentOfItsSize) {

@@ -236,8 +236,7 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   Wait& wait = waits_[&object];
   wait.step = step_;
   wait.rests = false;
-  const bool begins =
-      wait.newer.points.size() != motion.points.size() || !(object.getDeactivationTime() > wait.clock);
+  const bool begins = wait.newer.points.size() != motion.points.size() || !(object.getDeactivationTime() > wait.clock);
   const btScalar farthest = kSway * threshold * size + rounding;
   btScalar way = begins ? btScalar(0) : wayFrom(wait.older, motion.points);
   btScalar moved = begins ? btScalar(0) : wayFrom(wait.newer, motion.points);
@@ -254,8 +253,7 @@ bool Stillness::waits(const btCollisionObject& object, const Motion& motion, btS
   if (wayFrom(wait.still, motion.points) > drift) wait.still = {motion.points, 0, 0, 0};
   const btScalar half = seconds / 2;
   const bool isStill = !(wait.still.seconds + half < sleepAfter);
-  const bool sways = motion.sticks && !(wait.older.seconds + half < sleepAfter) &&
-                     !(way > wait.older.returned);
+  const bool sways = motion.sticks && !(wait.older.seconds + half < sleepAfter) && !(way > wait.older.returned);
   const bool isCalm = isSlow(motion.squaredSpeed, unit, kCalm * kCalm * threshold * threshold);
   wait.rests = isBalanced(motion, rounding, seconds, wait) && isCalm && (isStill || sways);
   wait.speed = threshold * unit + rounding / seconds;

@@ -55,8 +55,8 @@ class Stillness {
   };
   /// A body that waits to fall asleep.
   struct Wait {
-    Past still;         ///< since it has been still
-    Past older, newer;  ///< the older one is at least as old as the body must wait
+    Past still;                   ///< since it has been still
+    Past older, newer;            ///< the older one is at least as old as the body must wait
     btVector3 velocity{0, 0, 0};  ///< of its centroid, averaged over the last steps
     btScalar balanced = 0;        ///< seconds for which the forces along gravity have balanced
     btScalar clock = 0;           ///< Bullet's count when the step had been judged: falls if something wakes the body
