@@ -170,7 +170,7 @@ void Stillness::judge(SolverBodies& bodies, const RigidUnknowns& rigids, btScala
     for (const std::size_t b : system.bodies) members.push_back(bodies.bodies()[b].body);
     for (const std::size_t r : system.rigids) {
       btRigidBody* rigid = rigids.list()[r].rigid;
-      if (!rigid) continue;
+      if (!rigid || !rigid->isActive()) continue;  // Bullet, whose islands are others, may have put it to sleep
       judge(*rigid, held.rigids[r], seconds);
       members.push_back(rigid);
     }
