@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "deformable_test.h"
 
@@ -148,6 +149,17 @@ class StillBody : public testing::Test {
     });
   }
 
+  std::vector<unsigned char> saved(Stillness& by) {
+    std::vector<unsigned char> bytes(6000);
+    WorldStream out(world.deformable(), bytes.data(), bytes.size());
+    by.serialize(out);
+    return bytes;
+  }
+  void restore(const std::vector<unsigned char>& bytes, Stillness& to) {
+    WorldStream in(world.deformable(), bytes.data(), bytes.size());
+    to.serialize(in);
+  }
+
   TetskinWorld world;
   std::unique_ptr<DeformableBody> made = added(world, smallCageAbove(5));
   SolverBodies bodies;
@@ -182,15 +194,23 @@ TEST_F(StillBody, MaySwayByAPercentIfSomethingHoldsIt) {
   EXPECT_EQ(restsAfterMoving(0.01), 5.0) << "it does not come back";
 }
 
+TEST_F(StillBody, OfASnapshotGoesOnWaiting) {
+  stillness.sleepAfter = 1;
+  std::vector<unsigned char> snapshot;
+  const double after = restsAfter(stillness, [&](int step) {
+    if (step == 20) snapshot = saved(stillness);
+  });
+  Stillness restored;
+  restore(snapshot, restored);
+  EXPECT_EQ(restored.sleepAfter, 1);
+  EXPECT_NEAR(restsAfter(restored), after - 20 / 60.0, 0.001);
+}
+
 TEST_F(StillBody, OfASnapshotGoesOnWithTheMeanOfItsVelocity) {
   body().setVelocity(btVector3(0, btScalar(0.005), 0));
   EXPECT_GT(restsAfter(stillness), 0.6) << "it has just begun to move so";
-  unsigned char bytes[3000];
-  WorldStream out(world.deformable(), bytes, sizeof bytes);
-  stillness.serialize(out);
   Stillness restored;
-  WorldStream in(world.deformable(), static_cast<const unsigned char*>(bytes), sizeof bytes);
-  restored.serialize(in);
+  restore(saved(stillness), restored);
   EXPECT_LT(restsAfter(restored), 0.03);
 }
 
