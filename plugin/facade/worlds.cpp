@@ -11,6 +11,16 @@ btVector3 toBullet(const Vec3& vector, const char* name) {
   return {static_cast<btScalar>(vector[0]), static_cast<btScalar>(vector[1]), static_cast<btScalar>(vector[2])};
 }
 
+WorldOptions worldOptions(const Vec3& gravity, bool deterministic, bool recordForces, double sleepAfter) {
+  WorldOptions options;
+  options.gravity = toBullet(gravity, "gravity");
+  options.deterministic = deterministic;
+  options.recordForces = recordForces;
+  options.sleepAfter = static_cast<btScalar>(sleepAfter);
+  check(DeformableSolver().setSleepAfter(options.sleepAfter));
+  return options;
+}
+
 btTransform toBullet(const Vec3& position, const Quaternion& rotation) {
   const btQuaternion q(static_cast<btScalar>(rotation[0]), static_cast<btScalar>(rotation[1]),
                        static_cast<btScalar>(rotation[2]), static_cast<btScalar>(rotation[3]));

@@ -215,6 +215,8 @@ export interface WorldOptions {
   deterministic?: boolean;
   /** For `forcesOn`: costs some time per contact point; false. It changes nothing else. */
   recordForces?: boolean;
+  /** Seconds at rest until soft bodies, and what they lie on or carry, fall asleep; 0.5 */
+  sleepAfter?: number;
 }
 
 /** A force, and its torque about the centre of mass of the object that it acts on; world space. */

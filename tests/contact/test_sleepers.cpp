@@ -371,5 +371,71 @@ TEST(SleepersOnSoftBodies, FallAsleepFarFromTheOrigin) {
   }
 }
 
+/// The time until all sleep, in seconds; `most` if some do not.
+double secondsUntilAsleep(EmptyWorld& world, const std::vector<btSoftBody*>& bodies, int most) {
+  for (int f = 0; f < 60 * most; ++f) {
+    if (std::none_of(bodies.begin(), bodies.end(), [](const btSoftBody* b) { return b->isActive(); })) return f / 60.0;
+    step(world, 1);
+  }
+  return most;
+}
+
+/// Soft cubes of 0.4 m, which lean and sway for longer than they are watched.
+TEST(SleepersOnSoftBodies, ComeToRestInTowersThatSway) {
+  const double side = 0.4;
+  const TetMesh cage = shifted(latticeCage(3, 3, 3, side / 3), Eigen::Vector3d(-side / 2, 0, -side / 2));
+  const TriangleMesh mesh = [&] {
+    TriangleMesh box = boxMesh(Eigen::Vector3d::Constant(side / 2));
+    for (Eigen::Vector3d& p : box.positions) p.y() += side / 2;
+    return box;
+  }();
+  const auto shape = std::move(ContactShape::create(cage, mesh)).value();
+  for (const auto& [count, stiffness] : {std::pair(4, 5e5), std::pair(8, 5e5), std::pair(8, 2e6)}) {
+    const auto world = worldWith(btVector3(0, btScalar(-9.81), 0));
+    Obstacle floor(*world, std::make_unique<btBoxShape>(btVector3(2, 1, 2)), placeAt(btVector3(0, -1, 0)));
+    const auto contacts = contactsIn(*world);
+    const auto forces = std::move(ForceRecord::add(world->deformable()).value());
+    std::vector<std::unique_ptr<DeformableBody>> made;
+    std::vector<btSoftBody*> bodies;
+    for (int k = 0; k < count; ++k) {
+      SoftBodyOptions options;
+      options.youngsModulus = stiffness;
+      options.mass = 100 * side * side * side;
+      const Eigen::Vector3d at(k % 2 ? 0.004 : 0.0, 0.002 + 1.005 * side * k, k % 3 ? 0.003 : 0.0);
+      made.push_back(added(*world, shifted(cage, at), options));
+      bodies.push_back(&made.back()->body());
+      ASSERT_TRUE(contacts->add(*bodies.back(), shape).ok());
+    }
+    EXPECT_LT(secondsUntilAsleep(*world, bodies, 12), count == 4 ? 2.0 : 6.0) << count << ' ' << stiffness;
+    const double weight = 9.81 * 100 * side * side * side;
+    for (const btSoftBody* body : bodies) {
+      EXPECT_NEAR(static_cast<double>(forces->forcesOn(*body).total().force.y()) / weight, 1.0, 0.005);
+    }
+    const std::vector<btVector3> asleep = nodesOf(*bodies.back());
+    for (btSoftBody* body : bodies) body->setActivationState(DISABLE_DEACTIVATION);
+    step(*world, 180);
+    const std::vector<btVector3> later = nodesOf(*bodies.back());
+    for (std::size_t n = 0; n < later.size(); ++n) {
+      ASSERT_LT((later[n] - asleep[n]).length(), 0.02 * side) << count << ' ' << stiffness << ": would have moved on";
+    }
+  }
+}
+
+/// A ball rocks for many seconds, by less and less.
+TEST(SleepersOnSoftBodies, NeedNotWaitForTheLastRockingOfABall) {
+  TetskinWorld world;
+  TouchingBody ball(world, ballMesh(12, 0.35), btVector3(0, btScalar(0.6), 0));
+  btSoftBody& body = ball.body->body();
+  body.setVelocity(btVector3(btScalar(0.2), 0, 0));
+  EXPECT_LT(secondsUntilAsleep(world, {&body}, 20), 6.0);
+  const std::vector<btVector3> asleep = nodesOf(body);
+  body.setActivationState(DISABLE_DEACTIVATION);
+  step(world, 240);
+  const std::vector<btVector3> later = nodesOf(body);
+  for (std::size_t n = 0; n < later.size(); ++n) {
+    ASSERT_LT((later[n] - asleep[n]).length(), 0.01) << "would have moved on";
+  }
+}
+
 }  // namespace
 }  // namespace tetskin::test

@@ -113,6 +113,7 @@ test("a cage is handed over to another instance by its bytes", async () => {
   assert.deepEqual(copy.toBytes(), cage.toBytes());
   assert.equal(copy.report, cage.report);
   assert.throws(() => tetskin.createWorld().addBody(copy, null), failure("InvalidArgument", /another instance/));
+  assert.throws(() => tetskin.createWorld({sleepAfter: -1}), failure("InvalidOption", /at least 0/));
 });
 
 test("the bytes of a mesh keep its groups", () => {

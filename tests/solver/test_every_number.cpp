@@ -88,11 +88,18 @@ class Beam {
   const Cage& cage() const { return cage_; }
 
  private:
+  /// The last percent of a slow creep.
+  static DeformableWorldOptions patient() {
+    DeformableWorldOptions options;
+    options.sleepAfter = 2;
+    return options;
+  }
+
   Numbers numbers_;
   Cage cage_;
   btBoxShape shape_{btVector3(1, 1, 1)};
   btRigidBody wall_{0, nullptr, &shape_};  // only anchors are attached to it
-  tetskin::DeformableWorld world_;
+  tetskin::DeformableWorld world_{patient()};
   std::unique_ptr<DeformableBody> body_;
 };
 

@@ -5,7 +5,9 @@
 #include <tetskin/solver/src/motion/stillness.h>
 #include <tetskin/solver/src/rows/solver_bodies.h>
 
+#include <functional>
 #include <utility>
+#include <vector>
 
 #include "deformable_test.h"
 
@@ -113,22 +115,49 @@ TEST_F(SleepingBody, IsWokenByWhatChangesBetweenFallingAsleepAndTheNextStep) {
   }
 }
 
-/// A body for which Bullet has counted five seconds of stillness.
+/// A body that stands still by itself, and is judged as by steps.
 class StillBody : public testing::Test {
  protected:
   void SetUp() override {
     btAlignedObjectArray<btSoftBody*> listed, awake;
     world.deformable().setGravity(btVector3(0, -10, 0));
-    listed.push_back(&made->body());
+    body().updateBounds();
+    listed.push_back(&body());
     bodies.collect(listed, false, awake);
     bodies.assign(*world.bodySolver().getLagrangianForceArray());
   }
-  /// The time for which it has been still, as the next step takes it.
-  btScalar judged(Stillness& by) {
-    made->body().setDeactivationTime(5);
-    made->body().m_maxSpeedSquared = 0;
-    by.judge(bodies, rigids, btScalar(1) / 60);
-    return made->body().getDeactivationTime();
+  btSoftBody& body() { return made->body(); }
+  /// The seconds after which it rests, from now on; 5 if it does not before.
+  double restsAfter(
+      Stillness& by, const std::function<void(int)>& before = [](int) {}) {
+    body().setActivationState(ACTIVE_TAG);
+    for (int step = 0; step < 300; ++step) {
+      if (body().getActivationState() == WANTS_DEACTIVATION) return step / 60.0;
+      before(step);
+      body().m_maxSpeedSquared = 0;
+      by.judge(bodies, rigids, btScalar(1) / 60);
+      body().updateDeactivation(btScalar(1) / 60);
+    }
+    return 5;
+  }
+  /// Moved so fast for some steps, or to and fro.
+  double restsAfterMoving(double sizesPerSecond, bool turns = false, int steps = 300) {
+    Stillness by;
+    const btScalar step = static_cast<btScalar>(sizesPerSecond / 60.0) * sizeOf(body());
+    return restsAfter(by, [=](int k) {
+      if (k < steps) body().translate(btVector3(0, turns && k % 20 >= 10 ? -step : step, 0));
+    });
+  }
+
+  std::vector<unsigned char> saved(Stillness& by) {
+    std::vector<unsigned char> bytes(6000);
+    WorldStream out(world.deformable(), bytes.data(), bytes.size());
+    by.serialize(out);
+    return bytes;
+  }
+  void restore(const std::vector<unsigned char>& bytes, Stillness& to) {
+    WorldStream in(world.deformable(), bytes.data(), bytes.size());
+    to.serialize(in);
   }
 
   TetskinWorld world;
@@ -138,28 +167,51 @@ class StillBody : public testing::Test {
   Stillness stillness;
 };
 
-TEST_F(StillBody, WaitsAnewOnceItHasMovedByAboutAFortiethOfItsSizeTimesTheThreshold) {
-  const btScalar allowed = btScalar(0.025) * made->body().m_sleepingThreshold * sizeOf(made->body());
-  EXPECT_EQ(judged(stillness), 5);
-  const std::pair<double, btScalar> moves[] = {{0.3, 5}, {0.2, 5}, {0.6, 0}, {0.5, 5}, {0.6, 0}};
-  for (const auto& [way, time] : moves) {
-    made->body().translate(btVector3(0, static_cast<btScalar>(way) * allowed, 0));
-    EXPECT_EQ(judged(stillness), time) << way;
-  }
+TEST_F(StillBody, RestsAfterTheTimeThatItMustWait) {
+  EXPECT_NEAR(restsAfter(stillness), 0.5, 0.04);
+  Stillness patient;
+  patient.sleepAfter = 2;
+  EXPECT_NEAR(restsAfter(patient), 2.0, 0.04);
+  Stillness woken;
+  EXPECT_NEAR(restsAfter(woken,
+                         [&](int step) {
+                           if (step == 20) body().activate();
+                         }),
+              0.85, 0.04);
+}
+
+TEST_F(StillBody, DriftsByLessThanAboutAFortiethOfAPercentOfItsSize) {
+  EXPECT_LT(restsAfterMoving(4e-4), 0.6);
+  EXPECT_EQ(restsAfterMoving(6e-4), 5.0);
+  EXPECT_NEAR(restsAfterMoving(6e-4, false, 60), 1.5, 0.5) << "it has stopped";
+}
+
+TEST_F(StillBody, MaySwayByAPercentIfSomethingHoldsIt) {
+  EXPECT_EQ(restsAfterMoving(0.03, true), 5.0) << "nothing does";
+  ASSERT_TRUE(made->setPinned(0).ok());
+  EXPECT_LT(restsAfterMoving(0.03, true), 1.1);
+  EXPECT_EQ(restsAfterMoving(0.15, true), 5.0) << "too far";
+  EXPECT_EQ(restsAfterMoving(0.01), 5.0) << "it does not come back";
+}
+
+TEST_F(StillBody, OfASnapshotGoesOnWaiting) {
+  stillness.sleepAfter = 1;
+  std::vector<unsigned char> snapshot;
+  const double after = restsAfter(stillness, [&](int step) {
+    if (step == 20) snapshot = saved(stillness);
+  });
+  Stillness restored;
+  restore(snapshot, restored);
+  EXPECT_EQ(restored.sleepAfter, 1);
+  EXPECT_NEAR(restsAfter(restored), after - 20 / 60.0, 0.001);
 }
 
 TEST_F(StillBody, OfASnapshotGoesOnWithTheMeanOfItsVelocity) {
-  made->body().setVelocity(btVector3(btScalar(0.005), 0, 0));
-  EXPECT_LT(judged(stillness), 5) << "it has just begun to move so";
-  for (int step = 0; step < 100; ++step) judged(stillness);
-  EXPECT_EQ(judged(stillness), 5);
-  unsigned char bytes[1000];
-  WorldStream out(world.deformable(), bytes, sizeof bytes);
-  stillness.serialize(out);
+  body().setVelocity(btVector3(0, btScalar(0.005), 0));
+  EXPECT_GT(restsAfter(stillness), 0.6) << "it has just begun to move so";
   Stillness restored;
-  WorldStream in(world.deformable(), static_cast<const unsigned char*>(bytes), sizeof bytes);
-  restored.serialize(in);
-  EXPECT_EQ(judged(restored), 5);
+  restore(saved(stillness), restored);
+  EXPECT_LT(restsAfter(restored), 0.03);
 }
 
 }  // namespace

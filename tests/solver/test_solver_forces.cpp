@@ -15,6 +15,7 @@ TEST(SolverWithOthers, MousePicksBodies) {
   step(world, 60);
   btDeformableMousePickingForce pick(200, 1, body->body().m_faces[0], btVector3(0, 3, 0), 100);
   world.deformable().addForce(&body->body(), &pick);
+  body->body().activate();
   step(world, 120);
   const btSoftBody::Face& face = body->body().m_faces[0];
   const btVector3 held = (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3;

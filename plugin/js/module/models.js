@@ -76,7 +76,7 @@ properties(Palette, {
 const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
 const kCageOptions = {targetTets: 3000, duplicateElements: true, fit: true, progress: undefined};
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
-const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false};
+const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false, sleepAfter: 0.5};
 const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
 
 /** The result of `load`. */
@@ -153,8 +153,9 @@ class Tetskin {
       layout === "columns"));
   }
   createWorld(options) {
-    const {gravity, deterministic, recordForces} = optionsOf(options, kWorldOptions);
-    return new World(this.hidden.instance, this.core.createWorld(gravity, deterministic, recordForces));
+    const {gravity, deterministic, recordForces, sleepAfter} = optionsOf(options, kWorldOptions);
+    return new World(
+      this.hidden.instance, this.core.createWorld(gravity, deterministic, recordForces, sleepAfter));
   }
 
   handle(thing, Type, name) {

@@ -20,11 +20,8 @@ void* allocated(std::size_t bytes) {
   return memory;
 }
 
-WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces) {
-  WorldOptions options;
-  options.gravity = toBullet(gravity, "gravity");
-  options.deterministic = deterministic;
-  options.recordForces = recordForces;
+WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces, double sleepAfter) {
+  const WorldOptions options = worldOptions(gravity, deterministic, recordForces, sleepAfter);
   return new WorldHandle{std::make_shared<World>(options), {}, {}};
 }
 

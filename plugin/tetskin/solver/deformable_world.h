@@ -82,6 +82,14 @@ class TETSKIN_SOLVER_API DeformableSolver : public btDeformableBodySolver {
   void setDeterministic(bool on);
   bool deterministic() const;  ///< see `setDeterministic`
 
+  /// Seconds for which soft bodies, and what they lie on or carry, must be seen at rest before they fall asleep; 0.5 by
+  /// default. The shorter, the less is waited for: with a heavy damping, a body may creep on by some percent of its
+  /// sag. Rigid bodies whose islands have no soft body keep Bullet's own time. A snapshot restores it.
+  /// seconds  at least 0; infinite: they never fall asleep
+  /// Errors   InvalidOption: a number below 0, or none. Nothing is changed on an error
+  Status setSleepAfter(btScalar seconds);
+  btScalar sleepAfter() const;  ///< see `setSleepAfter`
+
   /// Whether to compute Bullet's node normals (`m_n`): needed to draw a body's own faces, not for a skin. On by
   /// default.
   void setNodeNormals(bool on);
@@ -134,6 +142,7 @@ struct DeformableWorldOptions {
   ParallelFor* threads = nullptr;  ///< threads for the solver, not owned, see `DeformableSolver::setThreads`; or null
   bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; rigid bodies then turn so, too
   RigidForceModel rigidForces = RigidForceModel::PlainWorld;  ///< choose the other for scenes tuned in Bullet's world
+  btScalar sleepAfter = btScalar(0.5);  ///< seconds, see `DeformableSolver::setSleepAfter`; 0.5 if that refuses it
 };
 
 /// Internal to DeformableWorld: the objects that a world needs, in a base class so that they outlive it.

@@ -96,6 +96,7 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
   setUseProjection(true);
   impl_->deformableSolver.setThreads(options.threads);
   impl_->deformableSolver.setDeterministic(options.deterministic);
+  (void)impl_->deformableSolver.setSleepAfter(options.sleepAfter);
   if (options.rigidForces == RigidForceModel::PlainWorld) {
     impl_->forces = std::make_unique<RigidForces>(m_nonStaticRigidBodies);
     Access<DeformableSolver>::impl(impl_->deformableSolver).rigidForces = impl_->forces.get();

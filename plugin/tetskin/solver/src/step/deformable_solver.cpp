@@ -14,6 +14,7 @@
 #include <tetskin/solver/src/step/step.h>
 
 #include <cassert>
+#include <string>
 
 namespace tetskin {
 namespace {
@@ -55,6 +56,16 @@ void DeformableSolver::setDeterministic(bool on) {
 }
 bool DeformableSolver::deterministic() const {
   return impl_->deterministic;
+}
+Status DeformableSolver::setSleepAfter(btScalar seconds) {
+  if (!(seconds >= 0)) {
+    return {StatusCode::InvalidOption, "sleepAfter is " + std::to_string(seconds) + ", and must be at least 0 seconds"};
+  }
+  impl_->stillness.sleepAfter = seconds;
+  return {};
+}
+btScalar DeformableSolver::sleepAfter() const {
+  return impl_->stillness.sleepAfter;
 }
 DeformableSolver::Impl& Access<DeformableSolver>::impl(const DeformableSolver& solver) {
   return *solver.impl_;
