@@ -28,6 +28,8 @@ class TETSKIN_SOLVER_API ExactShape {
   /// The signed distance. Inside, it is the distance to the nearest point of the surface; if several are nearest, to
   /// one of them. Cost O(1)
   ShapeDistance distance(const btVector3& point) const;
+  /// True for a plane.
+  bool isHalfSpace() const { return kind_ == Kind::Plane; }
 
  private:
   enum class Kind { Plane, Box, Ball, Capsule, Cylinder };

@@ -49,12 +49,16 @@ class BoxOfPaths {
 };
 
 /// Regions found clear of a shape, which need no new search until nodes have moved as far.
-/// Shapes may be changed in place without notice: everything is searched again after some steps.
+/// Shapes may be changed in place without notice: everything is searched again after some steps. What touches and
+/// hardly moves is followed, if the box reveals such changes: the points that touched are looked at, and no others.
 struct ShapeMemory {
   std::vector<Ball> clusterBalls;      ///< shape space, like all positions here
   std::vector<btScalar> clusterClear;  ///< distance from everything, minus the margin; 0: unknown
   std::vector<btVector3> carriers;     ///< positions of ContactPatches::nodes
-  std::vector<btScalar> clear;         ///< by patch: distance from everything, minus the margin; 0: unknown
+  /// By patch: distance from everything, minus the margin; 0: unknown. Below 0: it touched when it was searched where
+  /// `carriers` are, with a reach of the opposite.
+  std::vector<btScalar> clear;
+  std::vector<unsigned> followed;  ///< by patch: last step in which that held; later, its touched points are unknown
   std::vector<std::uint32_t> touched;  ///< points that touched in the last step, ascending
   std::vector<btVector3> nodes;        ///< world space, when the whole body was found clear of a resting shape
   btTransform position = btTransform::getIdentity();  ///< transform of that shape
@@ -68,6 +72,8 @@ constexpr std::size_t kMinTouches = 4, kMaxTouches = 64;
 /// Bound for the samples on a triangle: it stays flat between its corners, so more would change nothing. Two more than
 /// a tet's, for the points of a concave shape that it meets next.
 constexpr std::size_t kTriangleTouches = 6;
+/// Largest motion towards a plane in a step that counts as resting, in units of the slack.
+constexpr btScalar kMaxApproach = btScalar(0.25);
 /// If this many points touch already, flat patches get at most two each.
 constexpr std::size_t kManyTouches = 64;
 
@@ -90,10 +96,11 @@ class PointCollider {
   /// around  a box around the shape's path, world space; null: it may be anywhere
   const PointContacts& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
                             const WorldBox* around = nullptr);
+  /// Makes room in the memory for what the search stores.
+  void prepare(ShapeMemory& memory) const;
 
  private:
   void readClusters();
-  void prepare(ShapeMemory& memory) const;
   bool isAllClear() const;
   void rememberAllClear();
   Ball localBall(std::size_t cluster) const;
@@ -103,12 +110,18 @@ class PointCollider {
   void readCluster(const PatchCluster& cluster);
   void readPatch(const ContactPatch& patch);
   btScalar clearance(const ContactPatch& patch, btScalar known) const;
+  void startFollowing(std::size_t patch);
+  bool isFollowed(std::size_t patch) const;
+  void follow(std::size_t patch);
+  /// By how much a point at rest comes nearer in a step, at most: gravity alone moves it by half of the speculation.
+  btScalar restingApproach() const { return kMaxApproach * slack_ + btScalar(0.5) * speculation_; }
   void remember(std::size_t patch, btScalar clear);
   btScalar lowestHeight(const ContactPatch& patch, const ShapeBound& bound);
   btScalar searchPatch(const ContactPatch& patch, const ShapeBound& clusterBound);
   btScalar searchPoints(const ContactPatch& patch);
   struct TrianglePart;
   btScalar searchTriangle(const ContactPatch& patch, const ShapeBound& clusterBound);
+  void readCorners(const ContactPatch& patch);
   btScalar searchPart(const ContactPatch& patch, const TrianglePart& part, const ShapeBound& around);
   btScalar touchCorners(const ContactPatch& patch, const TrianglePart& part);
   bool isFlat(const CarrierPaths& corners, const ShapeBound& bound) const;
@@ -116,6 +129,7 @@ class PointCollider {
   NodePath pathOf(const ContactPatch& patch, std::uint32_t point) const;
   btScalar touch(const ContactPatch& patch, std::uint32_t point);
   void finishPatch(const ContactPatch& patch, std::size_t first);
+  void setCarried(const ContactPatch& patch, std::size_t first);
   void chooseTouches(const ContactPatch& patch, std::size_t first);
   void rememberTouched();
 

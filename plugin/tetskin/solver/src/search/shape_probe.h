@@ -61,6 +61,8 @@ class ShapeProbe {
   virtual ~ShapeProbe() = default;
   /// True if shapes of this type with the same box are equal, so that the box always reveals a change in place.
   virtual bool isKnownByItsBox() const { return false; }
+  /// True if the shape is all behind one plane: the deepest point of a triangle is then a corner.
+  virtual bool isHalfSpace() const { return false; }
   /// True if any part of the shape may be within `reach` of the ball. If so, distances of points in the ball may be
   /// asked for.
   virtual bool enter(const Ball& ball, btScalar reach) = 0;
@@ -77,6 +79,7 @@ class ExactProbe : public ShapeProbe {
  public:
   void take(const ExactShape& shape) { shape_ = shape; }
   bool isKnownByItsBox() const override { return true; }
+  bool isHalfSpace() const override { return shape_.isHalfSpace(); }
   bool enter(const Ball& ball, btScalar reach) override {
     const ShapeDistance centre = shape_.distance(ball.centre);
     bound_ = ShapeBound::behind(centre, ball.centre);
