@@ -271,6 +271,52 @@ TEST_F(TriangleSamples, OfWhatLiesAreLookedAtWhereTheyTouchAlone) {
   EXPECT_EQ(touchesAt(0, gap).size(), first.size());
 }
 
+/// A box on a face of coarse triangles: its corners and edges lie within triangles.
+TEST_F(TriangleSamples, HoldAFaceByHardlyMorePointsThanNodes) {
+  TriangleMesh mesh;
+  constexpr int kCells = 6;
+  for (int i = 0; i <= kCells; ++i) {
+    for (int j = 0; j <= kCells; ++j) mesh.positions.emplace_back(0.1 * i - 0.29, 0.3, 0.1 * j - 0.32);
+  }
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const int a = i * (kCells + 1) + j, b = a + kCells + 1;
+      mesh.triangles.push_back({a, a + 1, b});
+      mesh.triangles.push_back({b, a + 1, b + 1});
+    }
+  }
+  const btVector3 half(btScalar(0.14), btScalar(0.1), btScalar(0.17));
+  const btBoxShape box(half);
+  ExactProbe probe;
+  probe.take(*ExactShape::exactShape(box));
+  const auto touchesOf = [&](double spacing, btScalar speed) {
+    PointCollider search = searchWith(mesh, spacing);
+    ShapeMemory memory;
+    const btTransform at = placeAt(btVector3(0, btScalar(0.4) + kSampleMargin - btScalar(0.01) * kSampleSlack, 0));
+    const btTransform later = placeAt(at.getOrigin() - btVector3(0, speed, 0));
+    search.begin(nodes_, kSampleMargin, 0);
+    PointContacts touches = search.find(probe, {at, later}, memory);
+    std::set<int> nodes;
+    for (const PointContact& touch : touches)
+      nodes.insert(touch.at.nodes.begin(), touch.at.nodes.begin() + touch.at.count);
+    return std::make_pair(touches, nodes.size());
+  };
+  const std::size_t vertices = touchesOf(SurfaceContactOptions::kNoSamples, 0).first.size();
+  for (const double spacing : {0.025, 0.0125, 0.00625}) {
+    const auto [touches, nodes] = touchesOf(spacing, 0);
+    EXPECT_LE(touches.size(), vertices + nodes + 8) << spacing;
+    for (const int x : {-1, 1}) {  // a point near each corner: without it, the box would tip over inwards of there
+      for (const int z : {-1, 1}) {
+        const btVector3 corner = half * btVector3(btScalar(x), 0, btScalar(z)) + btVector3(0, btScalar(0.3), 0);
+        btScalar nearest = 1;
+        for (const PointContact& touch : touches) nearest = std::min(nearest, (touch.position - corner).length());
+        EXPECT_LT(nearest, std::max(2 * spacing, 0.02)) << x << " " << z << " " << spacing;
+      }
+    }
+    EXPECT_GT(touchesOf(spacing, kSampleSlack).first.size(), 2 * touches.size()) << "what falls needs them all";
+  }
+}
+
 /// Followed in many small steps, it touches where a search from the beginning would find it.
 TEST_F(TriangleSamples, OfWhatCreepsTouchAsDeepAsALookAtEachOfThemFinds) {
   const btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.12)));

@@ -10,10 +10,10 @@
 namespace tetskin::bullet_detail {
 namespace {
 
+/// Cosine between normals from which on they are of one plane.
+constexpr btScalar kSamePlane = btScalar(0.9999);
 /// Largest distance, in units of the slack, between a patch's touching points and the chosen ones.
 constexpr btScalar kSpacing = 4;
-/// Cosine between normals: a patch in one tet moves as a whole, so a few points support it on a plane.
-constexpr btScalar kSamePlane = btScalar(0.9999);
 /// A depth greater by one weighs as much as this much more distance from the chosen points.
 constexpr btScalar kDepthsWorth = 3;
 /// Distance, in units of the slack, by which a patch in touch may move before it is searched again: well below the
@@ -82,11 +82,14 @@ const PointContacts& PointCollider::find(ShapeProbe& probe, const ShapePath& sha
     return touches_;
   }
   readClusters();
+  searched_ = false;
+  areSamples_.clear();
   toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
   turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
   prepare(memory);
   const WorldBox near = around ? around->grownBy(reach_ + slack_) : WorldBox();
   if (!patches_.tree.empty() && searchNode(0, around ? &near : nullptr)) rememberAllClear();
+  if (searched_) thinOutFace();  // what is followed has been chosen before
   rememberTouched();
   return touches_;
 }
@@ -197,9 +200,12 @@ btScalar PointCollider::searchCluster(std::size_t cluster, const Ball& ball, boo
     entered = true;
     const std::size_t first = touches_.size();
     const btScalar clear = searchPatch(patch, bound);
-    remember(p, clear > 0 ? clear + speculation_ : btScalar(0));
-    if (touches_.size() > first && probe_->isKnownByItsBox()) startFollowing(p);
+    areSamples_.resize(touches_.size(), patch.isTriangle());
     left = std::min(left, clear);
+    remember(p, clear > 0 ? clear + speculation_ : btScalar(0));
+    if (touches_.size() == first) continue;
+    searched_ = true;
+    if (probe_->isKnownByItsBox()) startFollowing(p);
   }
   return left;
 }
@@ -263,6 +269,7 @@ void PointCollider::follow(std::size_t patch) {
     (void)touch(of, *at - of.firstPoint);
   }
   setCarried(of, first);
+  areSamples_.resize(touches_.size(), of.isTriangle());
 }
 
 void PointCollider::remember(std::size_t patch, btScalar clear) {
@@ -368,6 +375,10 @@ void PointCollider::setCarried(const ContactPatch& patch, std::size_t first) {
   }
 }
 
+bool PointCollider::isKnown(const PointContact& touch) const {
+  return std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
+}
+
 /// Chooses points of the patch: first the deepest one, then those that already bear a load, and then those farthest
 /// from the ones already chosen. Points that touched in the last step get an advantage, so that the choice is stable: a
 /// resting body sticks at these points.
@@ -375,9 +386,6 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
   assert(first <= touches_.size());
   if (touches_.size() - first <= 2) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto isKnown = [&](const PointContact& touch) {
-    return std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
-  };
   const auto lead = [&](const PointContact& touch) { return isKnown(touch) ? kSpacing * slack_ : btScalar(0); };
   // In a longer step, more points are near; that must not change which ones bear a load.
   const auto bears = [&](const PointContact& touch) { return touch.distance < 0 && isKnown(touch); };
@@ -386,8 +394,8 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
-  // The patch lies or slides on a plane. A patch that falls onto one does not qualify: points between the chosen ones
-  // would penetrate.
+  // The patch lies or slides on a plane: it moves as a whole, so a few points support it. A patch that falls onto one
+  // does not qualify: points between the chosen ones would penetrate.
   const btScalar approach = restingApproach();
   const bool flat = std::all_of(begin, touches_.end(), [&](const PointContact& touch) {
     return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < approach;

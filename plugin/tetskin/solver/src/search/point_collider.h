@@ -91,9 +91,9 @@ class PointCollider {
   void begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation);
   /// The points of the body that would penetrate this shape if nothing stopped them, patch by patch, with `object` not
   /// set: the deepest points of each patch, and others far enough apart that none is missed; at most kMaxTouches, or
-  /// kTriangleTouches. Valid until the next call.
-  /// memory  of the same shape, or an empty one
-  /// around  a box around the shape's path, world space; null: it may be anywhere
+  /// kTriangleTouches. Samples where a face lies on the shape are hardly more than its nodes. Valid until the next
+  /// call. memory  of the same shape, or an empty one around  a box around the shape's path, world space; null: it may
+  /// be anywhere
   const PointContacts& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
                             const WorldBox* around = nullptr);
   /// Makes room in the memory for what the search stores.
@@ -131,7 +131,18 @@ class PointCollider {
   void finishPatch(const ContactPatch& patch, std::size_t first);
   void setCarried(const ContactPatch& patch, std::size_t first);
   void chooseTouches(const ContactPatch& patch, std::size_t first);
+  void listFace();
+  void thinOutFace();
+  void keepForNodes();
+  bool keepOutline();
+  bool isKnown(const PointContact& touch) const;
   void rememberTouched();
+
+  /// The touch that presses on a node with the largest weight.
+  struct Pressing {
+    std::size_t touch = 0;
+    btScalar weight = 0;
+  };
 
   ContactPatches patches_;
   btScalar slack_;
@@ -145,8 +156,13 @@ class PointCollider {
   ShapeProbe* probe_ = nullptr;
   ShapeMemory* memory_ = nullptr;
   ShapePath shape_, toShape_;
-  btScalar turn_ = 0;  ///< by how much the shape's rotation moves a point at distance 1
+  btScalar turn_ = 0;      ///< by how much the shape's rotation moves a point at distance 1
+  bool searched_ = false;  ///< some patch in touch has been searched, not followed
   PointContacts touches_, chosen_;
+  std::vector<std::size_t> face_;                  ///< indices of touches in one plane
+  std::vector<char> areSamples_;                   ///< by touch: on a triangle; otherwise it is a vertex
+  std::vector<char> stays_;                        ///< by touch
+  std::vector<Pressing> mostPressing_;             ///< by node
   std::vector<btScalar> apart_;                    ///< by touching point of a patch: distance from the chosen ones
   std::vector<NodePath> local_;                    ///< by node of the cluster; shape space
   std::array<NodePath, kMaxCarriers> carriers_;    ///< of the patch
