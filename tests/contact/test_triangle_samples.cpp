@@ -23,7 +23,7 @@ class AskedProbe : public ShapeProbe {
  public:
   explicit AskedProbe(ShapeProbe& probe) : probe_(probe) {}
   bool isKnownByItsBox() const override { return probe_.isKnownByItsBox(); }
-  bool isHalfSpace() const override { return probe_.isHalfSpace(); }
+  bool isHalfSpace(const Ball& ball) const override { return probe_.isHalfSpace(ball); }
   bool enter(const Ball& ball, btScalar reach) override { return ++balls, probe_.enter(ball, reach); }
   bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override {
     return ++balls, probe_.narrow(carriers, ball, reach);
@@ -224,19 +224,23 @@ TEST_F(TriangleSamples, OverAFloorAreNotLookedAt) {
 }
 
 TEST_F(TriangleSamples, OverAPlaneTakeNoMoreThanNone) {
-  const btStaticPlaneShape ground(btVector3(0, 1, 0), 0);
-  const auto ask = [&](double spacing) {
+  const btStaticPlaneShape plane(btVector3(0, 1, 0), 1);
+  const btBoxShape box(btVector3(3, 1, 3));
+  const auto ask = [&](const btCollisionShape& ground, double spacing) {
     ExactProbe probe;
     probe.take(*ExactShape::exactShape(ground));
     AskedProbe counting(probe);
     PointCollider search = searchWith(spacing);
     ShapeMemory memory;
-    const btTransform at = placeAt(btVector3(0, btScalar(-0.3 + 0.001), 0));
+    const btTransform at = placeAt(btVector3(0, btScalar(-1.3 + 0.001), 0));
     search.begin(nodes_, kSampleMargin, 0);
     EXPECT_EQ(search.find(counting, {at, at}, memory).size(), 4U);
     return counting.points + counting.balls;
   };
-  EXPECT_LE(ask(0.005), ask(SurfaceContactOptions::kNoSamples) + 2) << "other clusters";
+  for (const btCollisionShape* ground :
+       {static_cast<const btCollisionShape*>(&plane), static_cast<const btCollisionShape*>(&box)}) {
+    EXPECT_LE(ask(*ground, 0.005), ask(*ground, SurfaceContactOptions::kNoSamples) + 2) << "other clusters";
+  }
 }
 
 /// A small box on a large face: samples touch.

@@ -177,9 +177,10 @@ btScalar PointCollider::searchCluster(std::size_t cluster, const Ball& ball, boo
   bool entered = false;
   ShapeBound bound;
   btScalar left = slack_;
+  const bool flat = probe_->isHalfSpace(ball);
   for (std::size_t p = patches.firstPatch; p < patches.firstPatch + patches.patchCount; ++p) {
     const ContactPatch& patch = patches_.patches[p];
-    if (patch.isTriangle() && probe_->isHalfSpace()) continue;
+    if (patch.isTriangle() && flat) continue;
     readPatch(patch);
     const btScalar still = again ? btScalar(0) : clearance(patch, memory_->clear[p]);
     if (still > 0) {

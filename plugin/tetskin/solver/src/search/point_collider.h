@@ -91,9 +91,9 @@ class PointCollider {
   void begin(const std::vector<NodePath>& nodes, btScalar margin, btScalar speculation);
   /// The points of the body that would penetrate this shape if nothing stopped them, patch by patch, with `object` not
   /// set: the deepest points of each patch, and others far enough apart that none is missed; at most kMaxTouches, or
-  /// kTriangleTouches. Samples where a face lies on the shape are hardly more than its nodes. Valid until the next
-  /// call. memory  of the same shape, or an empty one around  a box around the shape's path, world space; null: it may
-  /// be anywhere
+  /// kTriangleTouches. Where a face lies on the shape, hardly more samples than nodes. Valid until the next call.
+  /// memory  of the same shape, or an empty one
+  /// around  a box around the shape's path, world space; null: it may be anywhere
   const PointContacts& find(ShapeProbe& probe, const ShapePath& shape, ShapeMemory& memory,
                             const WorldBox* around = nullptr);
   /// Makes room in the memory for what the search stores.
