@@ -18,7 +18,7 @@ constexpr btScalar kSpacing = 4;
 constexpr btScalar kDepthsWorth = 3;
 /// Distance, in units of the slack, by which a patch in touch may move before it is searched again: well below the
 /// margin, so it is not visible.
-constexpr btScalar kFollowed = btScalar(0.002);
+constexpr btScalar kFollowedWay = btScalar(0.002);
 /// Steps after which clear regions are searched again.
 constexpr unsigned kRemembered = 16;
 
@@ -248,7 +248,7 @@ void PointCollider::startFollowing(std::size_t patch) {
 bool PointCollider::isFollowed(std::size_t patch) const {
   const btScalar known = memory_->clear[patch];
   if (!(known < 0) || reach_ > -known || memory_->followed[patch] + 1 != memory_->steps) return false;
-  const btScalar moves = kFollowed * slack_, falls = moves + restingApproach();
+  const btScalar moves = kFollowedWay * slack_, falls = moves + restingApproach();
   const ContactPatch& of = patches_.patches[patch];
   for (std::uint32_t n = 0; n < of.nodeCount; ++n) {
     const btVector3& from = memory_->carriers[of.firstNode + n];
