@@ -90,6 +90,19 @@ TEST(ContactPatches, SampleTrianglesNoFartherApartThanTheSpacing) {
   }
 }
 
+/// The cage's own surface: vertices are nodes, and the samples between them are carried by the three corners.
+TEST(ContactPatches, KnowTheNodesAloneThatCarryTheirPoints) {
+  const TetMesh cage = latticeCage(2, 2, 2, 0.5);
+  TriangleMesh mesh;
+  mesh.positions = cage.nodes;
+  mesh.triangles = boundaryFaces(cage);
+  const ContactPatches patches = makeContactPatches(embed(cage, mesh).value(), mesh, divisionsFor(mesh, 0.1));
+  for (const ContactPatch& patch : patches.patches) {
+    EXPECT_LE(patch.nodeCount, patch.isTriangle() ? 3u : patch.pointCount);
+  }
+  EXPECT_GT(patches.pointCount, 500u);
+}
+
 TEST(ContactPatches, KeepWithinTheirSpread) {
   const TetMesh cage = looseCage();
   const TriangleMesh mesh = ballMesh(10, 0.6);

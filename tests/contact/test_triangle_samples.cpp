@@ -23,6 +23,7 @@ class AskedProbe : public ShapeProbe {
  public:
   explicit AskedProbe(ShapeProbe& probe) : probe_(probe) {}
   bool isKnownByItsBox() const override { return probe_.isKnownByItsBox(); }
+  bool isHalfSpace(const Ball& ball) const override { return probe_.isHalfSpace(ball); }
   bool enter(const Ball& ball, btScalar reach) override { return ++balls, probe_.enter(ball, reach); }
   bool narrow(const CarrierPaths& carriers, const Ball& ball, btScalar reach) override {
     return ++balls, probe_.narrow(carriers, ball, reach);
@@ -219,6 +220,125 @@ TEST_F(TriangleSamples, OverAFloorAreNotLookedAt) {
     EXPECT_EQ(with.touches, 4U);
     EXPECT_LT(with.points, without.points + 80);
     EXPECT_LT(with.balls, without.balls + 80);
+  }
+}
+
+TEST_F(TriangleSamples, OverAPlaneTakeNoMoreThanNone) {
+  const btStaticPlaneShape plane(btVector3(0, 1, 0), 1);
+  const btBoxShape box(btVector3(3, 1, 3));
+  const auto ask = [&](const btCollisionShape& ground, double spacing) {
+    ExactProbe probe;
+    probe.take(*ExactShape::exactShape(ground));
+    AskedProbe counting(probe);
+    PointCollider search = searchWith(spacing);
+    ShapeMemory memory;
+    const btTransform at = placeAt(btVector3(0, btScalar(-1.3 + 0.001), 0));
+    search.begin(nodes_, kSampleMargin, 0);
+    EXPECT_EQ(search.find(counting, {at, at}, memory).size(), 4U);
+    return counting.points + counting.balls;
+  };
+  for (const btCollisionShape* ground :
+       {static_cast<const btCollisionShape*>(&plane), static_cast<const btCollisionShape*>(&box)}) {
+    EXPECT_LE(ask(*ground, 0.005), ask(*ground, SurfaceContactOptions::kNoSamples) + 2) << "other clusters";
+  }
+}
+
+/// A small box on a large face: samples touch.
+TEST_F(TriangleSamples, OfWhatLiesAreLookedAtWhereTheyTouchAlone) {
+  const btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.12)));
+  ExactProbe probe;
+  probe.take(*ExactShape::exactShape(box));
+  PointCollider search = searchWith(0.02);
+  ShapeMemory memory;
+  int asked = 0;
+  const auto touchesAt = [&](btScalar x, btScalar height) {
+    AskedProbe counting(probe);
+    const btTransform at = placeAt(btVector3(x, btScalar(0.4) + height, btScalar(0.02)));
+    search.begin(nodes_, kSampleMargin, 0);
+    std::set<std::uint32_t> points;
+    for (const PointContact& touch : search.find(counting, {at, at}, memory)) points.insert(touch.point);
+    asked = counting.points + counting.balls;
+    return points;
+  };
+  const btScalar gap = kSampleMargin / 2, little = btScalar(0.001) * kSampleSlack;
+  const std::set<std::uint32_t> first = touchesAt(0, gap);
+  const int searched = asked;
+  EXPECT_GE(first.size(), 4U);
+  EXPECT_EQ(touchesAt(little, gap), first);
+  EXPECT_LT(asked, 4 * static_cast<int>(first.size()) + 20) << "it has hardly moved";
+  EXPECT_LT(3 * asked, searched);
+  EXPECT_FALSE(touchesAt(btScalar(0.05), gap).empty());
+  EXPECT_GT(2 * asked, searched) << "it has moved";
+  // Put away and back where it was: what touched there is not known from the step before.
+  (void)touchesAt(0, gap);
+  EXPECT_TRUE(touchesAt(0, 1).empty());
+  EXPECT_EQ(touchesAt(0, gap).size(), first.size());
+}
+
+/// A box on a face of coarse triangles: its corners and edges lie within triangles.
+TEST_F(TriangleSamples, HoldAFaceByHardlyMorePointsThanNodes) {
+  TriangleMesh mesh;
+  constexpr int kCells = 6;
+  for (int i = 0; i <= kCells; ++i) {
+    for (int j = 0; j <= kCells; ++j) mesh.positions.emplace_back(0.1 * i - 0.29, 0.3, 0.1 * j - 0.32);
+  }
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const int a = i * (kCells + 1) + j, b = a + kCells + 1;
+      mesh.triangles.push_back({a, a + 1, b});
+      mesh.triangles.push_back({b, a + 1, b + 1});
+    }
+  }
+  const btVector3 half(btScalar(0.14), btScalar(0.1), btScalar(0.17));
+  const btBoxShape box(half);
+  ExactProbe probe;
+  probe.take(*ExactShape::exactShape(box));
+  const auto touchesOf = [&](double spacing, btScalar speed) {
+    PointCollider search = searchWith(mesh, spacing);
+    ShapeMemory memory;
+    const btTransform at = placeAt(btVector3(0, btScalar(0.4) + kSampleMargin - btScalar(0.01) * kSampleSlack, 0));
+    const btTransform later = placeAt(at.getOrigin() - btVector3(0, speed, 0));
+    search.begin(nodes_, kSampleMargin, 0);
+    PointContacts touches = search.find(probe, {at, later}, memory);
+    std::set<int> nodes;
+    for (const PointContact& touch : touches)
+      nodes.insert(touch.at.nodes.begin(), touch.at.nodes.begin() + touch.at.count);
+    return std::make_pair(touches, nodes.size());
+  };
+  const std::size_t vertices = touchesOf(SurfaceContactOptions::kNoSamples, 0).first.size();
+  for (const double spacing : {0.025, 0.0125, 0.00625}) {
+    const auto [touches, nodes] = touchesOf(spacing, 0);
+    EXPECT_LE(touches.size(), vertices + nodes + 8) << spacing;
+    for (const int x : {-1, 1}) {  // a point near each corner: without it, the box would tip over inwards of there
+      for (const int z : {-1, 1}) {
+        const btVector3 corner = half * btVector3(btScalar(x), 0, btScalar(z)) + btVector3(0, btScalar(0.3), 0);
+        btScalar nearest = 1;
+        for (const PointContact& touch : touches) nearest = std::min(nearest, (touch.position - corner).length());
+        EXPECT_LT(nearest, std::max(2 * spacing, 0.02)) << x << " " << z << " " << spacing;
+      }
+    }
+    EXPECT_GT(touchesOf(spacing, kSampleSlack).first.size(), 2 * touches.size()) << "what falls needs them all";
+  }
+}
+
+/// Followed in many small steps, it touches where a search from the beginning would find it.
+TEST_F(TriangleSamples, OfWhatCreepsTouchAsDeepAsALookAtEachOfThemFinds) {
+  const btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.12)));
+  const ExactShape exact = *ExactShape::exactShape(box);
+  ExactProbe probe;
+  probe.take(exact);
+  PointCollider search = searchWith(0.02);
+  ShapeMemory memory;
+  for (int step = 0; step < 300; ++step) {
+    const btScalar far = btScalar(3e-4) * kSampleSlack * static_cast<btScalar>(step);
+    btTransform at = placeAt(btVector3(far, btScalar(0.4) + kSampleMargin / 2 - far / 8, 0));
+    at.setRotation(btQuaternion(btVector3(1, 0, 0), far));
+    search.begin(nodes_, kSampleMargin, 0);
+    const btScalar found = deepest(search.find(probe, {at, at}, memory));
+    const btTransform inverse = at.inverse();
+    const btScalar all =
+        deepestOfAll(search.patches(), [&](const btVector3& p) { return exact.distance(inverse * p).distance; });
+    ASSERT_NEAR(found, all, btScalar(0.004) * kSampleSlack) << step;
   }
 }
 

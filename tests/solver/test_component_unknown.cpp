@@ -15,13 +15,13 @@ using namespace bullet_detail;
 
 namespace {
 
-/// Two blocks that share no node, as one body in the middle of a step.
+/// Blocks that share no node, as one body in the middle of a step: two, or two of as many as in `cage`.
 class TwoBlocks {
  public:
-  explicit TwoBlocks(double modulus, int pinned = -1) {
+  explicit TwoBlocks(double modulus, int pinned = -1, const TetMesh& cage = smallCageAbove(0)) {
     SoftBodyOptions options;
     options.youngsModulus = modulus;
-    body = added(world, twoComponents(smallCageAbove(0)), options);
+    body = added(world, twoComponents(cage), options);
     if (pinned >= 0) (void)body->setPinned(pinned);
     btAlignedObjectArray<btSoftBody*> all, awake;
     all.push_back(&body->body());
@@ -34,7 +34,7 @@ class TwoBlocks {
   }
   Dynamics& dynamics() { return *bodies.bodies()[0].dynamics; }
   int last() const { return body->body().m_nodes.size() - 1; }
-  std::vector<ComponentUnknown> unknowns(std::size_t most = 9) {
+  std::vector<ComponentUnknown> unknowns(std::size_t most = 99) {
     return ComponentUnknown::makeAll(dynamics(), most, nullptr);
   }
   static CarriedPoint at(int node) {
@@ -78,6 +78,35 @@ TEST(ComponentUnknown, IsNoneOfAComponentThatIsPinnedOrBeyondTheMost) {
   EXPECT_NE(unknowns[0].component, pinned.dynamics().componentOf(3));
 }
 
+/// Nodes of many components share chunks of the wide layout.
+TEST(ComponentUnknown, ReadsItsOwnPartOfTheBodyAlone) {
+  TwoBlocks blocks(1e4, -1, twoComponents(twoComponents(twoComponents(smallCageAbove(0)))));
+  const auto& matrix = blocks.dynamics().matrix();
+  const std::vector<ComponentUnknown> unknowns = blocks.unknowns();
+  ASSERT_EQ(unknowns.size(), 16u);
+  AlignedVector<btScalar> wide(matrix.wideSize());
+  for (std::size_t i = 0; i < wide.size(); ++i) wide[i] = static_cast<btScalar>(i % 7);
+  std::size_t read = 0;
+  for (const ComponentUnknown& unknown : unknowns) {
+    for (const ComponentUnknown::Span& span : unknown.spans()) read += std::max<std::size_t>(span.last - span.first, 3);
+    Small6 expected;
+    AlignedVector<btScalar> added(wide.size(), btScalar(0)), moved(wide.size(), btScalar(0));
+    for (std::size_t n = 0; n < blocks.dynamics().nodeCount(); ++n) {
+      if (blocks.dynamics().componentOf(n) != unknown.component) continue;
+      const std::size_t at = matrix.wideOf(n);
+      for (std::size_t k = 0; k < 6; ++k) {
+        const btVector3 image = fromWide(&unknown.fields().images[k][at]);
+        expected[static_cast<int>(k)] += static_cast<double>(image.dot(fromWide(&wide[at])));
+        toWide(fromWide(&added[at]) + image, &added[at]);
+      }
+    }
+    EXPECT_LT(norm(unknown.imageProducts(wide.data()) - expected), 1e-5 * norm(expected));
+    unknown.addImages({{1, 1, 1, 1, 1, 1}}, moved.data());
+    for (std::size_t i = 0; i < wide.size(); ++i) ASSERT_NEAR(moved[i], added[i], 1e-6) << i;
+  }
+  EXPECT_LE(read, matrix.wideSize()) << "sixteen components take as long as one";
+}
+
 /// In float, rounding of the stiffness would hide the masses: the images of motions are then these alone.
 TEST(ComponentUnknown, OfAVeryStiffBodyHasTheMassesOfItsNodes) {
   for (const double modulus : {1e4, 1e10}) {
@@ -87,9 +116,9 @@ TEST(ComponentUnknown, OfAVeryStiffBodyHasTheMassesOfItsNodes) {
     double off = 0.0, all = 0.0;
     for (std::size_t n = 0; n < blocks.dynamics().nodeCount(); ++n) {
       if (blocks.dynamics().componentOf(n) != unknown.component) continue;
-      const std::size_t at = matrix.wideOf(n) - unknown.begin;
-      const btVector3 image = fromWide(&unknown.images[0][at]),
-                      exact = matrix.mass(n) * fromWide(&unknown.motions[0][at]);
+      const std::size_t at = matrix.wideOf(n);
+      const btVector3 image = fromWide(&unknown.fields().images[0][at]),
+                      exact = matrix.mass(n) * fromWide(&unknown.fields().motions[0][at]);
       off += static_cast<double>((image - exact).length2());
       all += static_cast<double>(exact.length2());
     }

@@ -39,6 +39,33 @@ TEST(ExactDistance, OfABoxIsBullets) {
   expectBulletsDistance(box);
 }
 
+TEST(ExactDistance, OverAFaceIsTheHeightAboveIt) {
+  const btBoxShape box(btVector3(1, btScalar(0.5), btScalar(0.75)));
+  const btStaticPlaneShape plane(btVector3(0, 1, 0), btScalar(0.2));
+  const btSphereShape sphere(1);
+  const ExactShape exact = *ExactShape::exactShape(box);
+  int over = 0, beside = 0;
+  for (const btVector3& centre : pointsWithin(2, 300)) {
+    EXPECT_TRUE(ExactShape::exactShape(plane)->isHalfSpace(centre, 1));
+    EXPECT_FALSE(ExactShape::exactShape(sphere)->isHalfSpace(centre, btScalar(0.1)));
+    const btScalar radius = btScalar(0.2);
+    if (!exact.isHalfSpace(centre, radius)) {
+      ++beside;
+      continue;
+    }
+    ++over;
+    const ShapeDistance at = exact.distance(centre);
+    for (const btVector3& point : pointsWithin(1, 50)) {
+      const btVector3 offset = point * (radius / std::max(point.length(), btScalar(1)));
+      const ShapeDistance there = exact.distance(centre + offset);
+      EXPECT_NEAR(there.distance, at.distance + at.normal.dot(offset), 1e-5);
+      EXPECT_GT(there.normal.dot(at.normal), btScalar(0.9999));
+    }
+  }
+  EXPECT_GT(over, 10);
+  EXPECT_GT(beside, 10);
+}
+
 TEST(ExactDistance, OfASphereIsBullets) {
   const btSphereShape sphere(btScalar(0.8));
   expectSurfaceAtDistance(sphere);

@@ -336,9 +336,8 @@ TEST_F(System, TheRigidMotionOfAComponentHasTheProductsOfDenseMatrices) {
   const std::vector<ComponentUnknown> unknowns = ComponentUnknown::makeAll(dynamics(), 4, nullptr);
   ASSERT_EQ(unknowns.size(), 1u);
   const ComponentUnknown* unknown = &unknowns.front();
-  ASSERT_EQ(unknown->begin, 0u);
   MatrixXd z(size(), 6);
-  for (std::size_t k = 0; k < 6; ++k) z.col(static_cast<Eigen::Index>(k)) = dense(unknown->motions[k].data());
+  for (std::size_t k = 0; k < 6; ++k) z.col(static_cast<Eigen::Index>(k)) = dense(unknown->fields().motions[k].data());
   const MatrixXd mass = inEigen(unknown->mass), began = inEigen(unknown->began);
   EXPECT_LT((mass - z.transpose() * a * z).norm(), 1e-5 * mass.norm());
   EXPECT_LT((began - z.transpose() * rightSide()).norm(), 1e-4 * began.norm());

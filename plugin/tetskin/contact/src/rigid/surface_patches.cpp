@@ -32,6 +32,26 @@ void dropRepeated(std::vector<Point>& points) {
   points.erase(std::unique(points.begin(), points.end(), same), points.end());
 }
 
+/// Removes the nodes that carry none of the patch's points: where vertices are nodes, as on a cage's own surface, most
+/// corners of their tets do not.
+void dropIdleNodes(LoosePatch& patch) {
+  const std::size_t count = patch.nodes.size(), points = patch.weights.size() / count;
+  std::size_t kept = 0;
+  std::vector<char> carries(count, 0);
+  for (std::size_t k = 0; k < patch.weights.size(); ++k) carries[k % count] |= patch.weights[k] != 0;
+  for (std::size_t k = 0; k < patch.weights.size(); ++k) {
+    if (carries[k % count]) patch.weights[kept++] = patch.weights[k];
+  }
+  patch.weights.resize(kept);
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (carries[k]) patch.nodes[n++] = patch.nodes[k];
+  }
+  patch.nodes.resize(n);
+  assert(n > 0 && patch.weights.size() == points * n);
+  (void)points;
+}
+
 /// points  all in one tet
 LoosePatch patchOf(std::vector<Point> points) {
   assert(!points.empty());
@@ -41,6 +61,7 @@ LoosePatch patchOf(std::vector<Point> points) {
   for (const Point& point : points) {
     patch.weights.insert(patch.weights.end(), point.weights.begin(), point.weights.end());
   }
+  dropIdleNodes(patch);
   return patch;
 }
 
@@ -98,6 +119,7 @@ LoosePatch trianglePatch(const Embedding& embedding, const TriangleMesh& mesh, c
       patch.weights[c * patch.nodes.size() + at] += corners[c].weights[k];
     }
   }
+  dropIdleNodes(patch);
   return patch;
 }
 

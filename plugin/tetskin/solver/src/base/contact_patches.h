@@ -23,7 +23,7 @@ namespace tetskin::bullet_detail {
 /// / divisions of the third, has the number firstPoint + i * (divisions + 1) + j.
 struct ContactPatch {
   std::uint32_t firstNode = 0;    ///< index in ContactPatches::nodes
-  std::uint32_t nodeCount = 0;    ///< 4 for a tet, up to kMaxCarriers for a triangle
+  std::uint32_t nodeCount = 0;    ///< up to 4 for a tet, up to kMaxCarriers for a triangle
   std::uint32_t firstPoint = 0;   ///< number of its first point
   std::uint32_t pointCount = 0;   ///< number of vertices or samples
   std::uint32_t firstWeight = 0;  ///< index in ContactPatches::weights: nodeCount per vertex, or per corner

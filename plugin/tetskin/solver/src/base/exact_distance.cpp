@@ -83,6 +83,17 @@ ShapeDistance ExactShape::distance(const btVector3& point) const {
   }
 }
 
+/// Over a box's face, and within it where no other face is nearer.
+bool ExactShape::isHalfSpace(const btVector3& centre, btScalar radius) const {
+  if (kind_ != Kind::Box) return kind_ == Kind::Plane;
+  btVector3 beyond = centre.absolute() - extents_;
+  const int side = beyond.maxAxis();
+  const btScalar lowest = beyond[side] - radius;
+  beyond[side] = -BT_LARGE_FLOAT;
+  const btScalar beside = beyond[beyond.maxAxis()] + radius;
+  return beside <= 0 && lowest >= beside;
+}
+
 /// At the centre no direction is special: any one is valid.
 ShapeDistance ExactShape::fromBall(const btVector3& point) const {
   const btScalar length = point.length();

@@ -28,6 +28,8 @@ class TETSKIN_SOLVER_API ExactShape {
   /// The signed distance. Inside, it is the distance to the nearest point of the surface; if several are nearest, to
   /// one of them. Cost O(1)
   ShapeDistance distance(const btVector3& point) const;
+  /// True if all points of this ball are nearest to one and the same plane face. Cost O(1)
+  bool isHalfSpace(const btVector3& centre, btScalar radius) const;
 
  private:
   enum class Kind { Plane, Box, Ball, Capsule, Cylinder };

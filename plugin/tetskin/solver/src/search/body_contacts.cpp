@@ -318,9 +318,29 @@ void BodyContacts::serializeShape(WorldStream& stream, KnownShape& shape) {
   stream(shape.lastStep);
   stream(shape.isRemembered);
   stream.array(shape.memory.touched);
+  serializeFollowed(stream, shape.memory);
   if (!stream.restoring()) return;
   remembered_ += shape.isRemembered;
   std::sort(shape.memory.touched.begin(), shape.memory.touched.end());
+}
+
+void BodyContacts::serializeFollowed(WorldStream& stream, ShapeMemory& memory) {
+  const ContactPatches& all = search_.patches();
+  std::vector<std::uint32_t> followed;
+  for (std::size_t p = 0; p < memory.clear.size(); ++p) {
+    if (memory.clear[p] < 0 && memory.followed[p] == memory.steps) followed.push_back(static_cast<std::uint32_t>(p));
+  }
+  stream.array(followed);
+  if (stream.restoring()) {
+    if (!followed.empty()) search_.prepare(memory);
+    for (btScalar& clear : memory.clear) clear = std::max(clear, btScalar(0));
+  }
+  for (const std::uint32_t p : followed) {
+    if (!(p < all.patches.size())) return stream.fail();
+    stream(memory.clear[p]);
+    memory.followed[p] = memory.steps;
+    for (std::uint32_t n = 0; n < all.patches[p].nodeCount; ++n) stream(memory.carriers[all.patches[p].firstNode + n]);
+  }
 }
 
 btScalar sizeOfNodes(const BodyWithTrees& body) {

@@ -63,7 +63,8 @@ class BodyContacts {
   /// Call it after the body and all objects have been moved by as much.
   void shift(const btVector3& by);
 
-  /// Writes or reads which points have touched. Clearances are found again, with the same result.
+  /// Writes or reads which points have touched, and from where they are followed. Clearances are found again, with the
+  /// same result.
   void serialize(WorldStream& stream);
 
   BodyWithTrees& body() const { return body_; }
@@ -89,6 +90,7 @@ class BodyContacts {
   ShapeProbe* probeOf(const btCollisionShape& shape, KnownShape& known);
   void forgetUnused(KnownObject& object);
   void serializeShape(WorldStream& stream, KnownShape& shape);
+  void serializeFollowed(WorldStream& stream, ShapeMemory& memory);
 
   const btDispatcher* dispatcher_;
   BodyWithTrees& body_;

@@ -10,14 +10,15 @@
 namespace tetskin::bullet_detail {
 namespace {
 
+/// Cosine between normals from which on they are of one plane.
+constexpr btScalar kSamePlane = btScalar(0.9999);
 /// Largest distance, in units of the slack, between a patch's touching points and the chosen ones.
 constexpr btScalar kSpacing = 4;
-/// Cosine between normals: a patch in one tet moves as a whole, so a few points support it on a plane.
-constexpr btScalar kSamePlane = btScalar(0.9999);
-/// Largest motion towards the plane in a step, in units of the slack.
-constexpr btScalar kMaxApproach = btScalar(0.25);
 /// A depth greater by one weighs as much as this much more distance from the chosen points.
 constexpr btScalar kDepthsWorth = 3;
+/// Distance, in units of the slack, by which a patch in touch may move before it is searched again: well below the
+/// margin, so it is not visible.
+constexpr btScalar kFollowedWay = btScalar(0.002);
 /// Steps after which clear regions are searched again.
 constexpr unsigned kRemembered = 16;
 
@@ -81,11 +82,14 @@ const PointContacts& PointCollider::find(ShapeProbe& probe, const ShapePath& sha
     return touches_;
   }
   readClusters();
+  searched_ = false;
+  areSamples_.clear();
   toShape_ = {shape.now.inverse(), shape.predicted.inverse()};
   turn_ = turnBetween(toShape_.now.getBasis(), toShape_.predicted.getBasis());
   prepare(memory);
   const WorldBox near = around ? around->grownBy(reach_ + slack_) : WorldBox();
   if (!patches_.tree.empty() && searchNode(0, around ? &near : nullptr)) rememberAllClear();
+  if (searched_) thinOutFace();  // what is followed has been chosen before
   rememberTouched();
   return touches_;
 }
@@ -118,6 +122,7 @@ void PointCollider::prepare(ShapeMemory& memory) const {
   memory.clusterClear.resize(patches_.clusters.size(), 0);
   memory.carriers.resize(patches_.nodes.size());
   memory.clear.resize(patches_.patches.size(), 0);
+  memory.followed.resize(patches_.patches.size(), 0);
 }
 
 /// True if no point has moved by half the slack since all points were found clear by that distance.
@@ -172,12 +177,19 @@ btScalar PointCollider::searchCluster(std::size_t cluster, const Ball& ball, boo
   bool entered = false;
   ShapeBound bound;
   btScalar left = slack_;
+  const bool flat = probe_->isHalfSpace(ball);
   for (std::size_t p = patches.firstPatch; p < patches.firstPatch + patches.patchCount; ++p) {
     const ContactPatch& patch = patches_.patches[p];
+    if (patch.isTriangle() && flat) continue;
     readPatch(patch);
     const btScalar still = again ? btScalar(0) : clearance(patch, memory_->clear[p]);
     if (still > 0) {
       left = std::min(left, still);
+      continue;
+    }
+    if (!again && isFollowed(p)) {
+      left = 0;
+      follow(p);
       continue;
     }
     if (!entered && !probe_->enter(ball, reach_ + slack_)) {
@@ -187,9 +199,14 @@ btScalar PointCollider::searchCluster(std::size_t cluster, const Ball& ball, boo
     }
     if (!entered) bound = probe_->bound();
     entered = true;
+    const std::size_t first = touches_.size();
     const btScalar clear = searchPatch(patch, bound);
-    remember(p, clear > 0 ? clear + speculation_ : btScalar(0));
+    areSamples_.resize(touches_.size(), patch.isTriangle());
     left = std::min(left, clear);
+    remember(p, clear > 0 ? clear + speculation_ : btScalar(0));
+    if (touches_.size() == first) continue;
+    searched_ = true;
+    if (probe_->isKnownByItsBox()) startFollowing(p);
   }
   return left;
 }
@@ -219,6 +236,41 @@ btScalar PointCollider::clearance(const ContactPatch& patch, btScalar known) con
     moved = larger(larger(moved, (carriers_[n].now - from).length2()), (carriers_[n].predicted - from).length2());
   }
   return known - speculation_ - btSqrt(moved) * patch.spread;
+}
+
+/// From where it has just been remembered.
+void PointCollider::startFollowing(std::size_t patch) {
+  memory_->clear[patch] = -reach_;
+  memory_->followed[patch] = memory_->steps;
+}
+
+/// True if the patch touched in the last step, and has hardly moved since it was searched: no other points of it touch.
+bool PointCollider::isFollowed(std::size_t patch) const {
+  const btScalar known = memory_->clear[patch];
+  if (!(known < 0) || reach_ > -known || memory_->followed[patch] + 1 != memory_->steps) return false;
+  const btScalar moves = kFollowedWay * slack_, falls = moves + restingApproach();
+  const ContactPatch& of = patches_.patches[patch];
+  for (std::uint32_t n = 0; n < of.nodeCount; ++n) {
+    const btVector3& from = memory_->carriers[of.firstNode + n];
+    if (!((carriers_[n].now - from).length2() <= moves * moves)) return false;
+    if (!((carriers_[n].predicted - from).length2() <= falls * falls)) return false;
+  }
+  return true;
+}
+
+/// Looks at the points alone with which the patch touched in the last step.
+void PointCollider::follow(std::size_t patch) {
+  const ContactPatch& of = patches_.patches[patch];
+  memory_->followed[patch] = memory_->steps;
+  if (of.isTriangle()) readCorners(of);
+  const std::size_t first = touches_.size();
+  const std::vector<std::uint32_t>& known = memory_->touched;
+  for (auto at = std::lower_bound(known.begin(), known.end(), of.firstPoint);
+       at != known.end() && *at < of.firstPoint + of.numberCount(); ++at) {
+    (void)touch(of, *at - of.firstPoint);
+  }
+  setCarried(of, first);
+  areSamples_.resize(touches_.size(), of.isTriangle());
 }
 
 void PointCollider::remember(std::size_t patch, btScalar clear) {
@@ -315,9 +367,17 @@ btScalar PointCollider::touch(const ContactPatch& patch, std::uint32_t point) {
 /// first  index of the patch's first touch
 void PointCollider::finishPatch(const ContactPatch& patch, std::size_t first) {
   chooseTouches(patch, first);
+  setCarried(patch, first);
+}
+
+void PointCollider::setCarried(const ContactPatch& patch, std::size_t first) {
   for (std::size_t k = first; k < touches_.size(); ++k) {
     touches_[k].at = patches_.carriedPoint(patch, touches_[k].point - patch.firstPoint);
   }
+}
+
+bool PointCollider::isKnown(const PointContact& touch) const {
+  return std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
 }
 
 /// Chooses points of the patch: first the deepest one, then those that already bear a load, and then those farthest
@@ -327,9 +387,6 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
   assert(first <= touches_.size());
   if (touches_.size() - first <= 2) return;
   const auto begin = touches_.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto isKnown = [&](const PointContact& touch) {
-    return std::binary_search(memory_->touched.begin(), memory_->touched.end(), touch.point);
-  };
   const auto lead = [&](const PointContact& touch) { return isKnown(touch) ? kSpacing * slack_ : btScalar(0); };
   // In a longer step, more points are near; that must not change which ones bear a load.
   const auto bears = [&](const PointContact& touch) { return touch.distance < 0 && isKnown(touch); };
@@ -338,9 +395,9 @@ void PointCollider::chooseTouches(const ContactPatch& patch, std::size_t first) 
     return a.predicted - lead(a) < b.predicted - lead(b);
   });
   apart_.assign(touches_.size() - first, BT_LARGE_FLOAT);
-  // The patch lies or slides on a plane. A patch that falls onto one does not qualify: points between the chosen ones
-  // would penetrate. At rest, gravity alone moves a point by half of the speculation.
-  const btScalar approach = kMaxApproach * slack_ + btScalar(0.5) * speculation_;
+  // The patch lies or slides on a plane: it moves as a whole, so a few points support it. A patch that falls onto one
+  // does not qualify: points between the chosen ones would penetrate.
+  const btScalar approach = restingApproach();
   const bool flat = std::all_of(begin, touches_.end(), [&](const PointContact& touch) {
     return touch.normal.dot(begin->normal) > kSamePlane && touch.distance - touch.predicted < approach;
   });

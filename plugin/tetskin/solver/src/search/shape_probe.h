@@ -61,6 +61,9 @@ class ShapeProbe {
   virtual ~ShapeProbe() = default;
   /// True if shapes of this type with the same box are equal, so that the box always reveals a change in place.
   virtual bool isKnownByItsBox() const { return false; }
+  /// True if the shape is known to be as good as a half-space for all points in the ball: the deepest point of a
+  /// triangle is then a corner.
+  virtual bool isHalfSpace(const Ball&) const { return false; }
   /// True if any part of the shape may be within `reach` of the ball. If so, distances of points in the ball may be
   /// asked for.
   virtual bool enter(const Ball& ball, btScalar reach) = 0;
@@ -77,6 +80,7 @@ class ExactProbe : public ShapeProbe {
  public:
   void take(const ExactShape& shape) { shape_ = shape; }
   bool isKnownByItsBox() const override { return true; }
+  bool isHalfSpace(const Ball& ball) const override { return shape_.isHalfSpace(ball.centre, ball.radius); }
   bool enter(const Ball& ball, btScalar reach) override {
     const ShapeDistance centre = shape_.distance(ball.centre);
     bound_ = ShapeBound::behind(centre, ball.centre);

@@ -34,8 +34,7 @@ NodePath PointCollider::sampleAt(const ContactPatch& patch, int i, int j) const 
   return {between(&NodePath::now), between(&NodePath::predicted)};
 }
 
-/// Returns the clearance of all samples of the triangle at the beginning of their paths.
-btScalar PointCollider::searchTriangle(const ContactPatch& patch, const ShapeBound& clusterBound) {
+void PointCollider::readCorners(const ContactPatch& patch) {
   assert(patch.isTriangle());
   const btScalar* weights = &patches_.weights[patch.firstWeight];
   for (NodePath& corner : corners_) {
@@ -45,6 +44,11 @@ btScalar PointCollider::searchTriangle(const ContactPatch& patch, const ShapeBou
       corner.predicted += *weights * carriers_[n].predicted;
     }
   }
+}
+
+/// Returns the clearance of all samples of the triangle at the beginning of their paths.
+btScalar PointCollider::searchTriangle(const ContactPatch& patch, const ShapeBound& clusterBound) {
+  readCorners(patch);
   const std::size_t first = touches_.size();
   const btScalar clear = searchPart(patch, {0, 0, static_cast<int>(patch.divisions)}, clusterBound);
   finishPatch(patch, first);

@@ -129,15 +129,28 @@ bool ReducedUnknowns::isJoined(const SystemBody& body) const {
   });
 }
 
+/// An end on several components, as a sample between two may be, counts as one of the last of them.
 void ReducedUnknowns::findEndMotions(const SystemBody& body) {
-  forComponents(body, [&](const ComponentUnknown& component) {
-    for (const BodyEnd& end : body.ends.list()) {
-      const RowMotions motions = component.motionsAt(body.dynamics(), bodies_.pointOf(end.row, end.index));
+  const auto& [first, last] = componentsOf_[body.solved.solve.place];
+  const auto begin = components_.begin() + static_cast<std::ptrdiff_t>(first),
+             end = components_.begin() + static_cast<std::ptrdiff_t>(last);
+  if (begin == end) return;
+  for (const BodyEnd& of : body.ends.list()) {
+    const CarriedPoint& point = bodies_.pointOf(of.row, of.index);
+    const ComponentUnknown*& met = componentOf_[of.row][of.index];
+    for (std::uint32_t k = 0; k < point.count; ++k) {
+      const std::size_t number = body.dynamics().componentOf(static_cast<std::size_t>(point.nodes[k]));
+      if (met && number <= met->component) continue;
+      const auto found = std::lower_bound(begin, end, number, [](const ComponentUnknown& unknown, std::size_t wanted) {
+        return unknown.component < wanted;
+      });
+      if (found == end || found->component != number) continue;
+      const RowMotions motions = found->motionsAt(body.dynamics(), point);
       if (isZero(motions)) continue;
-      componentOf_[end.row][end.index] = &component;
-      motionsOf_[end.row][end.index] = motions;
+      met = &*found;
+      motionsOf_[of.row][of.index] = motions;
     }
-  });
+  }
 }
 
 void ReducedUnknowns::moveIn(const SystemBody& body) {
