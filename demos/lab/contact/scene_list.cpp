@@ -11,6 +11,7 @@ ContactScenes contactScenes() {
   addLoadScenes(scenes);
   addFrictionScenes(scenes);
   addEnergyScenes(scenes);
+  addBounceScenes(scenes);
   addMovedScenes(scenes);
   addRestScenes(scenes);
   addCoarseScenes(scenes);

@@ -25,6 +25,7 @@ void addCostScenes(ContactScenes& scenes);
 void addLoadScenes(ContactScenes& scenes);
 void addFrictionScenes(ContactScenes& scenes);
 void addEnergyScenes(ContactScenes& scenes);
+void addBounceScenes(ContactScenes& scenes);
 void addMovedScenes(ContactScenes& scenes);
 void addSlidingScenes(ContactScenes& scenes);
 void addSleepScenes(ContactScenes& scenes);

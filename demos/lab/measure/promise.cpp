@@ -70,6 +70,8 @@ const std::vector<Promise>& promises() {
       {"energy/crushed by 50kg at 10/k50", "least gap, S", -0.0258, kNone},
       {"energy/crushed by 50kg at 10/k500", "least gap, S", -0.0305, kNone},
       {"energy/squeezed", "least gap, S", -0.001, kNone},
+      {"bounce", "rebound beside 64 substeps", -0.2, 0.2},
+      {"bounce", "energy over its start", -kNone, 1.06},
       {"moved plate/kicks", "least gap, S", -0.009, kNone},
       {"gripped", "sinks in 2 s, S", -0.0005, 0.0005},
       {"thin plate", "least gap, S", -0.009, kNone},

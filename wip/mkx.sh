@@ -1,3 +1,0 @@
-# mkx WORKTREE SRC OUT
-B=$1/build; l=$B/plugin/tetskin
-g++ -std=c++17 -O2 -w -I/tmp/compat -I$B/include -I$1/plugin -I/usr/include/eigen3 -I/usr/include/bullet -I/work/shared/bounce -I/work/shared/cases $2 -o $3 -Wl,--start-group $l/touch/libtetskin_touch.a $l/contact/libtetskin_contact.a $l/reduced/libtetskin_reduced.a $l/replay/libtetskin_replay.a $l/solver/libtetskin_solver.a $l/bullet/libtetskin_bullet.a $l/cage/libtetskin_cage.a $l/io/libtetskin_io.a $l/elastic/libtetskin_elastic.a $l/threads/libtetskin_threads.a $l/core/libtetskin_core.a -Wl,--end-group -lBulletSoftBody -lBulletDynamics -lBulletCollision -lLinearMath -lassimp -ltinygltf -lpthread
