@@ -208,9 +208,9 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
   fails(good, none, StatusCode::InvalidOption);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
   for (double SoftBodyOptions::*value :
-       {&SoftBodyOptions::density, &SoftBodyOptions::friction, &SoftBodyOptions::relativeStiffness,
-        &SoftBodyOptions::stiffnessDamping, &SoftBodyOptions::timeStep, &SoftBodyOptions::poissonRatio,
-        &SoftBodyOptions::solverTolerance}) {
+       {&SoftBodyOptions::density, &SoftBodyOptions::friction, &SoftBodyOptions::restitution,
+        &SoftBodyOptions::relativeStiffness, &SoftBodyOptions::stiffnessDamping, &SoftBodyOptions::timeStep,
+        &SoftBodyOptions::poissonRatio, &SoftBodyOptions::solverTolerance}) {
     for (const double refused : {-1.0, kNaN, kInfinite}) {
       SoftBodyOptions options;
       options.*value = refused;
@@ -224,6 +224,11 @@ TEST(SoftBodyBuilder, RefusesBadCagesAndOptions) {
       options.*value = refused;
       fails(good, options, StatusCode::InvalidOption);
     }
+  }
+  for (const double refused : {-0.1, 1.1, kNaN}) {
+    SoftBodyOptions options;
+    options.restitution = refused;
+    fails(good, options, StatusCode::InvalidOption);
   }
   SoftBodyOptions options;
   options.mass = 0.0;

@@ -285,6 +285,23 @@ test("materials change while it runs", () => {
   }
 });
 
+test("restitution is read and set, of soft and rigid bodies", () => {
+  const {world, body} = drop({restitution: 0.75});
+  const ball = world.addSphere(0.1, {mass: 1});
+  assert.deepEqual([body.restitution, world.addBody(cage, mesh).restitution, ball.restitution], [0.75, 0, 0]);
+  for (const thing of [body, ball]) {
+    for (const restitution of [0, 1, 0.25]) {
+      thing.restitution = restitution;
+      assert.equal(thing.restitution, restitution);
+    }
+    for (const restitution of [-0.1, 1.1]) {
+      assert.throws(() => { thing.restitution = restitution; }, failure("InvalidOption", /^restitution: .*0 to 1/));
+    }
+    assert.throws(() => { thing.restitution = NaN; }, failure("InvalidArgument", /^restitution: must be a number/));
+    assert.equal(thing.restitution, 0.25);
+  }
+});
+
 test("bodies with soft contact meet each other", () => {
   const world = tetskin.createWorld();
   world.addPlane();
@@ -512,6 +529,9 @@ test("bad arguments are named, and the world stays as it was", () => {
     [() => world.addBody(mesh, mesh), "InvalidArgument", /cage/],
     [() => world.addBody(cage, mesh, {poissonRatio: 0.7}), "InvalidOption", /./],
     [() => world.addBody(cage, mesh, {friction: 2}), "InvalidOption", /^friction: .*0 to 1/],
+    [() => world.addBody(cage, mesh, {restitution: -0.1}), "InvalidOption", /^restitution: .*0 to 1/],
+    [() => world.addBody(cage, mesh, {restitution: 1.1}), "InvalidOption", /^restitution: .*0 to 1/],
+    [() => world.addBody(cage, mesh, {restitution: NaN}), "InvalidArgument", /^restitution: must be a number/],
     [() => world.addBody(cage, mesh, {margin: -1}), "InvalidOption", /^margin/],
     [() => world.addBody(cage, mesh, {solverTolerance: 1}), "InvalidOption", /tolerance/],
     [() => world.addBody(cage, mesh, {maxIterations: 1.5}), "InvalidArgument", /maxIterations/],

@@ -583,6 +583,15 @@ def test_one_body_of_several_goes_back_to_its_start(mesh, cage):
     assert error.value.code == ts.StatusCode.BODY_DELETED
 
 
+def test_restitution_is_read_and_set(mesh, cage):
+    world = ts.World()
+    body, ball = world.add_body(cage, mesh, restitution=0.75), world.add_sphere(0.1, mass=1)
+    assert body.restitution == 0.75 and world.add_body(cage).restitution == 0 and ball.restitution == 0
+    for restitution in (0.25, 1.0, 0.0):
+        body.restitution = ball.restitution = restitution
+        assert body.restitution == restitution and ball.restitution == restitution
+
+
 def test_a_reset_body_keeps_what_was_set(mesh, cage):
     world = ts.World()
     body = world.add_body(cage, mesh)
