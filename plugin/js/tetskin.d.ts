@@ -215,7 +215,7 @@ export interface WorldOptions {
   deterministic?: boolean;
   /** For `forcesOn`: costs some time per contact point; false. It changes nothing else. */
   recordForces?: boolean;
-  /** Seconds at rest until soft bodies, and what they lie on or carry, fall asleep; 0.5 */
+  /** Seconds at rest until soft bodies, and what they lie on or carry, fall asleep: at least 0; Infinity: never; 0.5 */
   sleepAfter?: number;
 }
 
@@ -299,7 +299,10 @@ export interface BodyOptions {
   stiffnessDamping?: number;
   /** 0 to 1; 0.5 */
   friction?: number;
-  /** 0 to 1, multiplied by that of what it hits: the least share of the speed of approach with which they part; 0 */
+  /**
+   * 0 to 1. The product of both objects', so both need one, is the least share of the speed of approach with which they
+   * part; 0
+   */
   restitution?: number;
   /** How the surface follows the tets; "linear" */
   interpolation?: "linear" | "quadratic";
@@ -449,7 +452,7 @@ export interface RigidBody extends Thing {
   get angularVelocity(): Float64Array;
   set angularVelocity(velocity: Vector);
   friction: number;
-  /** 0 to 1; multiplied by that of what it hits */
+  /** 0 to 1, by default 0. The product of both objects' counts, so both need one: see `BodyOptions`. */
   restitution: number;
   readonly mass: number;
   readonly kinematic: boolean;
@@ -486,6 +489,7 @@ export interface Body extends Thing {
   poissonRatio: number;
   stiffnessDamping: number;
   friction: number;
+  /** 0 to 1. The product of both objects' counts, so both need one: see `BodyOptions`. */
   restitution: number;
   /** Its own gravity; null: the world's. */
   setGravity(gravity: Vector | null): void;

@@ -209,8 +209,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("restitution",
                    number([](DeformableBody& b) { return static_cast<double>(b.body().getRestitution()); }),
                    locked([](BodyHandle& b, double e) { facade::setRestitution(facade::alive(*b.state).body(), e); }),
-                   "0 to 1; multiplied by that of the object that it hits: the least share of the speed of approach "
-                   "with which they part.")
+                   "0 to 1, by default 0. The product of both objects' is the least share of the speed of approach "
+                   "with which they part, so both need one.")
       .def_prop_ro("mass", number([](DeformableBody& b) { return static_cast<double>(b.body().getTotalMass()); }),
                    "Total, without pinned nodes.")
       .def("set_gravity", locked([](BodyHandle& b, const std::optional<Vec3>& gravity) {
@@ -249,8 +249,9 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "indices. mass: total; None: from "
            "density, mass per volume. youngs_modulus: pressure units; None: relative_stiffness x density x gravity x "
            "size, from 30 (wobbles, sags) to "
-           "300 (firm). stiffness_damping: seconds. margin: collision margin of the nodes, world length; None: 2 % of "
-           "the body's size.\n\n"
+           "300 (firm). stiffness_damping: seconds. friction: 0 to 1. restitution: 0 to 1; the product of both "
+           "objects' counts, so both need one. margin: collision margin of the nodes, world length; None: 2 % of the "
+           "body's size.\n\n"
            "interpolation, normals, outside, max_distance, hard_edge_degrees: as in Skin. visible: whether steps "
            "update the surface. surface_contact: with rigid bodies; contact_margin: the distance kept, None: 0.2 % "
            "of the body's size; sample_spacing: rest units, of points on large triangles. soft_contact: with other "

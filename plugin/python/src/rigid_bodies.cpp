@@ -129,7 +129,7 @@ void bindRigidBodies(nb::module_& module, Class<World>& world) {
                    "Coulomb's coefficient, which is multiplied by that of the touched object.")
       .def_prop_rw("restitution", read([](btRigidBody& b) { return static_cast<double>(b.getRestitution()); }),
                    locked([](RigidHandle& r, double e) { facade::setRestitution(alive(r), e); }),
-                   "0 to 1; multiplied by that of the object that it hits.")
+                   "0 to 1, by default 0. The product of both objects' counts, so both need one: see Body.restitution.")
       .def_prop_ro("kinematic", read([](btRigidBody& b) { return b.isKinematicObject(); }))
       .def_prop_ro(
           "removed", [](const RigidHandle& r) { return r.state->removed; },

@@ -82,7 +82,8 @@ Class<World> bindWorlds(nb::module_& module) {
           "record_forces"_a = true, "sleep_after"_a = 0.5,
           "gravity: world length / s^2. threads: number that work on a step; any number gives the same results to the "
           "bit. deterministic: the same bits on other processors, at a cost of some percent. record_forces: for "
-          "forces_on. sleep_after: seconds at rest until soft bodies, and what they lie on or carry, fall asleep.")
+          "forces_on. sleep_after: seconds at rest until soft bodies, and what they lie on or carry, fall asleep: at "
+          "least 0; inf: never.")
       .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
            "Advances by dt seconds in `substeps` steps of Bullet, and updates all surfaces; returns the number of "
            "steps made: 0 for 0 seconds. The GIL is released. An Error with the code NON_FINITE is raised after the "

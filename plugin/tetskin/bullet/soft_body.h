@@ -87,8 +87,8 @@ struct SoftBodyOptions {
   /// Collision margin, world length, 0 or more; not given: 2 % of the body's size (largest side of the cage's box).
   std::optional<double> margin;
   double friction = 0.5;  ///< Bullet's m_cfg.kDF, 0 to 1
-  /// Bullet's getRestitution, 0 to 1: in an impact, the product of both objects'. An elastic body bounces without: this
-  /// is the least share of the speed of approach with which Corotated bodies part, in a world with a `DeformableSolver`.
+  /// Bullet's getRestitution, 0 to 1. The product of both objects' is the least share of the speed of approach with
+  /// which Corotated bodies part, in a world with a `DeformableSolver`. An elastic body bounces without.
   double restitution = 0.0;
   /// Selects the nodes to pin by their rest position; these get infinite mass. Empty: none. See `pinnedIn`.
   std::function<bool(const Eigen::Vector3d& restPosition)> pinned;
