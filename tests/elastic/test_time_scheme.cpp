@@ -51,10 +51,11 @@ double errorOf(const TimeScheme& scheme, double seconds, double frequency) {
 TEST(TimeScheme, NoVibrationGrowsAtAnyFrequencyAndDamping) {
   for (const double damping : kDampings) {
     for (double frequency = 1e-3; frequency < 1e6; frequency *= 1.3) {
-      const double rounding = 1e-15 * frequency * frequency;
       for (const TimeScheme& scheme :
            {elastic_detail::secondOrder(1.0, damping), elastic_detail::backwardEuler(1.0, damping),
             elastic_detail::carryingOn(1.0, damping, 1.0), elastic_detail::carryingOn(1.0, damping, 0.5)}) {
+        // A step that carries on does not use its history, which is as large as the stiffness.
+        const double rounding = scheme.carried > 0.0 ? 1e-15 * frequency * frequency : 0.0;
         EXPECT_LE(std::abs(factorsOf(scheme, 1.0, frequency).front()), 1.0 + 1e-9 + rounding)
             << damping << ' ' << frequency;
         EXPECT_TRUE(scheme.filter >= 0.0 && scheme.filter <= 1.0) << damping << ": it weighs a mean";

@@ -15,7 +15,7 @@ using namespace bullet_detail;
 
 namespace {
 
-/// Blocks that share no node, as one body in the middle of a step: two, or two of as many as in `cage`.
+/// A body in the middle of a step: two copies of `cage`, by default of a block, that share no node.
 class TwoBlocks {
  public:
   explicit TwoBlocks(double modulus, int pinned = -1, const TetMesh& cage = smallCageAbove(0)) {

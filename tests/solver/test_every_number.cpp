@@ -88,7 +88,7 @@ class Beam {
   const Cage& cage() const { return cage_; }
 
  private:
-  /// The last percent of a slow creep.
+  /// Damped beams creep: after half a second at rest, they would fall asleep with some percent of their sag to come.
   static DeformableWorldOptions patient() {
     DeformableWorldOptions options;
     options.sleepAfter = 2;

@@ -220,7 +220,8 @@ double compliance(const SolvedBody& body, const CarriedPoint& point, const btVec
     sum += static_cast<double>(point.weights[k] * point.weights[k]) * own;
   }
   const auto node = static_cast<std::size_t>(point.nodes[0]);
-  return sum + body.dynamics->rigidCompliance(body.dynamics->componentOf(node), numbersOf(position), numbersOf(direction));
+  return sum +
+         body.dynamics->rigidCompliance(body.dynamics->componentOf(node), numbersOf(position), numbersOf(direction));
 }
 
 /// By end: how much stiffer a soft body's matrix is in a step of this length; 1 for a rigid body.
@@ -238,8 +239,9 @@ double effectiveMass(const SolverBodies& bodies, const ContactRow& row, const Ro
     double sum = 0.0;
     for (std::size_t e = 0; e < 2; ++e) {
       const RowEnd& end = row.ends[e];
-      sum += end.isSoft() ? compliance(bodies.bodies()[end.body], origin.points[e], origin.position, direction, stiffer[e])
-                          : rigids.compliance(end.rigid, direction);
+      sum += end.isSoft()
+                 ? compliance(bodies.bodies()[end.body], origin.points[e], origin.position, direction, stiffer[e])
+                 : rigids.compliance(end.rigid, direction);
     }
     return sum;
   };
