@@ -15,7 +15,7 @@
 namespace tetskin::test {
 namespace {
 
-constexpr double kShown = 1.0 / 60.0, kPull = 9.81;
+constexpr double kShown = 1.0 / 60.0, kPull = 9.81, kHalfTurn = EIGEN_PI;
 
 struct Given {
   double stiffness = 300;  ///< over density, gravity and size
@@ -148,18 +148,18 @@ TEST(FallingAsleep, IsNotOnASlopeThatItSlidesDown) {
     for (const double degrees : {26.7, 27.0, 30.0}) {
       for (const double size : {0.1, 1.0}) {
         for (const double up : {0.0, 0.3}) {
-          Lying scene({stiffness, 0.02, 4, size, degrees * EIGEN_PI / 180}, 0.005);
+          Lying scene({stiffness, 0.02, 4, size, degrees * kHalfTurn / 180}, 0.005);
           scene.body().setVelocity(btVector3(static_cast<btScalar>(-up * std::sqrt(size)), 0, 0));
           EXPECT_EQ(scene.sleepsAfter(3), 3.0) << scene.numbers << ", pushed up at " << up;
         }
       }
     }
   }
-  EXPECT_LT(Lying({1e4, 0.02, 4, 1.0, 20 * EIGEN_PI / 180}, 0.005).sleepsAfter(3), 2.0) << "it holds there";
+  EXPECT_LT(Lying({1e4, 0.02, 4, 1.0, 20 * kHalfTurn / 180}, 0.005).sleepsAfter(3), 2.0) << "it holds there";
 }
 
 TEST(FallingAsleep, IsNotOnASmoothSlopeOfATenthOfADegree) {
-  EXPECT_EQ(Lying({3000, 0.02, 4, 1.0, 0.1 * EIGEN_PI / 180, 0.0}, 0.005).sleepsAfter(3), 3.0);
+  EXPECT_EQ(Lying({3000, 0.02, 4, 1.0, 0.1 * kHalfTurn / 180, 0.0}, 0.005).sleepsAfter(3), 3.0);
 }
 
 TEST(FallingAsleep, IsNotAtTheTopOfAThrow) {
