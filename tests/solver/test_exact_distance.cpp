@@ -40,7 +40,7 @@ TEST(ExactDistance, OfABoxIsBullets) {
 }
 
 TEST(ExactDistance, OverAFaceIsTheHeightAboveIt) {
-  const btBoxShape box(btVector3(1, btScalar(0.5), btScalar(0.75)));
+  const btBoxShape box(btVector3(1, btScalar(0.1), btScalar(0.75)));  // as thin as the ball's radius, twice
   const btStaticPlaneShape plane(btVector3(0, 1, 0), btScalar(0.2));
   const btSphereShape sphere(1);
   const ExactShape exact = *ExactShape::exactShape(box);

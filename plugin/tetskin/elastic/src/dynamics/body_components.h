@@ -68,6 +68,7 @@ class BodyComponents {
   double impactFrequency(std::size_t component) const;
   /// By component: rotations of the step, stored by rows.
   std::vector<std::array<double, 9>> turns() const;
+  double mass(std::size_t component) const { return motions_[component].mass(); }
   /// See `ComponentMotion::compliance`.
   double compliance(std::size_t component, const std::array<double, 3>& point,
                     const std::array<double, 3>& direction) const;

@@ -155,6 +155,21 @@ double BodyDynamics<S>::vibrationEnergy() {
 }
 
 template <class S>
+double BodyDynamics<S>::vibrationBefore() {
+  assert(stage_ == Stage::Begun || stage_ == Stage::Solvable);
+  BodyProbe<S> here(matrix_);
+  here.points_ = points_;
+  double sum = 0.0;
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3 && !last_.empty(); ++k) {
+      const auto v = static_cast<double>(last_[wide + k * kGroup]);
+      sum += static_cast<double>(matrix_.massAt(slot)) * v * v;
+    }
+  });
+  return 0.5 * sum + energy(std::move(here), nullptr);
+}
+
+template <class S>
 void BodyDynamics<S>::push(std::size_t component, const std::array<double, 3>& point,
                            const std::array<double, 3>& impulse) {
   assert(stage_ == Stage::Begun);
@@ -417,7 +432,7 @@ double BodyDynamics<S>::rigidCompliance(std::size_t component, const std::array<
 
 template <class S>
 double BodyDynamics<S>::keptInImpact(std::size_t component) const {
-  constexpr double kPi = 3.14159265358979324;
+  constexpr double kPi = 3.14159265358979324;  // half a period is a phase of it
   const double ratio = 0.5 * damping_ * components_.impactFrequency(component);
   if (!(ratio < 1.0)) return 0.0;
   // exp(-x), to a few per cent: its bits are the same everywhere.

@@ -32,7 +32,7 @@ struct StepStart {
   bool staggered = false;  ///< see BodyDynamics::forceShare
   /// Something outside may hold the body flat: its flat tets are then damped, so that they come to rest.
   bool pressed = false;
-  /// It had contacts in the step before. It then takes some of backward Euler's steps: see time_scheme.h.
+  /// It had contacts in the step before. This step and some more then carry on what they begin with: see time_scheme.h.
   bool touched = false;
   bool impact = false;  ///< these contacts stop it, or throw it back
 };
@@ -107,6 +107,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void findMotion();
   /// The energy of the deformation, and of the velocities beside the rigid motions that `findMotion` has found; joules.
   double vibrationEnergy();
+  /// The same at the beginning of a step, after `predict`.
+  double vibrationBefore();
   /// Changes the nodes' velocities by an impulse on a component as a rigid body, as far as pinned nodes permit. World
   /// space.
   void push(std::size_t component, const std::array<double, 3>& point, const std::array<double, 3>& impulse);
@@ -142,7 +144,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   }
 
   // Of a step that has begun.
-  /// True if it is of second order.
+  /// True if it is of second order, or carries on a share of what it begins with.
   bool isSecondOrder() const { return secondOrder_ || scheme_.carried > 0.0; }
   /// True if it takes part in an impact.
   bool isImpact() const { return impact_; }
@@ -154,8 +156,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double alpha() const { return alpha_; }
   /// What alpha would be over what it is, if the step had this length and, in contact, carried on what it begins with.
   double alphaRatio(double seconds) const {
-    const bool carries = !stiff_ && untouched_ < kUntouched;
-    const double now = lastSeconds_ * ((scheme_.carried > 0.0 ? 0.5 : 1.0) * lastSeconds_ + damping_);
+    const bool carriesNow = scheme_.carried > 0.0,
+               carries = carriesNow || (!stiff_ && !sameLength_ && untouched_ < kUntouched);
+    const double now = lastSeconds_ * ((carriesNow ? 0.5 : 1.0) * lastSeconds_ + damping_);
     return now > 0.0 ? seconds * ((carries ? 0.5 : 1.0) * seconds + damping_) / now : 1.0;
   }
   /// The square of the norm of impulses that change all velocities by this speed.
@@ -187,6 +190,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   RigidVelocity rigidVelocity(std::size_t component, bool solved) const;
   std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
   std::size_t componentCount() const { return components_.count(); }
+  double componentMass(std::size_t component) const { return components_.mass(component); }
   /// The rigid motions of a component at the positions at which its forces are computed: kRigidMotions velocities, 4
   /// scalars per slot. Writes those of the component's nodes alone: several components may share the vectors, which are
   /// empty before the first. Returns false, and writes nothing, if some node of it is pinned, or it has no mass.

@@ -83,11 +83,12 @@ ShapeDistance ExactShape::distance(const btVector3& point) const {
   }
 }
 
-/// Over a box's face, and within it where no other face is nearer.
+/// Over a box's face, and within it where no other face is nearer, on the face's side of the middle.
 bool ExactShape::isHalfSpace(const btVector3& centre, btScalar radius) const {
   if (kind_ != Kind::Box) return kind_ == Kind::Plane;
   btVector3 beyond = centre.absolute() - extents_;
   const int side = beyond.maxAxis();
+  if (btFabs(centre[side]) < radius) return false;
   const btScalar lowest = beyond[side] - radius;
   beyond[side] = -BT_LARGE_FLOAT;
   const btScalar beside = beyond[beyond.maxAxis()] + radius;

@@ -30,7 +30,7 @@ bool ImpactSide::moves() const {
 
 btScalar ImpactSide::mass() const {
   assert(moves());
-  if (soft_) return static_cast<btScalar>(soft_->dynamics->matrix().totalMass());
+  if (soft_) return static_cast<btScalar>(soft_->dynamics->componentMass(component_));
   const btRigidBody* rigid = btRigidBody::upcast(&object_);
   if (rigid) return 1 / rigid->getInvMass();
   btScalar sum = 0;
@@ -79,6 +79,10 @@ void ImpactSide::push(const btVector3& at, const btVector3& impulse) const {
 
 double ImpactSide::kept() const {
   return soft_ ? soft_->dynamics->keptInImpact(component_) : 1.0;
+}
+
+double ImpactSide::vibrationBefore() const {
+  return soft_ ? soft_->dynamics->vibrationBefore() : 0.0;
 }
 
 double ImpactSide::vibration() const {

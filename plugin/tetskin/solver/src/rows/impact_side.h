@@ -18,7 +18,7 @@ struct SideMotion {
 
 class ImpactSide {
  public:
-  /// soft       null: `object` is not one
+  /// soft       null: `object` is not a soft body, or its body takes no part in the step
   /// component  of the soft body
   ImpactSide(SolvedBody* soft, std::size_t component, const btCollisionObject& object, RigidUnknowns& rigids)
       : soft_(soft), component_(component), object_(object), rigids_(rigids) {}
@@ -40,8 +40,10 @@ class ImpactSide {
   void push(const btVector3& at, const btVector3& impulse) const;
   /// Share of its energy that its material's damping leaves it in an impact.
   double kept() const;
-  /// Between two steps: the energy of its deformation and of its motion beside the rigid one, in joules.
+  /// The energy of its body's deformation and of the motion beside the rigid one, in joules: between two steps, or at
+  /// the beginning of one, after its prediction.
   double vibration() const;
+  double vibrationBefore() const;
 
  private:
   SolvedBody* soft_;

@@ -56,8 +56,19 @@ Sides sidesOf(const ImpactPair& pair, SolverBodies& bodies, RigidUnknowns& rigid
           ImpactSide(other ? bodies.find(other) : nullptr, pair.otherComponent, *pair.object, rigids)};
 }
 
+/// False if a soft body takes no part in the step, or has been cut since.
 bool isComplete(const ImpactPair& pair, const Sides& sides) {
-  return sides[0].soft() && (sides[1].soft() || !btSoftBody::upcast(pair.object));
+  const auto has = [](const SolvedBody* body, std::uint64_t component) {
+    return body && body->elastic && component < body->dynamics->componentCount();
+  };
+  return has(sides[0].soft(), pair.component) &&
+         (has(sides[1].soft(), pair.otherComponent) || !btSoftBody::upcast(pair.object));
+}
+
+/// Of both, in joules; two parts of one body count once.
+template <class Energy>
+double sumOfBodies(const ImpactPair& pair, const Sides& sides, Energy&& energy) {
+  return energy(sides[0]) + (pair.object == pair.body ? 0.0 : energy(sides[1]));
 }
 
 /// The velocity of a soft end beside its rigid motion, at the beginning of the step.
@@ -116,14 +127,16 @@ double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& me
   const double lost = std::max(std::min(impact.lost, came), 0.0);
   const double kept = std::min(sides[0].kept(), sides[1].kept());
   const double elastic = parts + lost * std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, 1.0);
-  const double e = static_cast<double>(impact.pair.body->getRestitution() * impact.pair.object->getRestitution());
+  const auto ofBoth = impact.pair.body->getRestitution() * impact.pair.object->getRestitution();
+  const double e = std::max(static_cast<double>(ofBoth), 0.0);
   return std::min(std::max(elastic, e * e * came), came);
 }
 
 /// By how much faster the pair is to part.
 double missingSpeed(const Impact& impact, const Sides& sides, const Meeting& meeting) {
   if (!(meeting.in > 0.0) || !(meeting.compliance > 0.0)) return 0.0;
-  return std::max(std::sqrt(2.0 * meeting.compliance * partingEnergy(impact, sides, meeting)) - meeting.out, 0.0);
+  const double wanted = std::sqrt(2.0 * meeting.compliance * partingEnergy(impact, sides, meeting));
+  return std::max(wanted - std::max(meeting.out, 0.0), 0.0);
 }
 
 /// At the beginning of a step.
@@ -148,16 +161,22 @@ btMatrix3x3 complianceOf(const Sides& sides, const btVector3& at) {
 }
 
 /// The largest impulse by which the pair has no more energy than when it came. Impacts of a body with several objects
-/// are given back one after the other, along directions that may differ.
+/// are given back one after the other, along directions that may differ. Where pins leave the pair less than three
+/// directions, only the motion along the impulse counts.
 double largestImpulse(const DueImpulse& due, const Sides& sides, const btVector3& now) {
-  const btMatrix3x3 compliance = complianceOf(sides, due.at), inverse = compliance.inverse();
-  const auto energyOf = [&](const btVector3& velocity) {
-    return 0.5 * static_cast<double>(velocity.dot(inverse * velocity));
-  };
-  const double left = energyOf(due.came) - energyOf(now) - sides[0].vibration() - sides[1].vibration(),
-               along = static_cast<double>(due.along.dot(compliance * due.along)),
-               speed = static_cast<double>(due.along.dot(now));
-  return left > 0.0 && along > 0.0 ? (std::sqrt(speed * speed + 2.0 * along * left) - speed) / along : 0.0;
+  constexpr btScalar kSingular = btScalar(1e-4);
+  const btMatrix3x3 compliance = complianceOf(sides, due.at);
+  const auto along = static_cast<double>(due.along.dot(compliance * due.along)),
+             speed = static_cast<double>(due.along.dot(now)), came = static_cast<double>(due.along.dot(due.came));
+  if (!(along > 0.0)) return 0.0;
+  const btScalar mean = (compliance[0][0] + compliance[1][1] + compliance[2][2]) / 3;
+  double left = 0.5 * (came * came - speed * speed) / along;
+  if (compliance.determinant() > kSingular * mean * mean * mean) {
+    const btMatrix3x3 inverse = compliance.inverse();
+    left = 0.5 * static_cast<double>(due.came.dot(inverse * due.came) - now.dot(inverse * now));
+  }
+  left -= sumOfBodies(due.pair, sides, [](const ImpactSide& side) { return side.vibration(); }) - due.vibrations;
+  return left > 0.0 ? (std::sqrt(speed * speed + 2.0 * along * left) - speed) / along : 0.0;
 }
 
 /// True if the pair's contacts have pushed by more than at rest. What is pinched between two objects is pushed by both,
@@ -218,7 +237,7 @@ void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns
     const RowOrigin& origin = rows.originOf(row);
     if (!isElasticContact(row, origin, bodies)) continue;
     const SolvedBody& body = bodies.bodies()[row.ends[0].body];
-    const btScalar stopped = -row.normal.dot(row.relative) - row.gapVelocity;
+    const btScalar stopped = -row.normal.dot(row.relative) - std::max(row.gapVelocity, btScalar(0));
     if (!(stopped > leastImpact(body, seconds))) continue;
     const ImpactPair pair = pairOf(row, origin, bodies);
     if (isOne(pair) || find(pair)) continue;
@@ -228,6 +247,7 @@ void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns
     for (std::size_t k = 0; k < 2; ++k) impact.before[k] = sides[k].motion(origin.position, false);
     const btDiscreteDynamicsWorld* world = body.world();
     if (world && !sides[1].moves()) impact.fallen = seconds * world->getGravity();
+    impact.vibrations = sumOfBodies(pair, sides, [](const ImpactSide& side) { return side.vibrationBefore(); });
     list_.push_back(impact);
   }
 }
@@ -242,15 +262,19 @@ void Impacts::finish(const ContactRows& rows, SolverBodies& bodies, RigidUnknown
     if (!isComplete(impact.pair, sides)) continue;
     const btScalar least = leastImpact(*sides[0].soft(), seconds);
     impact.quiet = isFelt(impact.pair, sums.ofPairs[k], sums, sides, least) ? 0 : impact.quiet + 1;
+    if (impact.quiet == 0) {
+      left.push_back(impact);
+      continue;
+    }
     const bool met = impact.weight > 0 && !impact.push.fuzzyZero();
     const Meeting meeting = met ? meetingOf(impact, sides) : Meeting();
     const bool stopped = meeting.out > -static_cast<double>(least);  // light touches may come before the impact itself
-    const bool over = impact.quiet > 0 && (stopped || impact.quiet >= kQuietSteps);
-    if (!over) left.push_back(impact);
-    if (!over || !met || !stopped) continue;
+    if (!stopped && impact.quiet < kQuietSteps) left.push_back(impact);
+    if (!met || !stopped || !(meeting.in > static_cast<double>(least))) continue;
     const auto speed = static_cast<btScalar>(missingSpeed(impact, sides, meeting));
     const btVector3 carried = seconds * sides[0].motion(meeting.at, true).linear;
-    if (speed > 0) due_.push_back({impact.pair, meeting.at + carried, meeting.along, speed, meeting.came});
+    if (!(speed > 0)) continue;
+    due_.push_back({impact.pair, meeting.at + carried, meeting.along, speed, meeting.came, impact.vibrations});
   }
   list_ = std::move(left);
 }
@@ -294,15 +318,16 @@ void Impacts::serialize(WorldStream& stream) {
     stream.object(pair.body);
     stream.object(pair.object);
     stream(pair.component, pair.otherComponent);
+    if (!btSoftBody::upcast(pair.body) || !pair.object) stream.fail();
   };
   stream.each(due_, [&](DueImpulse& due) {
     serializePair(due.pair);
-    stream(due.at, due.along, due.speed, due.came);
+    stream(due.at, due.along, due.speed, due.came, due.vibrations);
   });
   stream.each(list_, [&](Impact& impact) {
     serializePair(impact.pair);
     for (SideMotion& motion : impact.before) stream(motion.linear, motion.field[0], motion.field[1], motion.field[2]);
-    stream(impact.fallen, impact.push, impact.arm, impact.weight, impact.lost, impact.quiet);
+    stream(impact.fallen, impact.push, impact.arm, impact.weight, impact.lost, impact.vibrations, impact.quiet);
   });
 }
 

@@ -10,10 +10,10 @@
 // When an impact is over, the pair gets a part of L back, as two rigid bodies, at the mean place and along the mean
 // direction of the pushes. With E the energy of the approach, and E' of that with which they part, the part is
 //   (k^(1/4) E' + k L) / E
-// E' / (E - L) is what the pair has given back of what the stops have left it: vibrations, friction and damping keep
-// their share of L, too. k is the share that the material's damping leaves in an impact, estimated, for what the steps
-// do not resolve (L near E). The fast vibrations that stops make are damped more than the whole, hence the root. The
-// undamped balls, cubes, bars and rings of `tetskin_measure` bounce in 4 substeps as in 64, up to 13 %.
+// E' / E is what the pair gives back without: vibrations, friction and damping keep their share of L, too. k is the
+// share that the material's damping leaves in an impact, estimated, for what the steps do not resolve (L near E). The
+// fast vibrations that stops make are damped more than the whole, hence the root. The undamped balls, cubes, bars and
+// rings of `tetskin_measure` bounce in 4 substeps as in 64, up to 13 %.
 //
 // Restitution, of what is not elastic, is Bullet's: the product e of both objects' `getRestitution()`. The pair parts
 // with no less than e^2 E, as far as their vibrations have not taken it.
@@ -22,6 +22,8 @@
 #include <tetskin/solver/src/rows/contact_rows.h>
 #include <tetskin/solver/src/rows/impact_side.h>
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -48,6 +50,7 @@ struct Impact {
   btVector3 arm{0, 0, 0};            ///< sum of their places beside its centre, by impulse
   btScalar weight = 0;               ///< sum of the impulses' sizes
   double lost = 0.0;                 ///< L, in joules
+  double vibrations = 0.0;           ///< energy of both bodies' deformation and vibration when it began, in joules
   int quiet = 0;                     ///< steps since it was last felt
 };
 
@@ -59,6 +62,7 @@ struct DueImpulse {
   btScalar speed = 0;
   /// The relative velocity with which they came: they part with no more energy than that, including their vibrations.
   btVector3 came{0, 0, 0};
+  double vibrations = 0.0;  ///< what they had of these when they came, in joules
 };
 
 /// An impulse that a step has begun with, on the first one of the pair; the other one gets the opposite.

@@ -80,6 +80,7 @@ void DeformableSolver::Impl::numberAnew() {
 }
 
 void DeformableSolver::Impl::forgetRemovedObjects(const btDeformableMultiBodyDynamicsWorld* world) {
+  if (objects.world() != world) impacts = {};  // what leaves another world is not known
   if (!world || objects.world() != world || !objects.haveChanged()) return;
   const StepObjects::Gone gone = objects.gone();
   bodies.forget(gone);
@@ -96,6 +97,7 @@ void DeformableSolver::Impl::noteObjects() {
 void DeformableSolver::Impl::dropRemovedObjects() {
   if (!objects.haveChanged()) return;
   const StepObjects::Gone gone = objects.gone();
+  for (const btCollisionObject* object : gone) impacts.forget(*object);
   for (int b = 0; b < solver.m_softBodies.size(); ++b) {
     dropContactsWith(gone, solver.m_softBodies[b]->m_nodeRigidContacts);
     dropContactsWith(gone, solver.m_softBodies[b]->m_faceRigidContacts);
