@@ -203,8 +203,7 @@ void setFriction(World::RigidBody& rigid, double friction) {
 }
 
 void setRestitution(btCollisionObject& object, double restitution) {
-  if (!(restitution >= 0.0 && restitution <= 1.0))
-    fail(StatusCode::InvalidOption, "restitution: must be from 0 to 1");
+  if (!(restitution >= 0.0 && restitution <= 1.0)) fail(StatusCode::InvalidOption, "restitution: must be from 0 to 1");
   object.setRestitution(static_cast<btScalar>(restitution));
 }
 

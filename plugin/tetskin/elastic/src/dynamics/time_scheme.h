@@ -40,9 +40,8 @@ TimeScheme firstOrder(double seconds, double damping);
 /// Where contacts come and go. The step begins with u, and carries on w, the deviation from rigid motion with which the
 /// last one has ended, by its own matrix:
 ///   (M + dt (damping + dt / 2) K) u' = M u + theta dt^2 / 2 K w + dt f(x)
-/// With theta = 1 this is, for a vibration, Newmark's method with beta = gamma = 1/2: of second order, without damping
-/// of its own. The bodies' real forces may be up to twice as stiff as K. A smaller theta
-/// damps by (1 - theta) dt / 2.
+/// For a vibration and theta = 1, this is Newmark's method with beta = gamma = 1/2: of second order, without damping of
+/// its own. The forces may be up to twice as stiff as K. A smaller theta damps by (1 - theta) dt / 2.
 /// theta  from 0 to 1
 TimeScheme carryingOn(double seconds, double damping, double theta);
 /// Where something holds the body flat, as flat tets are stiffer than K by any factor; for stiff bodies; and in contact

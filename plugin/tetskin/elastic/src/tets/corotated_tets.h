@@ -111,7 +111,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   const S* frames_ = nullptr;
   const std::uint32_t* partOf_ = nullptr;
   S ratio_ = 0;
-  S flatAlpha_ = 0;      ///< of the matrix, where tets were flat; 0: no such value
+  S flatAlpha_ = 0;  ///< of the matrix, where tets were flat; 0: no such value
   S flattest_ = 1;
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
