@@ -65,7 +65,7 @@ def test_runs_on_workers_are_those_of_one_process_to_the_bit(what, client):
     work = getattr(sweep, what)
     there, here = work(client, options(what, "--frames", "20")), work(None, options(what, "--frames", "20"))
     assert result_of(there).equals(result_of(here)) and there["status"].eq("ok").all()
-    assert there["sha256"].nunique() > 5  # some rollouts do not reach the ball
+    assert there["sha256"].nunique() > 3  # some rollouts do not reach the ball
     assert set(there["worker"]).isdisjoint(here["worker"])
 
 

@@ -235,7 +235,8 @@ void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns
   assert(seconds > 0);
   for (const ContactRow& row : rows.rows()) {
     const RowOrigin& origin = rows.originOf(row);
-    if (!isElasticContact(row, origin, bodies)) continue;
+    const bool isNew = !(row.normalBound > 0);  // it has not pushed in the step before
+    if (!isNew || !isElasticContact(row, origin, bodies)) continue;
     const SolvedBody& body = bodies.bodies()[row.ends[0].body];
     const btScalar stopped = -row.normal.dot(row.relative) - std::max(row.gapVelocity, btScalar(0));
     if (!(stopped > leastImpact(body, seconds))) continue;

@@ -41,6 +41,7 @@ StatusCode JointOwner::status() const {
 }
 
 void JointOwner::release() {
+  if (!released_ && joint_->isInWorld()) joint_->body()->activate();  // what it has held falls
   released_ = true;
   force_->remove(*joint_);
   joint_->drop();
