@@ -633,5 +633,6 @@ def test_a_worlds_origin_is_shifted(mesh, cage):
         settle(world, 20)
         ends.append([body.nodes - np.float32([-1024, 0, 1024]) * shifted, box.position, spring.stretch])
     assert np.abs(ends[1][0] - ends[0][0]).max() < 2e-3
-    assert ends[1][1] - ends[0][1] == pytest.approx([-1024, 0, 1024], abs=2e-3)
+    # It has hit the body, a kilometre from the origin: rounding of its place changes where it is sent.
+    assert ends[1][1] - ends[0][1] == pytest.approx([-1024, 0, 1024], abs=2e-2)
     assert ends[1][2] == pytest.approx(ends[0][2], abs=2e-3)

@@ -249,6 +249,17 @@ TEST(SurfaceSpring, WakesABodyThatHangsOnWhatIsMoved) {
   EXPECT_TRUE(body.body().isActive());
 }
 
+TEST(SurfaceSpring, WakesTheBodyThatItHasHeldWhenItIsReleased) {
+  for (const bool deleted : {false, true}) {
+    auto world = deformableWorld(10);
+    TouchedBody body(*world, TouchModel(0.38, 3.0));
+    auto spring = SurfaceSpring::add(world->deformable(), body.vertex(body.furthest(Vector3d::UnitY()))).value();
+    body.body().forceActivationState(ISLAND_SLEEPING);
+    deleted ? spring.reset() : spring->release();
+    EXPECT_TRUE(body.body().isActive());
+  }
+}
+
 TEST(SurfaceSpring, KeepsABodyAwakeThatHangsOnWhatMovesSlowly) {
   auto world = deformableWorld();
   TouchedBody body(*world);
