@@ -28,7 +28,7 @@ namespace tetskin::elastic_detail {
 struct TimeScheme {
   double filter = 0.0;   ///< a, from 0 to 1
   double damping = 0.0;  ///< seconds; at least the material's
-  double carried = 0.0;  ///< share of alpha K u that the right side has beside M u: see `carryingOn`
+  double carried = 0.0;  ///< share of alpha K w that the right side has beside M u: see `carryingOn`
 
   double alpha(double seconds) const { return seconds * ((1.0 - filter) * damping + filter * seconds); }
 };
