@@ -204,6 +204,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
   stiff_ = stiffnessNumber_ > kStiff;
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
+  tets_->flowFor(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);

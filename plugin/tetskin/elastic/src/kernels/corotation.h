@@ -389,22 +389,6 @@ TETSKIN_INLINE void noteVolumes(const WideMatrix<S, W>& stretch, const Lanes<S, 
   findings.squashed = larger(shear > S(0) ? squashed : findings.squashed, findings.squashed);
 }
 
-/// Updates the rotations of W points.
-/// g            gradients of points
-/// shear, bulk  2 mu V and lambda V
-template <class S, int W>
-TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const WideMatrix<S, W>& g, const WideFrames<S, W>& frame, S* rotations,
-                                                 const S* assembled, const Lanes<S, W>& shear, const Lanes<S, W>& bulk,
-                                                 bool withEnergy, WideFindings<S, W>& findings) {
-  Quaternions<S, W> q = quaternions<S, W>(rotations);
-  WideMatrix<S, W> r, s;
-  turnToMaximum<S, W>(deformationGradient<S, W>(g, frame), q, r, s);
-  keepRotations<S, W>(q, rotations, assembled, findings);
-  noteVolumes<S, W>(s, shear, findings);
-  const WideMatrix<S, W> strain = strainOf<S, W>(q, r, g, frame);
-  return {r, stressOf<S, W>(strain, traceOf<S, W>(strain), shear, bulk, withEnergy, findings)};
-}
-
 /// Adds the forces on the nodes of W tets to the points of these nodes, tet by tet.
 /// from  by tet and node
 template <class S, int W, class Pack>

@@ -97,6 +97,7 @@ template <class S>
 void CorotatedTets<S>::setMaterial(const Lame& lame) {
   assert(lame.mu > 0.0 && lame.lambda >= 0.0);
   ratio_ = static_cast<S>(lame.lambda / lame.mu);
+  mu_ = lame.mu;
   const auto set = [&](auto& pack, std::size_t lane, double volume) {
     pack.shear[lane] = static_cast<S>(2.0 * lame.mu * volume);
     pack.bulk[lane] = static_cast<S>(lame.lambda * volume);
@@ -120,6 +121,14 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.alphas = packed.alphas.data();
   work.frames = frames_;
   work.partOf = partOf_;
+  if (packed.changes.empty()) return work;
+  work.changes = packed.changes.data();
+  work.assembledChanges = packed.assembledChanges.data();
+  work.given = isGiven_ ? packed.given.data() : nullptr;
+  work.yields = packed.yields.empty() || isAsked_ ? nullptr : packed.yields.data();
+  work.flowed = packed.flowed.data();
+  work.flowShare = flowShare_;
+  work.largestStrain = largestStrain_;
   return work;
 }
 
@@ -190,7 +199,9 @@ void CorotatedTets<S>::ask(Query&& query) {
   const S flattest = flattest_, maxTurned = maxTurned_;
   const double turned = turned_;
   const S* const points = points_;
+  isAsked_ = true;
   query();
+  isAsked_ = false;
   linear_.rotations = linear;
   quadratic_.rotations = quadratic;
   flattest_ = flattest;
@@ -228,6 +239,7 @@ const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S fla
   assert(points_ || flatAlpha_ == S(0));
   forBoth([&](auto& packed) {
     packed.assembled = packed.rotations;
+    packed.assembledChanges = packed.changes;
     if (flatAlpha_ > S(0)) packed.alphas.resize(packed.rotations.size() / 4);
   });
   return corners(alpha, flatAlpha_ > S(0) ? flatAlpha_ : alpha, points_, threads);
@@ -238,6 +250,7 @@ const S* CorotatedTets<S>::cornersWithoutFlat(S alpha, ParallelFor* threads) {
   assert(points_ && alpha > S(0));
   forBoth([&](auto& packed) {
     packed.assembled = packed.rotations;
+    packed.assembledChanges = packed.changes;
     packed.alphas.resize(packed.rotations.size() / 4);
   });
   return corners(alpha, S(0), points_, threads);
@@ -264,10 +277,11 @@ const S* CorotatedTets<S>::corners(S alpha, S flatAlpha, const S* points, Parall
 template <class S>
 bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   forBoth([&](auto& packed) { stream.plain(packed.rotations.data(), packed.rotations.size()); });
+  bool changed = serializeChanges(stream, ofMatrix);
   if (!ofMatrix) return false;
   const S flatAlpha = flatAlpha_;
   stream(flatAlpha_);
-  bool changed = flatAlpha != flatAlpha_;
+  changed |= flatAlpha != flatAlpha_;
   forBoth([&](auto& packed) { changed |= serializeAssembled(stream, packed); });
   if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= serializeAlphas(stream, alpha, packed); });
   return changed;
