@@ -109,10 +109,12 @@ class TETSKIN_ELASTIC_API ElasticBody {
   std::vector<double> plasticStrains() const;
   /// Makes tets grow to multiples of their first size, at which they are at rest; masses stay. Beside it, plastic flow
   /// stays. A large change in one step is a blow: change it over some steps.
-  /// lengths  factors of length, 0.05 to 20: one for all tets, or one for each
-  Status setGrowth(const std::vector<double>& lengths);
+  /// length  factor of length, 0.05 to 20; 1: none
+  Status setGrowth(double length);
+  Status setGrowth(const std::vector<double>& lengths);  ///< tetCount factors of length
+  /// The same along axes.
   /// deformations  by tet, 3 x 3 by rows, symmetric: factors of length along three axes, rest space
-  Status setGrowth(const std::vector<std::array<double, 9>>& deformations);
+  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);

@@ -250,12 +250,16 @@ std::vector<double> ElasticBody<Scalar>::plasticStrains() const {
   return impl_->dynamics.tets()->plasticStrains(impl_->tetCount);
 }
 template <class Scalar>
+Status ElasticBody<Scalar>::setGrowth(double length) {
+  return impl_ ? impl_->change(impl_->changes.setGrowth(length)) : kNoNodes;
+}
+template <class Scalar>
 Status ElasticBody<Scalar>::setGrowth(const std::vector<double>& lengths) {
   return impl_ ? impl_->change(impl_->changes.setGrowth(lengths)) : kNoNodes;
 }
 template <class Scalar>
-Status ElasticBody<Scalar>::setGrowth(const std::vector<std::array<double, 9>>& deformations) {
-  return impl_ ? impl_->change(impl_->changes.setGrowth(deformations)) : kNoNodes;
+Status ElasticBody<Scalar>::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
+  return impl_ ? impl_->change(impl_->changes.setGrowthTensors(deformations)) : kNoNodes;
 }
 template <class Scalar>
 Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {

@@ -477,12 +477,16 @@ std::vector<double> DeformableBody::plasticStrains() const {
   return elastic->body().dynamics->tets()->plasticStrains(elastic->body().tetCount);
 }
 
+Status DeformableBody::setGrowth(double length) {
+  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(length); });
+}
+
 Status DeformableBody::setGrowth(const std::vector<double>& lengths) {
   return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(lengths); });
 }
 
-Status DeformableBody::setGrowth(const std::vector<std::array<double, 9>>& deformations) {
-  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(deformations); });
+Status DeformableBody::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
+  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowthTensors(deformations); });
 }
 
 Result<int> DeformableBody::addMuscle(const Muscle& muscle) {

@@ -78,20 +78,20 @@ Status MaterialChanges::setPlasticity(const Plasticity& plasticity) {
 }
 
 Status MaterialChanges::setGrowth(const std::vector<double>& lengths) {
-  if (lengths.size() != 1 && lengths.size() != tetCount_) return sizeMismatch("growth", lengths.size(), tetCount_);
-  for (std::size_t t = 0; t < lengths.size(); ++t) {
+  if (lengths.size() != tetCount_) return sizeMismatch("growth", lengths.size(), tetCount_);
+  for (std::size_t t = 0; t < tetCount_; ++t) {
     if (!isGrowth(lengths[t])) return badGrowth(t);
   }
   const bool none = std::all_of(lengths.begin(), lengths.end(), [](double length) { return length == 1.0; });
   growth_.clear();
   for (std::size_t t = 0; t < tetCount_ && !none; ++t) {
-    const double length = lengths[lengths.size() == 1 ? 0 : t];
+    const double length = lengths[t];
     growth_.push_back({length, 0.0, 0.0, 0.0, length, 0.0, 0.0, 0.0, length});
   }
   return {};
 }
 
-Status MaterialChanges::setGrowth(const std::vector<std::array<double, 9>>& deformations) {
+Status MaterialChanges::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
   if (deformations.size() != tetCount_) return sizeMismatch("growth", deformations.size(), tetCount_);
   for (std::size_t t = 0; t < tetCount_; ++t) {
     if (!isGrowth(Eigen::Map<const RowMatrix>(deformations[t].data()))) return badGrowth(t);

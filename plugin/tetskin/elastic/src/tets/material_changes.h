@@ -23,10 +23,9 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   // Errors: InvalidOption, SizeMismatch, IndexOutOfRange, NonFinite; nothing is changed then.
   Status setPlasticity(const Plasticity& plasticity);
   void endPlasticity() { plasticity_.reset(); }
-  /// lengths  factor of length, above 0: one for all tets, or one for each
+  Status setGrowth(double length) { return setGrowth(std::vector<double>(tetCount_, length)); }
   Status setGrowth(const std::vector<double>& lengths);
-  /// deformations  by tet, by rows: of the first shape, symmetric, with positive eigenvalues
-  Status setGrowth(const std::vector<std::array<double, 9>>& deformations);
+  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   Result<int> addMuscle(const Muscle& muscle);
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;
