@@ -74,9 +74,9 @@ struct TetWork {
   /// The norm of the deviator of E at which tets yield, and by how much it grows with the equivalent plastic strain,
   /// wide, by pack; null: nothing flows.
   const S* yields = nullptr;
-  S* flowed = nullptr;    ///< the equivalent plastic strain, wide, by pack and point
-  S flowShare = 1;        ///< share of what is beyond the yield surface that flows in this step, above 0
-  S largestStrain = 0;    ///< the largest plastic strain that may remain; 0: any
+  S* flowed = nullptr;  ///< the equivalent plastic strain, wide, by pack and point
+  S flowShare = 1;      ///< share of what is beyond the yield surface that flows in this step; 0: none
+  S largestStrain = 0;  ///< the largest plastic strain that may remain; 0: any
 };
 
 /// Scalars of a pack's changes at one point.
@@ -92,6 +92,7 @@ struct TetFindings {
   S maxTurned = 0;      ///< the largest squared difference between a rotation and that of the matrix, as quaternions
   double turned = 0.0;  ///< sum of these differences, each a quarter of the squared angle
   double energy = 0.0;
+  bool yields = false;  ///< some tet is beyond its yield surface
 };
 
 /// Rows of the matrix; no two of them are neighbours.

@@ -261,10 +261,11 @@ template <class S, int W>
 struct WideFindings {
   Lanes<S, W> squashed{}, maxTurned{}, turned{};  ///< the first one: 1 - the ratio of volumes
   double energy = 0.0;
+  bool yields = false;
 
   TetFindings<S> all() const {
     return {S(1) - largest<S, W>(squashed), largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)),
-            energy};
+            energy, yields};
   }
 };
 

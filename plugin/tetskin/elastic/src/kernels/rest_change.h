@@ -221,17 +221,21 @@ TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lan
 /// lost  1 for tets that do not flow
 template <class S, int W, class Work>
 TETSKIN_INLINE bool flowWhereYielding(const Work& work, std::size_t pack, std::size_t at, int lane,
-                                      const Lanes<S, W>& lost, WideMatrix<S, W>& strain, WideChange<S, W>& change) {
+                                      const Lanes<S, W>& lost, WideMatrix<S, W>& strain, WideChange<S, W>& change,
+                                      WideFindings<S, W>& findings) {
   using V = Lanes<S, W>;
   if (!work.yields) return false;
   const auto* e = strain.at;
   const V mean = S(1) / S(3) * traceOf<S, W>(strain), x = e[0] - mean, y = e[4] - mean, z = e[8] - mean;
   V squared = x * x + y * y + z * z + S(2) * (e[1] * e[1] + e[2] * e[2] + e[5] * e[5]);
+  const S* yields = work.yields + 2 * kGroup * pack + static_cast<std::size_t>(lane);
+  const V yield = wide<S, W>(yields), hardening = wide<S, W>(yields + kGroup);
+  const V flowed = wide<S, W>(work.flowed + kGroup * at + static_cast<std::size_t>(lane));
+  const V limit = yield + hardening * flowed;
   squared = lost > S(0) ? V{} : squared;
-  const S* yield = work.yields + 2 * kGroup * pack + static_cast<std::size_t>(lane);
-  const V hardening = wide<S, W>(yield + kGroup);
-  const V limit = wide<S, W>(yield) + hardening * wide<S, W>(work.flowed + kGroup * at + static_cast<std::size_t>(lane));
   if (!anyAbove<S, W>(squared - limit * limit, S(0))) return false;
+  findings.yields = true;
+  if (work.flowShare == S(0)) return false;
   flow<S, W>(work, at, lane, squareRoots<S, W>(squared), limit, hardening, strain, change);
   return true;
 }
@@ -275,7 +279,7 @@ TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const Work& work, std::size_t p
   noteVolumes<S, W>(s, shear, findings);
   WideMatrix<S, W> strain = strainOf<S, W>(q, r, g, frame);
   if (work.changes) {
-    flowWhereYielding<S, W>(work, pack, at, lane, Lanes<S, W>{}, strain, change);
+    flowWhereYielding<S, W>(work, pack, at, lane, Lanes<S, W>{}, strain, change, findings);
     noteChange<S, W>(change, work.assembledChanges + kChange * at + static_cast<std::size_t>(lane), findings);
     shear *= change.volume;
     bulk *= change.volume;

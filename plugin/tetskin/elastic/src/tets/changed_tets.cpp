@@ -120,17 +120,35 @@ void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity) {
   largestStrain_ = std::isfinite(plasticity->largestStrain) ? static_cast<S>(plasticity->largestStrain) : S(0);
   const double perStress = 1.0 / (std::sqrt(6.0) * mu_);
   forBoth([&](auto& packed) { packed.yields.assign(2 * kGroup * packed.packs.size(), S(0)); });
+  yieldEnergy_ = 0.0;
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
     S* const yield = &packed.yields[2 * kGroup * (tet / kGroup) + tet % kGroup];
     const auto& byTet = plasticity->yieldStresses;
-    yield[0] = static_cast<S>(perStress * (byTet.empty() ? plasticity->yieldStress : meanOf(byTet, cageTets)));
+    const double stress = byTet.empty() ? plasticity->yieldStress : meanOf(byTet, cageTets);
+    yield[0] = static_cast<S>(perStress * stress);
     yield[kGroup] = static_cast<S>(perStress * plasticity->hardening);
+    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    const auto shear = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
+    const double volume = shear * static_cast<double>(Pack::kPoints) / (2.0 * mu_);
+    yieldEnergy_ += 0.5 * volume * stress * stress / youngsModulus_;
   });
+}
+
+/// A body on its way back to its first shape would flow again: it waits until it has been there for a while.
+template <class S>
+void CorotatedTets<S>::flowFor(double seconds) {
+  constexpr double kCalmSeconds = 0.5;
+  if (returns_) {
+    calmSeconds_ = yields_ ? 0.0 : calmSeconds_ + seconds;
+    returns_ = calmSeconds_ < kCalmSeconds;
+  }
+  flowShare_ = returns_ ? S(0) : static_cast<S>(flowShare(seconds));
 }
 
 template <class S>
 void CorotatedTets<S>::forgetFlow() {
   if (!changes()) return;
+  returns_ = yields_ = true;
   forBoth([&](auto& packed) {
     std::fill(packed.flowed.begin(), packed.flowed.end(), S(0));
     for (std::size_t at = 0; at < packed.flowed.size() / kGroup; ++at) {
@@ -144,8 +162,8 @@ void CorotatedTets<S>::forgetFlow() {
 }
 
 template <class S>
-void CorotatedTets<S>::flowFor(double seconds) {
-  flowShare_ = std::isfinite(flowRate_) ? static_cast<S>(shareIn(flowRate_ * seconds)) : S(1);
+double CorotatedTets<S>::flowShare(double seconds) const {
+  return std::isfinite(flowRate_) ? shareIn(flowRate_ * seconds) : 1.0;
 }
 
 template <class S>
@@ -177,12 +195,15 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
       packed.given.clear();
       packed.yields.clear();
     });
-    isGiven_ = false;
+    isGiven_ = returns_ = yields_ = false;
     return changed;
   }
   bool changed = false;
   makeChanges();
   stream(isGiven_);
+  stream(returns_);
+  stream(yields_);
+  stream(calmSeconds_);
   forBoth([&](auto& packed) {
     stream.plain(packed.changes.data(), packed.changes.size());
     stream.plain(packed.flowed.data(), packed.flowed.size());
@@ -203,6 +224,7 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
   template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);               \
   template void CorotatedTets<S>::forgetFlow();                                              \
   template void CorotatedTets<S>::flowFor(double seconds);                                   \
+  template double CorotatedTets<S>::flowShare(double seconds) const;                         \
   template std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets);       \
   template bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)

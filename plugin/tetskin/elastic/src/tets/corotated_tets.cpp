@@ -98,6 +98,7 @@ void CorotatedTets<S>::setMaterial(const Lame& lame) {
   assert(lame.mu > 0.0 && lame.lambda >= 0.0);
   ratio_ = static_cast<S>(lame.lambda / lame.mu);
   mu_ = lame.mu;
+  youngsModulus_ = lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu);
   const auto set = [&](auto& pack, std::size_t lane, double volume) {
     pack.shear[lane] = static_cast<S>(2.0 * lame.mu * volume);
     pack.bulk[lane] = static_cast<S>(lame.lambda * volume);
@@ -157,13 +158,16 @@ double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, Par
   flattest_ = S(1);
   maxTurned_ = S(0);
   turned_ = 0.0;
+  bool yields = false;
   double total = 0.0;
   for (const kernels::TetFindings<S>& part : findings_) {
     flattest_ = std::min(flattest_, part.flattest);
     maxTurned_ = std::max(maxTurned_, part.maxTurned);
     turned_ += part.turned;
+    yields |= part.yields;
     total += part.energy;
   }
+  if (!isAsked_) yields_ = yields;
   return total;
 }
 

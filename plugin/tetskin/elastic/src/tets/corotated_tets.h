@@ -69,10 +69,15 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// plasticity  checked; null: nothing flows any more, and what has flowed stays. For this material: call it again
   ///             after `setMaterial`
   void setPlasticity(const Plasticity* plasticity);
-  /// Undoes all plastic flow.
+  /// Undoes all plastic flow. Nothing flows until nothing has been beyond its yield surface for half a second.
   void forgetFlow();
   /// The seconds in which the next `forces` lets tets flow.
   void flowFor(double seconds);
+  bool flows() const { return !linear_.yields.empty() || !quadratic_.yields.empty(); }
+  /// The share of what is beyond the yield stress that flows in some seconds.
+  double flowShare(double seconds) const;
+  /// The energy of all tets if each is pulled until it yields for the first time.
+  double yieldEnergy() const { return yieldEnergy_; }
   /// Equivalent plastic strains since the beginning or `forgetFlow`, by tet of the cage. Cost O(T)
   std::vector<double> plasticStrains(std::size_t cageTets);
 
@@ -134,9 +139,12 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   const std::uint32_t* partOf_ = nullptr;
   S ratio_ = 0;
   double mu_ = 0.0;
-  double flowRate_ = 0.0;
+  double youngsModulus_ = 0.0, flowRate_ = 0.0, yieldEnergy_ = 0.0;
   S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
   bool isGiven_ = false;                 ///< shapes other than the first ones
+  bool yields_ = false;                  ///< some tet was beyond its yield surface in the last `forces`
+  bool returns_ = false;                 ///< since `forgetFlow`
+  double calmSeconds_ = 0.0;             ///< of a body that returns: since then nothing was beyond it
   bool isAsked_ = false;                 ///< within a question, which lets nothing flow
   S flatAlpha_ = 0;  ///< of the matrix, where tets were flat; 0: no such value
   S flattest_ = 1;
