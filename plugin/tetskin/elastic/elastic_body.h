@@ -119,6 +119,7 @@ class TETSKIN_ELASTIC_API ElasticBody {
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);
+  double activation(int muscle) const;  ///< that was set last. The muscle must exist
 
   /// nodeCount elastic forces at the current positions, world space, pressure times area.
   std::vector<std::array<double, 3>> forces();

@@ -272,6 +272,12 @@ Status ElasticBody<Scalar>::setActivation(int muscle, double activation) {
 }
 
 template <class Scalar>
+double ElasticBody<Scalar>::activation(int muscle) const {
+  assert(impl_);
+  return impl_->changes.activation(muscle);
+}
+
+template <class Scalar>
 std::vector<std::array<double, 3>> ElasticBody<Scalar>::forces() {
   if (!impl_) return {};
   elastic_detail::BodyProbe<Scalar> probe = impl_->probe();
