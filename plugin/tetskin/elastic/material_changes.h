@@ -19,8 +19,8 @@ namespace tetskin {
 /// does not depend on the step, except that the flow of a step begins in the next one.
 struct Plasticity {
   /// Pressure units, above 0: the von Mises stress at which the material yields, which is the stress of a bar that is
-  /// pulled. In a tet with a stiffness factor, its yield stress has that factor, too: all tets yield at the same strain,
-  /// yieldStress over Young's modulus.
+  /// pulled. In a tet with a stiffness factor, its yield stress has that factor, too: all tets yield at the same
+  /// strain, yieldStress over Young's modulus.
   double yieldStress = 0.0;
   /// tetCount, above 0: yield stresses by tet. Empty: all have `yieldStress`
   std::vector<double> yieldStresses;
@@ -46,9 +46,10 @@ inline double yieldStressOf(double norm, double youngsModulus, double poissonRat
 ///   w (1 + 2 nu w) = a stress / E,  nu: Poisson's ratio,  E: Young's modulus of the tet
 /// and becomes wider by sqrt(1 + 2 nu w). Between the two, tension follows elasticity.
 struct Muscle {
-  std::vector<int> tets;                 ///< of the cage, at least one, each once
-  std::vector<Eigen::Vector3d> fibres;   ///< directions, rest space, of any length above 0: one for each tet, or one for all
-  double stress = 3e5;                   ///< pressure units, above 0: the tension at activation 1; a human muscle has 3e5 Pa
+  std::vector<int> tets;  ///< of the cage, at least one, each once
+  std::vector<Eigen::Vector3d>
+      fibres;           ///< directions, rest space, of any length above 0: one for each tet, or one for all
+  double stress = 3e5;  ///< pressure units, above 0: the tension at activation 1; a human muscle has 3e5 Pa
 };
 
 }  // namespace tetskin
