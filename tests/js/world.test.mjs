@@ -586,8 +586,8 @@ test("tets grow, contract and flow", () => {
   assert.deepEqual([...new Set(body.plasticStrains)], [0]);
   const refused = (call, code, words) => assert.throws(call, failure(code, words));
   refused(() => body.setGrowth(0), "InvalidOption", /0.05 to 20/);
-  refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidOption", /no speed/);
-  refused(() => body.setPlasticity({}), "InvalidOption", /yieldStress/);
+  refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidArgument", /no speed/);
+  refused(() => body.setPlasticity({}), "InvalidArgument", /yieldStress/);
   refused(() => body.addMuscle([tets], [1, 0, 0]), "IndexOutOfRange", /does not exist/);
   refused(() => { muscle.activation = 2; }, "InvalidOption", /0 to 1/);
 });
