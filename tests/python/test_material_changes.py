@@ -78,6 +78,15 @@ def test_a_muscle_contracts_as_its_activation_says(elastic, world_and_body):
             own.activation = 2
 
 
+def test_fibres_follow_a_curve(elastic):
+    cage = cage_of_box()
+    fibres = ts.fibres_along(cage, np.ones(160, bool), [(0, 0.1, 0.1), (1, 0.1, 0.1)])
+    assert fibres.shape == (160, 3) and np.allclose(fibres, (1, 0, 0))
+    elastic.add_muscle(tets=[4, 9], fibres=ts.fibres_along(cage, [4, 9], [(0, 0, 0), (0, 1, 0)]), stress=1e4)
+    with pytest.raises(ts.Error, match="two points"):
+        ts.fibres_along(cage, [0], [(0, 0, 0)])
+
+
 def test_what_yields_keeps_its_strain(elastic):
     elastic.set_plasticity(yield_stress=2e4, hardening=0.0, flow_rate=None, largest=0.5)
     ends = [np.flatnonzero(np.isclose(elastic.positions[:, 0], x)) for x in (0, 1)]

@@ -142,6 +142,22 @@ void bind(Class<Body>& type) {
 }  // namespace
 
 void bindMaterialChanges(nb::module_& module, Class<BodyHandle>& body, Class<ElasticModel>& elastic) {
+  const auto fibresOf = [](const CageModel& cage, const ArrayLike& tets, const ArrayLike& curve) {
+    const TetMesh& mesh = cage.cage->mesh;
+    const std::vector<int> indices = indicesOf(tets, "tets", mesh.tetCount());
+    const Numbers<double> numbers(curve, "curve", 3);
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t k = 0; k < numbers.rows(); ++k) points.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+    std::vector<double> rows;
+    for (const Eigen::Vector3d& fibre : take(fibresAlong(mesh, indices, points))) {
+      rows.insert(rows.end(), fibre.data(), fibre.data() + 3);
+    }
+    return newRows3(std::move(rows));
+  };
+  module.def(
+      "fibres_along", fibresOf, "cage"_a, "tets"_a, "curve"_a,
+      "(n, 3) float64 fibres for add_muscle: for each of n tets (a mask or indices) the direction of the nearest "
+      "piece of a curve of points (m, 3), rest space. Of two points: the axis between them. A new array.");
   bindMuscle<BodyHandle>(module, "Muscle");
   bindMuscle<ElasticModel>(module, "ElasticMuscle");
   bind(body);
