@@ -7,7 +7,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
-#include <tetskin/elastic/src/tets/material_changes.h>
+#include <tetskin/elastic/src/exported/material_changes.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
-#include <tetskin/elastic/src/tets/material_changes.h>
+#include <tetskin/elastic/src/exported/material_changes.h>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
