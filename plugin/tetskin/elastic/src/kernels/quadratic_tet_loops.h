@@ -206,7 +206,7 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
         if (work.changes) {
           const std::size_t number = Pack::kPoints * p + point;
           change = changesAt<S, W>(work, number, lane);
-          if (flowWhereYielding<S, W>(work, p, number, lane, lost, strain, change, findings)) {
+          if (flowWhereYielding<S, W>(work, p, number, lane, lost, shear, bulk, strain, change, findings)) {
             trace = lost > S(0) ? trace : traceOf<S, W>(strain);
           }
           noteChange<S, W>(change, work.assembledChanges + kChange * number + static_cast<std::size_t>(lane), findings);

@@ -180,12 +180,22 @@ TETSKIN_INLINE Lanes<S, W> allowedPart(S largest, const WideMatrix<S, W>& before
   return tooFar ? larger(S(1) - over / (way > S(0) ? way : all<S, W>(1)), V{}) : all<S, W>(1);
 }
 
+/// Twice the energy of strains.
+template <class S, int W>
+TETSKIN_INLINE Lanes<S, W> twiceEnergyOf(const WideMatrix<S, W>& strain, const Lanes<S, W>& shear,
+                                         const Lanes<S, W>& bulk) {
+  const Lanes<S, W> trace = traceOf<S, W>(strain);
+  Lanes<S, W> squares{};
+  for (int k = 0; k < 9; ++k) squares += strain.at[k] * strain.at[k];
+  return shear * squares + bulk * trace * trace;
+}
+
 /// Lets W points flow whose strains are beyond the yield surface: changes strains, rest shapes, and what has flowed.
 /// norm, limit  of the deviator of E, and the one at which it yields
 template <class S, int W, class Work>
-TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lanes<S, W>& norm,
-                           const Lanes<S, W>& limit, const Lanes<S, W>& hardening, WideMatrix<S, W>& strain,
-                           WideChange<S, W>& change) {
+TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lanes<S, W>& shear,
+                           const Lanes<S, W>& bulk, const Lanes<S, W>& norm, const Lanes<S, W>& limit,
+                           const Lanes<S, W>& hardening, WideMatrix<S, W>& strain, WideChange<S, W>& change) {
   using V = Lanes<S, W>;
   constexpr S kRoot = S(1.224744871391589);  // of 3/2: the norm of a deviator over its equivalent strain
   // What is nearly flat, or inverted, does not flow.
@@ -193,7 +203,7 @@ TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lan
   WideMatrix<S, W> stretch = strain;
   for (int k = 0; k < 9; k += 4) stretch.at[k] += S(1);
   const V volume = determinantOf<S, W>(stretch);
-  const auto flows = (norm > limit) & (volume > kLeastVolume);
+  auto flows = (norm > limit) & (volume > kLeastVolume);
   V amount = work.flowShare * (norm - limit) / (kRoot + hardening);
   amount = flows ? amount : V{};
   const V safeNorm = flows ? norm : all<S, W>(1), safeVolume = flows ? volume : all<S, W>(1);
@@ -207,8 +217,10 @@ TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lan
     amount *= allowed;
     next = flowBy<S, W>(part, strain, safeVolume, change);
   }
+  // Where a tet is pressed nearly flat, keeping the volume would cost more than the flow releases.
+  flows &= !(twiceEnergyOf<S, W>(next.strain, shear, bulk) > twiceEnergyOf<S, W>(strain, shear, bulk));
   S* const flowed = work.flowed + kGroup * at + static_cast<std::size_t>(lane);
-  put<S, W>(wide<S, W>(flowed) + amount, flowed);
+  put<S, W>(wide<S, W>(flowed) + (flows ? amount : V{}), flowed);
   S* const to = work.changes + kChange * at + static_cast<std::size_t>(lane);
   for (int k = 0; k < 9; ++k) {
     strain.at[k] = flows ? next.strain.at[k] : strain.at[k];
@@ -221,7 +233,8 @@ TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lan
 /// lost  1 for tets that do not flow
 template <class S, int W, class Work>
 TETSKIN_INLINE bool flowWhereYielding(const Work& work, std::size_t pack, std::size_t at, int lane,
-                                      const Lanes<S, W>& lost, WideMatrix<S, W>& strain, WideChange<S, W>& change,
+                                      const Lanes<S, W>& lost, const Lanes<S, W>& shear, const Lanes<S, W>& bulk,
+                                      WideMatrix<S, W>& strain, WideChange<S, W>& change,
                                       WideFindings<S, W>& findings) {
   using V = Lanes<S, W>;
   if (!work.yields) return false;
@@ -236,7 +249,7 @@ TETSKIN_INLINE bool flowWhereYielding(const Work& work, std::size_t pack, std::s
   if (!anyAbove<S, W>(squared - limit * limit, S(0))) return false;
   findings.yields = true;
   if (work.flowShare == S(0)) return false;
-  flow<S, W>(work, at, lane, squareRoots<S, W>(squared), limit, hardening, strain, change);
+  flow<S, W>(work, at, lane, shear, bulk, squareRoots<S, W>(squared), limit, hardening, strain, change);
   return true;
 }
 
@@ -277,7 +290,7 @@ TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const Work& work, std::size_t p
   noteVolumes<S, W>(s, shear, findings);
   WideMatrix<S, W> strain = strainOf<S, W>(q, r, g, frame);
   if (work.changes) {
-    flowWhereYielding<S, W>(work, pack, at, lane, Lanes<S, W>{}, strain, change, findings);
+    flowWhereYielding<S, W>(work, pack, at, lane, Lanes<S, W>{}, shear, bulk, strain, change, findings);
     noteChange<S, W>(change, work.assembledChanges + kChange * at + static_cast<std::size_t>(lane), findings);
     shear *= change.volume;
     bulk *= change.volume;
