@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/impacts.h>
@@ -19,8 +18,7 @@ constexpr int kQuietSteps = 8;
 btScalar leastImpact(const SolvedBody& body, btScalar seconds) {
   constexpr btScalar kGravities = 2;
   constexpr btScalar kLeastWay = btScalar(1e-3);  // without gravity: of the body's size, within a step
-  const btDiscreteDynamicsWorld* world = body.world();
-  const btScalar falls = world ? world->getGravity().length() * seconds : btScalar(0);
+  const btScalar falls = body.gravity.length() * seconds;
   return falls > 0 ? kGravities * falls : kLeastWay * sizeOf(*body.body) / seconds;
 }
 
@@ -246,8 +244,7 @@ void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns
     impact.pair = pair;
     const Sides sides = sidesOf(pair, bodies, rigids);
     for (std::size_t k = 0; k < 2; ++k) impact.before[k] = sides[k].motion(origin.position, false);
-    const btDiscreteDynamicsWorld* world = body.world();
-    if (world && !sides[1].moves()) impact.fallen = seconds * world->getGravity();
+    if (!sides[1].moves()) impact.fallen = seconds * body.gravity;
     impact.vibrations = sumOfBodies(pair, sides, [](const ImpactSide& side) { return side.vibrationBefore(); });
     list_.push_back(impact);
   }
