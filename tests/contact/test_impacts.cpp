@@ -85,9 +85,9 @@ class BouncingBall {
   double start_ = 0.0;
 };
 
-/// Its own vibrations keep the rest: 64 steps per frame differ from 16 by as much.
+/// Its own vibrations keep the rest: 64 steps per frame differ from 16 by as much. The last one's impact takes two steps.
 TEST(Impacts, AnElasticBallRisesInAGamesStepsAsInFineOnes) {
-  for (const double stiffness : {300.0, 1000.0, 3000.0}) {
+  for (const double stiffness : {300.0, 1000.0, 3000.0, 1e5}) {
     const double fine = BouncingBall(stiffness, 0.0).rebound(32);
     EXPECT_GT(fine, 0.6) << stiffness;
     for (const int substeps : {4, 8}) {
@@ -134,23 +134,18 @@ TEST(Impacts, WhatLiesDoesNotTrembleWhateverItsRestitution) {
   }
 }
 
-/// What falls as slowly as its own gravity makes it does not bounce by restitution; what falls faster does.
-TEST(Impacts, ABodysOwnGravityTellsThemFromRest) {
-  for (const btScalar own : {btScalar(-100), btScalar(-1), btScalar(0)}) {
-    BouncingBall ball(1e5, 0.02, 1.0, Ground::Plane, 0.002);
-    EXPECT_TRUE(ball.touching->body->setGravity(btVector3(0, own, 0)).ok());
-    ball.body().setVelocity(btVector3(0, btScalar(-0.3), 0));
-    double fastest = -HUGE_VAL;
-    for (int k = 0; k < 24; ++k) {
-      ball.step(4);
-      fastest = std::max(fastest, static_cast<double>(momentumOf(ball.body()).y()));
-    }
-    if (own == -100) {
-      EXPECT_LT(fastest, 0.15) << "slower than two steps of it";
-    } else {
-      EXPECT_GT(fastest, 0.2) << own;
-    }
+/// What comes slowly bounces if its own gravity is small, whatever the world's.
+TEST(Impacts, AreToldFromRestByTheBodysOwnGravity) {
+  BouncingBall ball(1e5, 0.02, 1.0, Ground::Plane, 0.01);
+  EXPECT_TRUE(ball.touching->body->setGravity(btVector3(0, btScalar(-0.1), 0)).ok());
+  ball.body().setVelocity(btVector3(0, btScalar(-0.05), 0));
+  double fastest = -HUGE_VAL;
+  for (int k = 0; k < 120; ++k) {
+    ball.step(4);
+    fastest = std::max(fastest, static_cast<double>(momentumOf(ball.body()).y()));
   }
+  EXPECT_GT(fastest, 0.04);
+  EXPECT_LT(fastest, 0.07);
 }
 
 /// What is given back acts on the partner when the floor is there to hold it.

@@ -14,6 +14,10 @@ namespace {
 /// Steps without a push that is felt after which an impact is over, if the pair still approaches.
 constexpr int kQuietSteps = 8;
 
+/// The most that is given back of what stops have taken. All that the steps resolve nothing of would be; of balls, cubes
+/// on an edge or a corner, bars and rings 0.75 to 0.95 come back in fine steps.
+constexpr double kMostGivenBack = 0.9;
+
 /// The change of velocity in a step from which on contacts count as an impact: twice what a body at rest takes.
 btScalar leastImpact(const SolvedBody& body, btScalar seconds) {
   constexpr btScalar kGravities = 2;
@@ -124,7 +128,8 @@ double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& me
   const double came = meeting.energyAt(meeting.in), parts = meeting.energyAt(std::max(meeting.out, 0.0));
   const double lost = std::max(std::min(impact.lost, came), 0.0);
   const double kept = std::min(sides[0].kept(), sides[1].kept());
-  const double elastic = parts + lost * std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, 1.0);
+  const double share = std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, kMostGivenBack);
+  const double elastic = parts + share * lost;
   const auto ofBoth = impact.pair.body->getRestitution() * impact.pair.object->getRestitution();
   const double e = std::max(static_cast<double>(ofBoth), 0.0);
   return std::min(std::max(elastic, e * e * came), came);
