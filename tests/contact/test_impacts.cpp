@@ -85,7 +85,7 @@ class BouncingBall {
   double start_ = 0.0;
 };
 
-/// Its own vibrations keep the rest: 64 steps per frame differ from 16 by as much. The last one's impact takes two steps.
+/// Its own vibrations keep the rest: 64 steps per frame differ from 16 by as much. The last impact takes two steps.
 TEST(Impacts, AnElasticBallRisesInAGamesStepsAsInFineOnes) {
   for (const double stiffness : {300.0, 1000.0, 3000.0, 1e5}) {
     const double fine = BouncingBall(stiffness, 0.0).rebound(32);

@@ -78,7 +78,7 @@ struct SolvedBody {
   const SolverSettings* settings = nullptr;  ///< of the elastic force; without one, Bullet's
   Dynamics* dynamics = nullptr;              ///< of the elastic force, or `BodyMemory::masses`
   BodyMemory* memory = nullptr;
-  btVector3 gravity{0, 0, 0};  ///< the acceleration by its gravity, the world's or its own; of an elastic body alone
+  btVector3 gravity{0, 0, 0};     ///< the acceleration by its gravity, the world's or its own; of an elastic body alone
   bool needsDeformation = false;  ///< Bullet's own deformation gradients are needed
   bool byBullet = true;           ///< Bullet searches for its contacts with rigid objects, by its own trees
   RowsOnBody before;              ///< in the step before
