@@ -14,8 +14,8 @@ namespace {
 /// Steps without a push that is felt after which an impact is over, if the pair still approaches.
 constexpr int kQuietSteps = 8;
 
-/// The most that is given back of what stops have taken. All that the steps resolve nothing of would be; of balls, cubes
-/// on an edge or a corner, bars and rings 0.75 to 0.95 come back in fine steps.
+/// The most that is given back of what stops have taken: it would be all, in steps that resolve nothing of an impact.
+/// In fine steps, balls, cubes on an edge or a corner, bars and rings have 0.75 to 0.95 of their energy afterwards.
 constexpr double kMostGivenBack = 0.9;
 
 /// The change of velocity in a step from which on contacts count as an impact: twice what a body at rest takes.
