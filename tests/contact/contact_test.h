@@ -8,6 +8,8 @@
 #include "support/points_within.h"
 #include "support/rigids.h"
 
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <tetskin/contact/surface_contact.h>
 
 #include <memory>
@@ -42,6 +44,41 @@ inline TetMesh looseCage() {
   for (Eigen::Vector3d& p : cage.nodes) p -= Eigen::Vector3d::Constant(kBodySize / 2);
   return cage;
 }
+
+/// A free multibody without joints or damping, whose base is a flat box.
+struct FlatMultibody {
+  FlatMultibody(EmptyWorld& in, btScalar mass, const btVector3& at)
+      : world(in), body(0, mass, inertiaOf(box, mass), false, false) {
+    body.setLinearDamping(0);
+    body.setAngularDamping(0);
+    body.setBaseWorldTransform(placeAt(at));
+    body.finalizeMultiDof();
+    link.setCollisionShape(&box);
+    link.setWorldTransform(placeAt(at));
+    link.setInterpolationWorldTransform(link.getWorldTransform());
+    body.setBaseCollider(&link);
+    world.deformable().addMultiBody(&body);
+    world.deformable().addCollisionObject(&link);
+  }
+  ~FlatMultibody() {
+    world.deformable().removeCollisionObject(&link);
+    world.deformable().removeMultiBody(&body);
+  }
+  FlatMultibody(const FlatMultibody&) = delete;
+  FlatMultibody& operator=(const FlatMultibody&) = delete;
+
+  EmptyWorld& world;
+  btBoxShape box{btVector3(1, btScalar(0.2), 1)};
+  btMultiBody body;
+  btMultiBodyLinkCollider link{&body, -1};
+
+ private:
+  static btVector3 inertiaOf(const btBoxShape& box, btScalar mass) {
+    btVector3 inertia;
+    box.calculateLocalInertia(mass, inertia);
+    return inertia;
+  }
+};
 
 /// A body with surface contact in a world.
 struct TouchingBody {

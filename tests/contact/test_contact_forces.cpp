@@ -7,9 +7,6 @@
 #include "solver/recorded_forces.h"
 #include "support/allocation_count.h"
 
-#include <BulletDynamics/Featherstone/btMultiBody.h>
-#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
-
 namespace tetskin::test {
 namespace {
 
@@ -94,34 +91,16 @@ TEST(ContactForces, ARigidBodyFeelsWhatChangesItsMomentum) {
 TEST(ContactForces, ALinkFeelsWhatChangesItsMomentum) {
   TetskinWorld world;
   world.deformable().setGravity(btVector3(0, 0, 0));
-  btBoxShape shape(btVector3(1, btScalar(0.2), 1));
-  btVector3 inertia;
-  shape.calculateLocalInertia(1, inertia);
-  btMultiBody multi(0, 1, inertia, false, false);
-  multi.setLinearDamping(0);
-  multi.setAngularDamping(0);
-  multi.setBaseWorldTransform(placeAt(btVector3(0, 3, 0)));
-  multi.finalizeMultiDof();
-  btMultiBodyLinkCollider link(&multi, -1);
-  link.setCollisionShape(&shape);
-  link.setWorldTransform(placeAt(btVector3(0, 3, 0)));
-  link.setInterpolationWorldTransform(link.getWorldTransform());
-  multi.setBaseCollider(&link);
-  world.deformable().addMultiBody(&multi);
-  world.deformable().addCollisionObject(&link);
-  {
-    TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(3.7), 0));
-    body.body->body().setVelocity(btVector3(0, -2, 0));
-    const auto forces = forcesIn(world);
-    for (int f = 0; f < 30; ++f) {
-      const btVector3 before = multi.getBaseVel();
-      step(world, 1);
-      expectNear(forces->forcesOn(link).total().force / 60, multi.getBaseVel() - before, 1e-4);
-    }
-    EXPECT_LT(multi.getBaseVel().y(), -0.3);
+  const FlatMultibody multi(world, 1, btVector3(0, 3, 0));
+  TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(3.7), 0));
+  body.body->body().setVelocity(btVector3(0, -2, 0));
+  const auto forces = forcesIn(world);
+  for (int f = 0; f < 30; ++f) {
+    const btVector3 before = multi.body.getBaseVel();
+    step(world, 1);
+    expectNear(forces->forcesOn(multi.link).total().force / 60, multi.body.getBaseVel() - before, 1e-4);
   }
-  world.deformable().removeCollisionObject(&link);
-  world.deformable().removeMultiBody(&multi);
+  EXPECT_LT(multi.body.getBaseVel().y(), -0.3);
 }
 
 // ---- soft bodies

@@ -4,45 +4,24 @@
 // Objects that a body may touch, apart from static ones.
 #include "contact_test.h"
 
-#include <BulletDynamics/Featherstone/btMultiBody.h>
-#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
-
 namespace tetskin::test {
 namespace {
 
 TEST(ContactPartners, ALinkOfAMultiBodyIsPushed) {
   TetskinWorld world;
   world.deformable().setGravity(btVector3(0, 0, 0));
-  btMultiBody multi(0, 1, btVector3(1, 1, 1), false, false);
-  multi.setBaseWorldTransform(placeAt(btVector3(0, 3, 0)));
-  multi.finalizeMultiDof();
-  btBoxShape shape(btVector3(1, btScalar(0.2), 1));
-  btVector3 inertia;
-  shape.calculateLocalInertia(1, inertia);
-  multi.setBaseInertia(inertia);
-  btMultiBodyLinkCollider link(&multi, -1);
-  link.setCollisionShape(&shape);
-  link.setWorldTransform(placeAt(btVector3(0, 3, 0)));
-  link.setInterpolationWorldTransform(link.getWorldTransform());
-  link.setFriction(1);
-  multi.setBaseCollider(&link);
-  world.deformable().addMultiBody(&multi);
-  world.deformable().addCollisionObject(&link);
-  {
-    TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(3.7), 0));
-    btSoftBody& soft = body.body->body();
-    soft.setVelocity(btVector3(0, -2, 0));
-    bool touched = false;
-    for (int f = 0; f < 30; ++f) {
-      step(world, 1);
-      for (const SurfaceContactPoint& at : body.contact->contacts()) touched = touched || at.object == &link;
-    }
-    EXPECT_TRUE(touched);
-    EXPECT_LT(multi.getBaseVel().y(), -0.3);
-    EXPECT_GT(body.height(), link.getWorldTransform().getOrigin().y() + 0.2 - 0.01);
+  FlatMultibody multi(world, 1, btVector3(0, 3, 0));
+  multi.link.setFriction(1);
+  TouchingBody body(world, ballMesh(24, 0.35), btVector3(0, btScalar(3.7), 0));
+  body.body->body().setVelocity(btVector3(0, -2, 0));
+  bool touched = false;
+  for (int f = 0; f < 30; ++f) {
+    step(world, 1);
+    for (const SurfaceContactPoint& at : body.contact->contacts()) touched = touched || at.object == &multi.link;
   }
-  world.deformable().removeCollisionObject(&link);
-  world.deformable().removeMultiBody(&multi);
+  EXPECT_TRUE(touched);
+  EXPECT_LT(multi.body.getBaseVel().y(), -0.3);
+  EXPECT_GT(body.height(), multi.link.getWorldTransform().getOrigin().y() + 0.2 - 0.01);
 }
 
 /// Ways of moving a kinematic body in each step.

@@ -406,7 +406,7 @@ TYPED_TEST(MaterialChangesOf, ForcesOfChangedShapesAreInBalance) {
     std::vector<double> growth;
     for (std::size_t t = 0; t < bar.mesh.tetCount(); ++t) growth.push_back(1.0 + 0.002 * static_cast<double>(t % 90));
     ASSERT_TRUE(body.setGrowth(growth).ok());
-    for (int step = 0; step < 8; ++step) body.step(kFrame, {});
+    for (int step = 0; step < 2; ++step) body.step(kFrame, {});
     const Points now = pointsOf(body.positions());
     const auto forces = body.forces();
     Vector3d sum = Vector3d::Zero(), torque = Vector3d::Zero();

@@ -40,7 +40,7 @@ constexpr btScalar kRigidThreshold = 20;
 constexpr btScalar kLastDigits = 4;
 
 btVector3 gravityOf(const SolvedBody& solved) {
-  return solved.elastic ? solved.elastic->world->getGravity() : solved.body->getWorldInfo()->m_gravity;
+  return solved.elastic ? solved.gravity : solved.body->getWorldInfo()->m_gravity;
 }
 
 bool isPinned(const btSoftBody& body) {

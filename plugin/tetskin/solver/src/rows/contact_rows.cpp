@@ -274,14 +274,9 @@ FrictionAnchor frictionAnchorOf(const ContactRow& row, const RowOrigin& origin, 
   return kept;
 }
 
-btScalar gravityOn(const SolvedBody& body) {
-  const btDiscreteDynamicsWorld* world = body.world();
-  return world ? world->getGravity().length() : btScalar(0);
-}
-
 /// The speed at which a point would penetrate the object, without what gravity adds in the step.
 btScalar approach(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) {
-  const btScalar falls = gravityOn(bodies.bodies()[row.ends[0].body]) * seconds;
+  const btScalar falls = bodies.bodies()[row.ends[0].body].gravity.length() * seconds;
   return -row.normal.dot(row.relative) - row.gapVelocity - kFallsAtRest * falls;
 }
 
@@ -434,7 +429,7 @@ void ContactRows::addAnchors(SolverBodies& bodies, std::size_t index, RigidUnkno
 /// False if the point is farther away than gravity moves it in a usual step, and does not come near.
 bool ContactRows::mayTouch(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) const {
   const auto usual = static_cast<btScalar>(usualStep_);
-  const btScalar near = kFallsAtRest * gravityOn(bodies.bodies()[row.ends[0].body]) * usual * usual;
+  const btScalar near = kFallsAtRest * bodies.bodies()[row.ends[0].body].gravity.length() * usual * usual;
   return row.gapVelocity * seconds < near || approach(bodies, row, seconds) > 0;
 }
 

@@ -38,7 +38,7 @@ class ImpactSide {
   btScalar compliance(const btVector3& at, const btVector3& along) const;
   /// Between two steps; of a soft body after its `findMotion`.
   void push(const btVector3& at, const btVector3& impulse) const;
-  /// Share of its energy that its material's damping leaves it in an impact.
+  /// Share of its energy that its material leaves it in an impact: what is not damped, and does not flow.
   double kept(double energy) const;
   /// The energy of its body's deformation and of the motion beside the rigid one, in joules: between two steps, or at
   /// the beginning of one, after its prediction.

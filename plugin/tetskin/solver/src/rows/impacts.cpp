@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <tetskin/bullet/src/base/world_stream.h>
 #include <tetskin/solver/src/forces/node_vectors.h>
 #include <tetskin/solver/src/rows/impacts.h>
@@ -15,12 +14,15 @@ namespace {
 /// Steps without a push that is felt after which an impact is over, if the pair still approaches.
 constexpr int kQuietSteps = 8;
 
+/// The most that is given back of what stops have taken: it would be all, in steps that resolve nothing of an impact.
+/// In fine steps, balls, cubes on an edge or a corner, bars and rings have 0.75 to 0.95 of their energy afterwards.
+constexpr double kMostGivenBack = 0.9;
+
 /// The change of velocity in a step from which on contacts count as an impact: twice what a body at rest takes.
 btScalar leastImpact(const SolvedBody& body, btScalar seconds) {
   constexpr btScalar kGravities = 2;
   constexpr btScalar kLeastWay = btScalar(1e-3);  // without gravity: of the body's size, within a step
-  const btDiscreteDynamicsWorld* world = body.world();
-  const btScalar falls = world ? world->getGravity().length() * seconds : btScalar(0);
+  const btScalar falls = body.gravity.length() * seconds;
   return falls > 0 ? kGravities * falls : kLeastWay * sizeOf(*body.body) / seconds;
 }
 
@@ -126,7 +128,8 @@ double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& me
   const double came = meeting.energyAt(meeting.in), parts = meeting.energyAt(std::max(meeting.out, 0.0));
   const double lost = std::max(std::min(impact.lost, came), 0.0);
   const double kept = std::min(sides[0].kept(came), sides[1].kept(came));
-  const double elastic = parts + lost * std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, 1.0);
+  const double share = std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, kMostGivenBack);
+  const double elastic = parts + share * lost;
   const auto ofBoth = impact.pair.body->getRestitution() * impact.pair.object->getRestitution();
   const double e = std::max(static_cast<double>(ofBoth), 0.0);
   return std::min(std::max(elastic, e * e * came), came);
@@ -246,8 +249,7 @@ void Impacts::begin(const ContactRows& rows, SolverBodies& bodies, RigidUnknowns
     impact.pair = pair;
     const Sides sides = sidesOf(pair, bodies, rigids);
     for (std::size_t k = 0; k < 2; ++k) impact.before[k] = sides[k].motion(origin.position, false);
-    const btDiscreteDynamicsWorld* world = body.world();
-    if (world && !sides[1].moves()) impact.fallen = seconds * world->getGravity();
+    if (!sides[1].moves()) impact.fallen = seconds * body.gravity;
     impact.vibrations = sumOfBodies(pair, sides, [](const ImpactSide& side) { return side.vibrationBefore(); });
     list_.push_back(impact);
   }

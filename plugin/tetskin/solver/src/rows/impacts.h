@@ -11,9 +11,9 @@
 // direction of the pushes. With E the energy of the approach, and E' of that with which they part, the part is
 //   (k^(1/4) E' + k L) / E
 // E' / E is what the pair gives back without: vibrations, friction and damping keep their share of L, too. k is the
-// share that the material's damping leaves in an impact, estimated, for what the steps do not resolve (L near E). The
-// fast vibrations that stops make are damped more than the whole, hence the root. Undamped balls and cubes rise in 4
-// substeps as in 64, to within a fifth of the height (`tetskin_measure --only bounce`).
+// share that the material's damping leaves in an impact, estimated, for what the steps do not resolve (L near E), where
+// the part is 0.9 at most. The fast vibrations that stops make are damped more than the whole, hence the root. Undamped
+// balls and cubes rise in 4 substeps as in 64, to within a fifth of the height (`tetskin_measure --only bounce`).
 //
 // Restitution, of what is not elastic, is Bullet's: the product e of both objects' `getRestitution()`. The pair parts
 // with no less than e^2 E, as far as their vibrations have not taken it.

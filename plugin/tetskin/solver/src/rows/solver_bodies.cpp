@@ -143,6 +143,7 @@ void SolverBodies::forgetTrees() {
 void SolverBodies::assign(const ForceList& forces) {
   listAwake();
   takeElastic(forces);
+  takeGravity(forces);
   attachMemories();
   makeSystems(forces);
 }
@@ -189,6 +190,18 @@ void SolverBodies::takeElastic(const ForceList& forces) {
     if (k == bodies_.size()) continue;
     bodies_[k].elastic = &elastic->body();
     bodies_[k].settings = &elastic->settings();
+  }
+}
+
+void SolverBodies::takeGravity(const ForceList& forces) {
+  for (int i = 0; i < forces.size(); ++i) {
+    if (!isGravity(*forces[i])) continue;
+    const auto& gravity = static_cast<const btDeformableGravityForce&>(*forces[i]);
+    for (int b = 0; b < gravity.m_softBodies.size(); ++b) {
+      const btSoftBody* body = gravity.m_softBodies[b];
+      SolvedBody* solved = find(body);
+      if (solved && solved->elastic) solved->gravity += body->m_gravityFactor * gravity.m_gravity;
+    }
   }
 }
 

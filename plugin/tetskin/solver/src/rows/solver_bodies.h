@@ -78,6 +78,7 @@ struct SolvedBody {
   const SolverSettings* settings = nullptr;  ///< of the elastic force; without one, Bullet's
   Dynamics* dynamics = nullptr;              ///< of the elastic force, or `BodyMemory::masses`
   BodyMemory* memory = nullptr;
+  btVector3 gravity{0, 0, 0};     ///< the acceleration by its gravity, the world's or its own; of an elastic body alone
   bool needsDeformation = false;  ///< Bullet's own deformation gradients are needed
   bool byBullet = true;           ///< Bullet searches for its contacts with rigid objects, by its own trees
   RowsOnBody before;              ///< in the step before
@@ -88,10 +89,6 @@ struct SolvedBody {
   Actions acted;
   Positions positions;
 
-  /// Null if the world is not known: the body is not elastic, or has been moved to another one since.
-  btDiscreteDynamicsWorld* world() const {
-    return elastic && body->getWorldInfo() == elastic->worldInfo ? elastic->world : nullptr;
-  }
   /// The index within the body of a node with this number.
   std::size_t indexOf(int number) const {
     assert(number >= first && number - first < body->m_nodes.size());
@@ -162,6 +159,7 @@ class SolverBodies {
   void dropSolved(const IsGone& isGone);
   void listAwake();
   void takeElastic(const ForceList& forces);
+  void takeGravity(const ForceList& forces);
   void attachMemories();
   void makeSystems(const ForceList& forces);
   /// Indices of the awake bodies that a force may act on, and couples.

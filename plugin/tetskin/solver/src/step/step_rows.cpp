@@ -56,10 +56,9 @@ void DeformableSolver::Impl::speculate(const SolvedBody& body, btScalar fastest)
   constexpr btScalar kPathFraction = btScalar(0.2);
   assert(stage == Stage::Predict && !(fastest < 0));
   auto* own = bodyWithTrees(*body.body);
-  const btDiscreteDynamicsWorld* world = body.world();
-  if (!own || !world) return;
+  if (!own) return;
   BodyChannel& channel = BodyChannel::of(*own);
-  const btScalar falls = 2 * world->getGravity().length() * dt() * dt();
+  const btScalar falls = 2 * body.gravity.length() * dt() * dt();
   const btScalar distance = falls + kPathFraction * fastest * dt();
   // The body's box includes this distance.
   const btScalar more = distance - channel.speculation();
@@ -74,9 +73,7 @@ double DeformableSolver::Impl::unseenSpeed(const SolvedBody& body) const {
   constexpr double kUnseen = 1e-3;
   const auto seconds = static_cast<double>(dt());
   assert(seconds > 0.0 && body.dynamics);
-  const btDiscreteDynamicsWorld* world = body.world();
-  const double gravity = world ? static_cast<double>(world->getGravity().length()) : 0.0;
-  return std::max(kUnseen * gravity * seconds, body.dynamics->roundingSpeed());
+  return std::max(kUnseen * static_cast<double>(body.gravity.length()) * seconds, body.dynamics->roundingSpeed());
 }
 
 std::vector<RowSource*> DeformableSolver::Impl::rowSources() {
