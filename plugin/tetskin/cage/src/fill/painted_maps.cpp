@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <string>
 
 namespace tetskin {
@@ -59,35 +61,65 @@ std::vector<double> welded(const TriangleMesh& mesh, const std::vector<double>& 
     ++counts[first[v]];
   }
   for (std::size_t v = 0; v < values.size(); ++v) {  // the first at a position comes before its copies
-    sums[v] = first[v] < v ? sums[first[v]] : counts[v] > 0.0 ? sums[v] / counts[v] : 0.0;
+    sums[v] = first[v] < v ? sums[first[v]] : counts[v] > 0.0 ? sums[v] / counts[v] : scaled(values[v], mean);
   }
   return sums;
 }
+
+/// Differences between the eighths of a tet, relative to those of the whole map, up to which they are not divided
+/// again.
+constexpr double kEven = 0.02;
+
+/// A weighted mean: of all alike, if all weights are 0.
+class Mean {
+ public:
+  void add(double weight, double value) {
+    sum_ += weight * value;
+    weights_ += weight;
+    plain_ += value;
+    ++count_;
+    least_ = std::min(least_, value);
+    greatest_ = std::max(greatest_, value);
+  }
+  double value() const { return weights_ > 0.0 ? sum_ / weights_ : plain_ / count_; }
+  double range() const { return greatest_ - least_; }
+
+ private:
+  double sum_ = 0.0, weights_ = 0.0, plain_ = 0.0, count_ = 0.0;
+  double least_ = std::numeric_limits<double>::infinity(), greatest_ = -least_;
+};
 
 /// The map inside: the value of the nearest point of the surface.
 class MapInside {
  public:
   MapInside(const TriangleMesh& mesh, std::vector<double> ofVertices)
-      : mesh_(mesh), bvh_(mesh), ofVertices_(std::move(ofVertices)) {}
+      : mesh_(mesh), bvh_(mesh), ofVertices_(std::move(ofVertices)) {
+    const auto [least, greatest] = std::minmax_element(ofVertices_.begin(), ofVertices_.end());
+    even_ = kEven * (*greatest - *least);
+  }
 
-  /// The weighted mean over the tet's 64 small tets, by their volume fractions: over all alike, if they are empty.
+  /// The mean over the tet's eighths or, where these differ, over its 64 small tets.
+  /// fractions  volume fractions of the small tets, which weight them; null: 1
   double meanOver(const TetCorners& tet, const std::uint8_t* fractions) {
-    double sum = 0.0, weights = 0.0, plain = 0.0;
-    for (const TetCorners& eighth : refinedTet(tet)) {
-      for (const TetCorners& small : refinedTet(eighth)) {
-        const double weight = fractions ? *fractions++ : 1.0;
-        if (!(weight > 0.0) && weights > 0.0) continue;
-        const double value = at(0.25 * (small[0] + small[1] + small[2] + small[3]));
-        sum += weight * value;
-        weights += weight;
-        plain += value;
-      }
+    constexpr std::size_t kEighth = kFineTets / 8;
+    const std::array<TetCorners, 8> eighths = refinedTet(tet);
+    Mean rough, fine;
+    for (std::size_t e = 0; e < eighths.size(); ++e) {
+      const double weight =
+          fractions ? std::accumulate(fractions + kEighth * e, fractions + kEighth * (e + 1), 0.0) : 1.0;
+      rough.add(weight, at(eighths[e]));
     }
-    return weights > 0.0 ? sum / weights : plain / static_cast<double>(kFineTets);
+    if (rough.range() <= even_) return rough.value();
+    for (const TetCorners& eighth : eighths) {
+      for (const TetCorners& small : refinedTet(eighth)) fine.add(fractions ? *fractions++ : 1.0, at(small));
+    }
+    return fine.value();
   }
 
  private:
-  double at(const Eigen::Vector3d& p) {
+  /// The value at a tet's centroid.
+  double at(const TetCorners& tet) {
+    const Eigen::Vector3d p = 0.25 * (tet[0] + tet[1] + tet[2] + tet[3]);
     nearest_ = bvh_.nearest(p, nearest_);
     const std::array<int, 3>& triangle = mesh_.triangles[static_cast<std::size_t>(nearest_.triangle)];
     const Eigen::Vector3d weights = closestPointOnTriangle(p, cornersOf(mesh_, triangle)).weights;
@@ -100,6 +132,7 @@ class MapInside {
   const TriangleMesh& mesh_;
   TriangleBvh bvh_;
   std::vector<double> ofVertices_;
+  double even_ = 0.0;
   NearestPoint nearest_;
 };
 
@@ -170,11 +203,7 @@ std::vector<double> massesFor(const Cage& cage, const std::vector<double>& befor
     for (std::size_t t = 0; t < material.size(); ++t) sum += material[t] * (ofTets.empty() ? 1.0 : ofTets[t]);
     return sum;
   };
-  const auto sumOf = [&] {
-    double sum = 0.0;
-    for (const double mass : masses) sum += mass;
-    return sum;
-  };
+  const auto sumOf = [&] { return std::accumulate(masses.begin(), masses.end(), 0.0); };
   if (masses.empty()) {
     masses.assign(cage.mesh.nodeCount(), 0.0);
     for (std::size_t t = 0; t < material.size(); ++t) {
