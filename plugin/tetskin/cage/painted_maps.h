@@ -25,8 +25,8 @@ struct SpreadMap {
 
 /// Spreads a map from the vertices of a mesh over the tets and nodes of its cage. Vertices say nothing about the
 /// inside: there, a point has the value of the nearest point of the surface, interpolated over its triangle. It is
-/// averaged over the parts of each tet that the cage's volume fractions count as material. Where surfaces of two regions
-/// are near to each other, a point in one of them has a value of its own surface.
+/// averaged over the parts of each tet that the cage's volume fractions count as material. Where surfaces of two
+/// regions are near to each other, a point in one of them has a value of its own surface.
 ///
 /// Vertices at one position, as at texture seams, get their mean first; vertices that no triangle uses do not count.
 /// If all values are equal, the results are exactly this value.

@@ -55,8 +55,8 @@ std::vector<double> eightfold(const std::vector<double>& values) {
   return result;
 }
 
-/// Distributes masses by the tets' filled volumes and densities, so that their sum stays the same; an empty tet gets a share that
-/// holds its nodes.
+/// Distributes masses by the tets' filled volumes and densities, so that their sum stays the same; an empty tet gets a
+/// share that holds its nodes.
 void refineMasses(const Cage& linear, Cage& refined) {
   if (linear.masses.empty()) return;
   refined.masses.assign(refined.mesh.nodeCount(), 0.0);
