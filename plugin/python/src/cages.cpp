@@ -70,7 +70,9 @@ CageModel painted(const CageModel& model, const MeshLike& mesh, const std::optio
 std::pair<Column<double>, Column<double>> spreadOver(const CageModel& model, const MeshLike& mesh,
                                                      const ArrayLike& values, bool geometric) {
   const MeshModel surface = meshOf(mesh);
-  const std::vector<double> numbers = numbersOf(values, "values");
+  nb::object array = nb::module_::import_("numpy").attr("asarray")(values.object);
+  if (nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b") array = array.attr("astype")("float64");
+  const std::vector<double> numbers = numbersOf(ArrayLike{array}, "values");
   const MapMean mean = geometric ? MapMean::Geometric : MapMean::Arithmetic;
   SpreadMap map = take(released([&] { return spreadMap(*model.cage, *surface.mesh, numbers, mean); }));
   return {newColumn(std::move(map.tets)), newColumn(std::move(map.nodes))};
@@ -187,8 +189,9 @@ void bindCages(nb::module_& module) {
       "(vertices,) factors above 0, or None: 1. The inside has the values of the nearest surface. Calibrate "
       "after painting.");
   module.def("spread_map", spreadOver, "cage"_a, "mesh"_a, "values"_a, nb::kw_only(), "geometric"_a = false,
-             "Any map of (vertices,) numbers, averaged over what each tet holds: (t,) and (n,) float64, by tet and by "
-             "node. geometric: by logarithms, as the stiffness. For nodes to pin: those of at least 0.5 of a mask.");
+             "Any map of (vertices,) numbers, or a mask of booleans, averaged over what each tet holds: (t,) and (n,) "
+             "float64, by tet and by node. geometric: by logarithms, as the stiffness. For nodes to pin: those of at "
+             "least 0.5 of a mask.");
   module.def("refine_quadratic", quadratic, "cage"_a,
              "A cage of quadratic tets: each tet of the cage becomes one, stored as eight. For meshes that fill their "
              "body.");
