@@ -185,9 +185,9 @@ void bindCages(nb::module_& module) {
       "compare. progress: as in create_cage.");
   module.def(
       "paint_cage", painted, "cage"_a, "mesh"_a, nb::kw_only(), "stiffness"_a = nb::none(), "density"_a = nb::none(),
-      "A copy of the cage with maps painted on its mesh, or on a level of detail of it, instead of those before: "
-      "(vertices,) factors above 0, or None: 1. The inside has the values of the nearest surface. Calibrate "
-      "after painting.");
+      "A copy of the cage with maps painted on its mesh, or on a level of detail of it: (vertices,) factors above "
+      "0, which replace those before; None leaves them. The inside has the values of the nearest surface. "
+      "Calibrate after painting.");
   module.def("spread_map", spreadOver, "cage"_a, "mesh"_a, "values"_a, nb::kw_only(), "geometric"_a = false,
              "Any map of (vertices,) numbers, or a mask of booleans, averaged over what each tet holds: (t,) and (n,) "
              "float64, by tet and by node. geometric: by logarithms, as the stiffness. For nodes to pin: those of at "
