@@ -4,6 +4,7 @@
 // Builds a cage of tets around any mesh, or makes one of tets that fill it, as a file for Bullet, tetskin or a meshing
 // program.
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/cage/painted_maps.h>
 #include <tetskin/core/cage.h>
 #include <tetskin/io/files.h>
 
@@ -20,14 +21,34 @@ using namespace tetskin::scenes;
 
 struct CageCommand {
   ModelOptions model;
-  std::string filled;      ///< tets that fill the mesh; empty: the cage is built
-  bool quadratic = false;  ///< each of these becomes a quadratic tet
-  bool hasMesh = false;    ///< the cage of --filled is checked against a mesh
+  std::string filled;                    ///< tets that fill the mesh; empty: the cage is built
+  bool quadratic = false;                ///< each of these becomes a quadratic tet
+  bool hasMesh = false;                  ///< the cage of --filled is checked against a mesh
+  std::string stiffnessMap, densityMap;  ///< see `mapOf`; empty: none
   std::string output;
   std::string json;
   bool loose = false;
   bool quiet = false;
 };
+
+/// The map that an option names: NAME, or NAME:LOW:HIGH, where 0 stands for LOW and 1 for HIGH.
+std::vector<double> mapOf(const CageCommand& command, const std::string& option) {
+  if (option.empty()) return {};
+  if (command.model.mesh.empty()) throw InputError("a map is read from a file of --mesh");
+  const std::size_t range = option.find(':');
+  double low = 0.0, high = 1.0;
+  char after = 0;
+  if (range != std::string::npos && std::sscanf(option.c_str() + range, ":%lf:%lf%c", &low, &high, &after) != 2)
+    throw InputError("'" + option + "' is not NAME:LOW:HIGH, such as red:1:4");
+  Result<std::vector<double>> map = loadVertexMap(command.model.mesh, option.substr(0, range));
+  require(map.status());
+  for (double& value : map.value()) value = low + value * (high - low);
+  return std::move(map).value();
+}
+
+PaintedMaps mapsOf(const CageCommand& command) {
+  return {mapOf(command, command.stiffnessMap), mapOf(command, command.densityMap)};
+}
 
 nlohmann::ordered_json summarise(const Surface& surface, const CageReport& report, const EmbedReport& fit,
                                  const CalibrationReport& calibration) {
@@ -75,6 +96,9 @@ int run(CageCommand command) {
   CageReport report;
   CageOptions options = cageOptionsOf(command.model);
   options.fit = !command.loose;
+  PaintedMaps maps = mapsOf(command);
+  options.stiffness = std::move(maps.stiffness);
+  options.density = std::move(maps.density);
   announceCage(options.targetTets, command.model);
   Cage cage = cageFor(surface, options, &report);
   CalibrationReport calibration;
@@ -106,11 +130,17 @@ int runFilled(const CageCommand& command) {
     cage = std::move(refined).value();
     count = quadraticTetsOf(cage);
   }
+  const PaintedMaps maps = mapsOf(command);  // refuses any without a mesh
+  EmbedReport fit;
+  Surface surface;
+  if (command.hasMesh) {
+    surface = loadSurface(command.model);
+    if (const Status painted = paintCage(cage, surface.mesh, maps); !painted.ok())
+      throw InputError(surface.name + ": " + painted.message);
+  }
   require(saveCage(cage, command.output));
 
-  EmbedReport fit;
   if (command.hasMesh) {
-    Surface surface = loadSurface(command.model);
     gatherLooseVertices(surface, cage, command.quiet);
     fit = fitOf(cage, surface);
   }
@@ -135,6 +165,8 @@ int main(int argc, char** argv) {
                    {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "a cage of about 3,000 tets around your mesh"},
                      {"tetskin_cage --mesh yours.obj --tets 300 --calibrate -o yours_cage.vtk --json cage.json",
                       "about 300 tets, calibrated to the stiffness of the mesh, and a JSON file of their quality"},
+                     {"tetskin_cage --mesh painted.obj --stiffness-map red:1:4 -o yours_cage.vtk",
+                      "four times as stiff where the mesh's vertices are red"},
                      {"tetskin_cage --filled yours.vtk --quadratic -o yours_cage.vtk",
                       "a cage of quadratic tets, one for each tet of a mesh that fills the body"}},
                     "a vertex lies outside the cage"});
@@ -143,6 +175,10 @@ int main(int argc, char** argv) {
                 "Tets that fill the mesh, to be the cage: those of second order become quadratic tets");
   line.addFlag("--quadratic", command.quadratic,
                "With --filled: a quadratic tet, of eight tets, for each tet, unless the file has some");
+  line.addText("--stiffness-map", command.stiffnessMap,
+               "Map of the mesh's file, of factors of the stiffness: a PLY property, a glTF attribute, or red, green, "
+               "blue or alpha; NAME:LOW:HIGH takes 0 as LOW and 1 as HIGH");
+  line.addText("--density-map", command.densityMap, "The same for the density");
   line.addOutput("-o,--output", command.output,
                  ".vtk for the cage with all its data; .ele with .node for the tets alone", CommandLine::Need::Required,
                  {".vtk", ".node", ".ele"});

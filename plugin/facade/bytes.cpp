@@ -14,7 +14,7 @@ struct Head {
   char tag[8];
 };
 constexpr std::size_t kHashed = sizeof(Head::hash);
-constexpr char kMesh[] = "tsk-me02", kCage[] = "tsk-ca02";
+constexpr char kMesh[] = "tsk-me02", kCage[] = "tsk-ca03";
 
 /// An array of numbers, or of vectors of them.
 template <class T>
@@ -43,6 +43,8 @@ void serialize(StateStream& stream, ReportedCage& cage) {
   array(stream, cage.vertexTets);
   array(stream, cage.volumeFraction);
   array(stream, cage.stiffnessFactor);
+  array(stream, cage.paintedStiffness);
+  array(stream, cage.paintedDensity);
   array(stream, cage.masses);
   array(stream, cage.component);
   array(stream, cage.sourceTet);

@@ -139,6 +139,10 @@ export interface CageOptions {
   duplicateElements?: boolean;
   /** Whether the boundary is moved towards the surface; true */
   fit?: boolean;
+  /** One factor above 0 per vertex of the mesh, of the stiffness there; the inside has those of the nearest surface */
+  stiffness?: Numbers;
+  /** The same for the density */
+  density?: Numbers;
   /** Called with the fraction done, 0 to 1; cancels by returning false. Its exceptions are passed on. */
   progress?: (fraction: number) => boolean | void;
 }
@@ -164,6 +168,10 @@ export interface Cage extends Thing {
   readonly vertexTets: Int32Array;
   /** For each tet, the number of the quadratic tet that it is an eighth of, or -1; or empty. */
   readonly quadraticTet: Int32Array;
+  /** For each tet, the painted factor of the stiffness; or empty. */
+  readonly paintedStiffness: Float64Array;
+  /** For each node, its mass for a density of 1, or for the painted density; or empty. */
+  readonly masses: Float64Array;
   /** e x 2 node indices of all edges, a new array. */
   edges(): Int32Array;
   /** f x 3 node indices of the boundary's faces, outwards, a new array. */

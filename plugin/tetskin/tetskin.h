@@ -32,6 +32,7 @@
 #endif
 #ifdef TETSKIN_HAS_CAGE
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/cage/painted_maps.h>
 #endif
 #ifdef TETSKIN_HAS_CONTACT
 #include <tetskin/contact/soft_contacts.h>

@@ -3,6 +3,8 @@
 #include <tetskin/core/cage.h>
 #include <tetskin/io/files.h>
 
+#include <algorithm>
+
 #include "command.h"
 #include "scenes/model.h"
 #include "support/odd_meshes.h"
@@ -46,6 +48,30 @@ TEST_F(CageCommand, ASplitCageIsOfUseToItsMeshAlone) {
   EXPECT_EQ(fits.status, 0) << fits.err;
   expectRefused(drop("4000"), "c.vtk is not a cage of ");
   expectRefused(drop("4000"), "with tetskin_cage");
+}
+
+TEST_F(CageCommand, PaintsMapsOfTheMeshsFile) {
+  const std::string box =
+      "v 0 0 0 0 0 0\nv 4 0 0 1 0 0\nv 0 1 0 0 0 0\nv 4 1 0 1 0 0\nv 0 0 1 0 0 0\nv 4 0 1 1 0 0\nv 0 1 1 0 0 0\n"
+      "v 4 1 1 1 0 0\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  folder.write("box.obj", box);
+  const auto painted = [&](const std::vector<std::string>& maps) {
+    std::vector<std::string> arguments = {"--mesh", "box.obj", "--tets", "200", "-o", "c.vtk", "--quiet"};
+    arguments.insert(arguments.end(), maps.begin(), maps.end());
+    return cage(arguments);
+  };
+  const CommandResult result = painted({"--stiffness-map", "red:1:4", "--density-map", "green:2:3"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Result<Cage> read = loadCage(folder.path("c.vtk"));
+  ASSERT_TRUE(read.ok()) << read.status().message;
+  EXPECT_EQ(read.value().paintedDensity, std::vector<double>(read.value().mesh.tetCount(), 2.0));
+  const auto [least, greatest] =
+      std::minmax_element(read.value().paintedStiffness.begin(), read.value().paintedStiffness.end());
+  EXPECT_LT(*least, 1.3);
+  EXPECT_GT(*greatest, 3.2);
+  expectRefused(painted({"--stiffness-map", "rot"}), "box.obj: has no map 'rot'");
+  expectRefused(painted({"--stiffness-map", "red:1"}), "'red:1' is not NAME:LOW:HIGH");
+  expectRefused(painted({"--stiffness-map", "red"}), "the stiffness map is 0.000000 at vertex 0");
 }
 
 TEST_F(CageCommand, TellsInOneLineWhatOfAMeshWasNotRead) {

@@ -19,6 +19,8 @@ void expectSame(const Cage& a, const Cage& b) {
   EXPECT_EQ(a.vertexTets, b.vertexTets);
   EXPECT_EQ(a.volumeFraction, b.volumeFraction);
   EXPECT_EQ(a.stiffnessFactor, b.stiffnessFactor);
+  EXPECT_EQ(a.paintedStiffness, b.paintedStiffness);
+  EXPECT_EQ(a.paintedDensity, b.paintedDensity);
   EXPECT_EQ(a.masses, b.masses);
   EXPECT_EQ(a.component, b.component);
   EXPECT_EQ(a.sourceTet, b.sourceTet);
@@ -54,6 +56,18 @@ TEST(CageFiles, AllThatIsKnownReadsBackExactly) {
   expectCageReadsBack(platesOfCopies().cage);
   expectCageReadsBack(platesOfCopies(1.0).cage);
   expectCageReadsBack(smallCage());
+}
+
+TEST(CageFiles, PaintedMapsReadBackExactly) {
+  Cage cage = platesOfCopies().cage;
+  for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
+    cage.paintedStiffness.push_back(0.1 + static_cast<double>(t) / 3.0);
+    cage.paintedDensity.push_back(1.0 / static_cast<double>(t + 7));
+  }
+  expectCageReadsBack(cage);
+  Cage bare(cage.mesh);  // the only data of its cells
+  bare.paintedDensity = cage.paintedDensity;
+  expectCageReadsBack(bare);
 }
 
 TEST(CageFiles, WhatIsNotKnownIsLeftOut) {

@@ -99,6 +99,23 @@ test("a cage holds its mesh, and is the same each time", () => {
   assert.ok(cage.boundaryFaces().every(node => node >= 0 && node < cage.nodeCount));
 });
 
+test("maps are painted on a cage's mesh", () => {
+  const factors = Array.from({length: mesh.vertexCount}, (_, v) => mesh.positions[3 * v] > 0 ? 4 : 1);
+  const options = {targetTets: 500}, plain = tetskin.createCage(mesh, options);
+  const cage = tetskin.createCage(mesh, {...options, stiffness: factors, density: Float32Array.from(factors)});
+  assert.deepEqual(cage.nodes, plain.nodes);
+  assert.equal(plain.paintedStiffness.length, 0);
+  assert.equal(cage.paintedStiffness.length, cage.tetCount);
+  assert.ok(Math.min(...cage.paintedStiffness) === 1 && Math.abs(Math.max(...cage.paintedStiffness) - 4) < 1e-9);
+  const sum = masses => masses.reduce((a, b) => a + b);
+  assert.ok(sum(cage.masses) > 1.2 * sum(plain.masses));
+  const ones = tetskin.createCage(mesh, {...options, stiffness: factors.map(() => 1)});
+  assert.deepEqual(ones.masses, plain.masses);
+  assert.equal(ones.paintedStiffness.length, 0);
+  assert.throws(() => tetskin.createCage(mesh, {density: [1, 2]}), failure("SizeMismatch"));
+  assert.throws(() => tetskin.createCage(mesh, {density: factors.map(() => 0)}), failure("InvalidOption"));
+});
+
 test("progress cancels by false, and what it throws is thrown", () => {
   assert.throws(() => tetskin.createCage(mesh, {progress: () => false}), failure("Cancelled"));
   assert.throws(() => tetskin.createCage(mesh, {progress() { throw new RangeError("mine"); }}), RangeError);

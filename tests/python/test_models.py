@@ -108,12 +108,60 @@ def test_other_formats_name_trimesh(tmp_path):
     assert error.value.code == ts.StatusCode.UNSUPPORTED_FORMAT
 
 
+def test_maps_are_painted(mesh, cage, tmp_path):
+    right = mesh.positions[:, 0] > 0
+    factors = np.where(right, 4.0, 1.0)
+    painted = ts.create_cage(mesh, target_tets=200, stiffness=factors, density=factors)
+    assert np.array_equal(painted.nodes, cage.nodes)
+    middle = cage.nodes[cage.tets].mean(1)[:, 0]
+    assert np.allclose(painted.painted_stiffness[middle > 0.4], 4) and np.allclose(
+        painted.painted_stiffness[middle < -0.4], 1
+    )
+    assert painted.masses.sum() == pytest.approx(2.5 * cage.masses.sum(), rel=0.02)
+    assert equal(ts.paint_cage(cage, mesh, stiffness=factors, density=factors.tolist()), painted)
+    assert equal(ts.create_cage(mesh, target_tets=200, stiffness=np.ones(mesh.vertex_count)), cage)
+    assert equal(pickle.loads(pickle.dumps(painted)), painted)
+    painted.save(tmp_path / "painted.vtk")
+    assert equal(ts.load_cage(tmp_path / "painted.vtk"), painted)
+    tets, nodes = ts.spread_map(cage, mesh, right)
+    assert tets.shape == (cage.tet_count,) and nodes.shape == (cage.node_count,)
+    assert (nodes[cage.nodes[:, 0] > 0.4] > 0.9).all() and (nodes[cage.nodes[:, 0] < -0.4] < 0.1).all()
+    assert np.allclose(ts.spread_map(cage, mesh, factors, geometric=True)[0], painted.painted_stiffness)
+
+
+@pytest.mark.parametrize("spoil", [0.0, -1.0, np.nan, None])
+def test_bad_maps_are_refused(mesh, cage, spoil):
+    factors = np.ones(mesh.vertex_count)
+    factors = factors[1:] if spoil is None else np.where(np.arange(len(factors)) == 3, spoil, factors)
+    for paint in (
+        lambda: ts.create_cage(mesh, target_tets=200, density=factors),
+        lambda: ts.paint_cage(cage, mesh, density=factors),
+    ):
+        with pytest.raises(ts.Error, match="the density map"):
+            paint()
+
+
+def test_maps_are_read(tmp_path):
+    positions, triangles = torus()
+    values = 1 + 0.25 * np.arange(len(positions))
+    lines = ply(positions, triangles).decode().replace("double z\n", "double z\nproperty float stiff\n").splitlines()
+    first = lines.index("end_header") + 1
+    lines[first : first + len(values)] = [f"{l} {v!r}" for l, v in zip(lines[first:], values.tolist())]
+    path = tmp_path / "painted.ply"
+    path.write_text("\n".join(lines) + "\n")
+    assert np.array_equal(ts.load_vertex_map(path, "stiff"), values)
+    with pytest.raises(ts.Error, match="painted.ply.*'soft'.*'stiff'"):
+        ts.load_vertex_map(path, "soft")
+
+
 ARRAYS = [
     "nodes",
     "tets",
     "vertex_tets",
     "volume_fraction",
     "stiffness_factor",
+    "painted_stiffness",
+    "painted_density",
     "masses",
     "component",
     "source_tet",

@@ -48,6 +48,8 @@ properties(Cage, {
   tets: [viewOf(Int32Array), "cageTets"],
   vertexTets: [viewOf(Int32Array), "cageVertexTets"],
   quadraticTet: [viewOf(Int32Array), "cageQuadraticTet"],
+  paintedStiffness: [viewOf(Float64Array), "cagePaintedStiffness"],
+  masses: [viewOf(Float64Array), "cageMasses"],
   report: [kWords, "cageReport"],
 });
 
@@ -74,7 +76,9 @@ properties(Palette, {
 });
 
 const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
-const kCageOptions = {targetTets: 3000, duplicateElements: true, fit: true, progress: undefined};
+const kCageOptions = {
+  targetTets: 3000, duplicateElements: true, fit: true, stiffness: [], density: [], progress: undefined,
+};
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
 const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false, sleepAfter: 0.5};
 const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
@@ -120,10 +124,15 @@ class Tetskin {
   }
 
   createCage(mesh, options) {
-    const {targetTets, duplicateElements, fit, progress} = optionsOf(options, kCageOptions);
+    const {targetTets, duplicateElements, fit, stiffness, density, progress} = optionsOf(options, kCageOptions);
     const handle = this.handle(mesh, Mesh, "mesh");
-    return this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.createCage(
-      handle, targetTets, duplicateElements, fit, tells)));
+    const mapOf = (map, name) => {
+      if ([0, mesh.vertexCount].includes(map.length)) return doubles(map);
+      throw new TetskinError("SizeMismatch", `${name}: ${map.length} numbers for ${mesh.vertexCount} vertices`);
+    };
+    return this.withMemory([mapOf(stiffness, "stiffness"), mapOf(density, "density")], (...maps) =>
+      this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.createCage(
+        handle, targetTets, duplicateElements, fit, ...maps, tells))));
   }
   calibrate(cage, options) {
     const {poissonRatio, modeCount, progress} = optionsOf(options, kCalibrationOptions);

@@ -121,13 +121,16 @@ View meshBounds(const MeshModel& model) {
 }
 
 /// By value, like calibrateCage: the progress function may delete the mesh that is being used.
-CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, bool tells) {
+CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, Doubles stiffness,
+                       Doubles density, bool tells) {
   if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
     fail(StatusCode::InvalidOption, "targetTets: must be from 1 to " + std::to_string(Limits::kMaxTargetTets));
   CageOptions options;
   options.targetTets = static_cast<std::size_t>(targetTets);
   options.duplicateElements = duplicateElements;
   options.fit = fit;
+  options.stiffness.assign(stiffness.begin(), stiffness.end());
+  options.density.assign(density.begin(), density.end());
   options.progress = progressIf(tells);
   CageReport report;
   Cage cage = take(createCage(*mesh.mesh, options, &report));
@@ -182,6 +185,12 @@ View cageVertexTets(const CageModel& model) {
 View cageQuadraticTet(const CageModel& model) {
   return viewNumbers(model.cage->quadraticTet.data(), model.cage->quadraticTet.size());
 }
+View cagePaintedStiffness(const CageModel& model) {
+  return viewNumbers(model.cage->paintedStiffness.data(), model.cage->paintedStiffness.size());
+}
+View cageMasses(const CageModel& model) {
+  return viewNumbers(model.cage->masses.data(), model.cage->masses.size());
+}
 template <std::size_t K>
 View lentRows(const std::vector<std::array<int, K>>& rows) {
   std::vector<int> numbers;
@@ -227,6 +236,8 @@ EMSCRIPTEN_BINDINGS(models) {
   expose<&cageTets>("cageTets");
   expose<&cageVertexTets>("cageVertexTets");
   expose<&cageQuadraticTet>("cageQuadraticTet");
+  expose<&cagePaintedStiffness>("cagePaintedStiffness");
+  expose<&cageMasses>("cageMasses");
   expose<&cageEdges>("cageEdges");
   expose<&cageBoundaryFaces>("cageBoundaryFaces");
   expose<&cageReport>("cageReport");

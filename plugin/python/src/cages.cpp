@@ -3,6 +3,7 @@
 #include "models.h"
 
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/cage/painted_maps.h>
 #include <tetskin/elastic/calibration.h>
 #include <tetskin/io/files.h>
 
@@ -18,7 +19,16 @@ CageModel made(const ArrayLike& nodes, const ArrayLike& tets) {
   return cageModel(Cage(std::move(mesh)));
 }
 
+std::vector<double> mapValues(const std::optional<ArrayLike>& array, const char* name) {
+  if (!array) return {};
+  const Numbers<double> numbers(*array, name, 0);
+  // An empty array is one of the wrong length, not none.
+  if (numbers.rows() == 0) fail(StatusCode::SizeMismatch, std::string(name) + ": no values; pass one for each vertex");
+  return {numbers.data(), numbers.data() + numbers.rows()};
+}
+
 CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateElements, bool fit,
+                  const std::optional<ArrayLike>& stiffness, const std::optional<ArrayLike>& density,
                   const Progress& progress) {
   const MeshModel model = meshOf(mesh);
   ProgressCall call(progress, "cage");
@@ -26,6 +36,8 @@ CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateEl
   options.targetTets = targetTets;
   options.duplicateElements = duplicateElements;
   options.fit = fit;
+  options.stiffness = mapValues(stiffness, "stiffness");
+  options.density = mapValues(density, "density");
   options.progress = call.function();
   CageReport report;
   Result<Cage> cage = released([&] { return createCage(*model.mesh, options, &report); });
@@ -44,6 +56,26 @@ CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount,
   call.rethrow();
   check(report.status());
   return cageModel(std::move(cage), model.cage->report + report.value().describe());
+}
+
+CageModel painted(const CageModel& model, const MeshLike& mesh, const std::optional<ArrayLike>& stiffness,
+                  const std::optional<ArrayLike>& density) {
+  const MeshModel surface = meshOf(mesh);
+  const PaintedMaps maps{mapValues(stiffness, "stiffness"), mapValues(density, "density")};
+  Cage cage = *model.cage;
+  check(released([&] { return paintCage(cage, *surface.mesh, maps); }));
+  return cageModel(std::move(cage), model.cage->report);
+}
+
+std::pair<Column<double>, Column<double>> spreadOver(const CageModel& model, const MeshLike& mesh,
+                                                     const ArrayLike& values, bool geometric) {
+  const MeshModel surface = meshOf(mesh);
+  nb::object array = nb::module_::import_("numpy").attr("asarray")(values.object);
+  if (nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b") array = array.attr("astype")("float64");
+  const std::vector<double> numbers = mapValues(ArrayLike{array}, "values");
+  const MapMean mean = geometric ? MapMean::Geometric : MapMean::Arithmetic;
+  SpreadMap map = take(released([&] { return spreadMap(*model.cage, *surface.mesh, numbers, mean); }));
+  return {newColumn(std::move(map.tets)), newColumn(std::move(map.nodes))};
 }
 
 CageModel quadratic(const CageModel& model) {
@@ -95,8 +127,13 @@ void bindCages(nb::module_& module) {
                    "(t,) float64, 0 to 1: fraction of the tet's volume inside the mesh. A read-only view.")
       .def_prop_ro("stiffness_factor", arrayOf<&Cage::stiffnessFactor>(),
                    "(t,) float64: multiplies the stiffness; see calibrate. A read-only view.")
+      .def_prop_ro("painted_stiffness", arrayOf<&Cage::paintedStiffness>(),
+                   "(t,) float64, or none: factors of the stiffness from a painted map. A read-only view.")
+      .def_prop_ro("painted_density", arrayOf<&Cage::paintedDensity>(),
+                   "(t,) float64, or none: factors of the density, which masses contain. A read-only view.")
       .def_prop_ro("masses", arrayOf<&Cage::masses>(),
-                   "(n,) float64, for a density of 1: their sum is the mesh's volume. A read-only view.")
+                   "(n,) float64, for a density of 1: their sum is the mesh's volume, or the integral of its painted "
+                   "density. A read-only view.")
       .def_prop_ro("component", arrayOf<&Cage::component>(), "(t,) int32: component of the cage. A read-only view.")
       .def_prop_ro("source_tet", arrayOf<&Cage::sourceTet>(),
                    "(t,) int32: equal for all duplicates of one tet. A read-only view.")
@@ -130,11 +167,13 @@ void bindCages(nb::module_& module) {
 
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
-      "fit"_a = true, "progress"_a.none() = nb::none(),
+      "fit"_a = true, "stiffness"_a = nb::none(), "density"_a = nb::none(), "progress"_a.none() = nb::none(),
       "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same input "
       "gives the same cage. Takes about half a second for 60,000 triangles; the GIL is released.\n\n"
       "duplicate_elements: if regions of the mesh are less than a tet apart, each gets its own copy of the tet. fit: "
-      "move boundary nodes towards the surface. progress: called with the fraction done, from 0 to 1; returns False to "
+      "move boundary nodes towards the surface. stiffness, density: (vertices,) factors above 0, painted on the mesh: "
+      "see "
+      "paint_cage. progress: called with the fraction done, from 0 to 1; returns False to "
       "cancel, which raises an Error with the code CANCELLED; an exception in it is raised. True: prints a bar. "
       "Ctrl-C, or a notebook's interrupt button, always cancels.");
   module.def(
@@ -144,6 +183,15 @@ void bindCages(nb::module_& module) {
       "stiff. Takes about two seconds for 3,000 tets; the GIL is released.\n\n"
       "poisson_ratio: 0 to below 0.5, of the material that will be simulated. mode_count: number of vibrations to "
       "compare. progress: as in create_cage.");
+  module.def(
+      "paint_cage", painted, "cage"_a, "mesh"_a, nb::kw_only(), "stiffness"_a = nb::none(), "density"_a = nb::none(),
+      "A copy of the cage with maps painted on its mesh, or on a level of detail of it: (vertices,) factors above "
+      "0, which replace those before; None leaves them. The inside has the values of the nearest surface. "
+      "Calibrate after painting.");
+  module.def("spread_map", spreadOver, "cage"_a, "mesh"_a, "values"_a, nb::kw_only(), "geometric"_a = false,
+             "Any map of (vertices,) numbers, or a mask of booleans, averaged over what each tet holds: (t,) and (n,) "
+             "float64, by tet and by node. geometric: by logarithms, as the stiffness. For nodes to pin: those of at "
+             "least 0.5 of a mask.");
   module.def("refine_quadratic", quadratic, "cage"_a,
              "A cage of quadratic tets: each tet of the cage becomes one, stored as eight. For meshes that fill their "
              "body.");

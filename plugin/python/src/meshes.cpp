@@ -126,6 +126,16 @@ void bindMeshes(nb::module_& module) {
           "triangle_count", [](const MeshModel& m) { return m.mesh->triangleCount(); }, "Number of triangles.");
 
   module.def(
+      "load_vertex_map",
+      [](const PathLike& path, const std::string& name) {
+        return newColumn(released([&, file = path.text()] { return take(loadVertexMap(file, name)); }));
+      },
+      "path"_a, "name"_a,
+      "Reads a map painted on the mesh of load_mesh: (vertices,) float64. name: a property of a .ply file's vertices; "
+      "an "
+      "attribute, such as _STIFFNESS, of a glTF file; or red, green, blue or alpha, of vertex colours of these and "
+      ".obj, from 0 to 1.");
+  module.def(
       "load_mesh", loaded, "path"_a,
       "Reads a render mesh: .obj, .ply, .stl, .off, and .gltf, .glb and .vrm of glTF 2.0. Other formats: trimesh, "
       "whose meshes, and those of Open3D and meshio, are taken wherever a TriangleMesh is.");

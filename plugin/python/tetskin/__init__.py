@@ -14,10 +14,11 @@
 """
 from ._core import (AppliedForces, Body, BonePalette, Cage, Contacts, ElasticBody, Error, GlbWriter, Hit, ImpulseResult,
                     Joint, Recorder, Replay, RigidBody, Shape, Skin, Spring, StatusCode, SurfacePoint, TriangleMesh,
-                    Weld, World, Wrench, __version__, calibrate, create_cage, load_cage, load_mesh, refine_quadratic)
+                    Weld, World, Wrench, __version__, calibrate, create_cage, load_cage, load_mesh, load_vertex_map,
+                    paint_cage, refine_quadratic, spread_map)
 from .page import Film
 
 __all__ = ["AppliedForces", "Body", "BonePalette", "Cage", "Contacts", "ElasticBody", "Error", "Film", "GlbWriter",
            "Hit", "ImpulseResult", "Joint", "Recorder", "Replay", "RigidBody", "Shape", "Skin", "Spring", "StatusCode",
            "SurfacePoint", "TriangleMesh", "Weld", "World", "Wrench", "__version__", "calibrate", "create_cage",
-           "load_cage", "load_mesh", "refine_quadratic"]
+           "load_cage", "load_mesh", "load_vertex_map", "paint_cage", "refine_quadratic", "spread_map"]

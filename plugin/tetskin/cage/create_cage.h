@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace tetskin {
 
@@ -21,6 +22,10 @@ struct CageOptions {
   bool duplicateElements = true;
   /// Move boundary nodes towards the surface: a smaller cage, whose tets are no longer all congruent.
   bool fit = true;
+  /// vertexCount factors above 0 of Young's modulus, painted on the mesh; empty: 1. They are spread inside, and stored
+  /// in the cage: see `paintCage`.
+  std::vector<double> stiffness{};
+  std::vector<double> density{};  ///< the same for the density
   /// Called now and then with the fraction done, an estimate from 0 to 1, never decreasing; returns false to cancel.
   /// May be empty.
   std::function<bool(double fraction)> progress{};
@@ -82,8 +87,9 @@ struct TETSKIN_CAGE_API CageReport {
 /// Cost     about proportional to triangles + tets: some five seconds per million triangles, up to ten if so few tets
 ///          are requested that many lattices are tried, and ten seconds and 300 MB per million tets
 /// Errors   Empty (no vertices or triangles), NonFinite, IndexOutOfRange, InvalidOption (targetTets 0 or above
-///          Limits::kMaxTargetTets), Degenerate (all triangles are points, or so near to each other, or so far apart,
-///          that double cannot represent a lattice), Cancelled (by `options.progress`)
+///          Limits::kMaxTargetTets; a painted value that is not above 0), SizeMismatch (a map of another number of
+///          values), Degenerate (all triangles are points, or so near to each other, or so far apart, that double
+///          cannot represent a lattice), Cancelled (by `options.progress`)
 TETSKIN_CAGE_API Result<Cage> createCage(const TriangleMesh& mesh, const CageOptions& options = {},
                                          CageReport* report = nullptr);
 

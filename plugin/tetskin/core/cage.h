@@ -35,7 +35,12 @@ struct TETSKIN_CORE_API Cage {
   std::vector<double> volumeFraction;  ///< tetCount, 0 to 1: fraction of the tet's volume inside the mesh
   /// tetCount, above 0: multiplies the stiffness, in addition to volumeFraction; see `calibrate`
   std::vector<double> stiffnessFactor;
-  std::vector<double> masses;  ///< nodeCount, above 0, for a density of 1: their sum is the mesh's volume
+  /// tetCount, above 0: relative stiffness of the material, also multiplied; see `paintCage`
+  std::vector<double> paintedStiffness;
+  /// tetCount, above 0: relative density of the material, which `masses` already contain; see `paintCage`
+  std::vector<double> paintedDensity;
+  /// nodeCount, above 0, for a density of 1: their sum is the mesh's volume, or the integral of the painted density
+  std::vector<double> masses;
   std::vector<int> component;  ///< tetCount, from 0: component of the cage, connected through shared nodes
   std::vector<int> sourceTet;  ///< tetCount, from 0: equal for all duplicates of one tet
   /// tetCount, from -1: number of the quadratic tet of which the tet is an eighth; -1: the tet is linear. See
@@ -46,9 +51,11 @@ struct TETSKIN_CORE_API Cage {
   /// `positionsHash` of the mesh for which the cage was built, if known.
   std::optional<std::uint64_t> meshHash;
 
-  /// tetCount scale factors of the material's stiffness, from `volumeFraction` (at least Limits::kMinVolumeFraction)
-  /// and `stiffnessFactor`. Empty if all are 1.
+  /// tetCount scale factors of the material's stiffness, from `volumeFraction` (at least Limits::kMinVolumeFraction),
+  /// `stiffnessFactor` and `paintedStiffness`. Empty if all are 1.
   std::vector<double> stiffnessScale() const;
+  /// The same without `volumeFraction`: the material in a tet. Empty if all are 1.
+  std::vector<double> materialStiffness() const;
   /// Multiplies the node positions by the scale, which is above 0, and the masses by its cube.
   void scaleBy(double scale);
   /// True if the cage has duplicate elements.
@@ -123,7 +130,7 @@ TETSKIN_CORE_API Result<std::vector<QuadraticTet>> quadraticTets(const Cage& cag
 ///           Pass a cage and not its `mesh`, which has no fractions: a body of it would have the mass of full
 ///           tets
 /// Returns   a cage of 8 T tets for T tets, of the same mass; the cage's nodes come first, in their order. Volume
-///           fractions are those of the smaller tets; stiffness factors are left out
+///           fractions are those of the smaller tets; painted maps are kept, stiffness factors left out
 /// Cost      O(T log T)
 /// Errors    those of `validate(const Cage&)`; InvalidOption: duplicate elements; Degenerate: flat tets; TooLarge: 8 T
 ///           tets are too many

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace tetskin {
 
@@ -57,6 +58,18 @@ struct TETSKIN_IO_API MeshFileReport {
 /// Limits::kMaxCoordinate), and Empty if there are no vertices or no triangles. The message names the file, and the
 /// line of an `.obj` or an ASCII `.ply` file. Throws nothing.
 TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report = nullptr);
+
+/// Reads a map painted on a mesh: one number per vertex, in the order of `loadMesh`, for `paintCage` and others.
+///
+/// name    of a property of the vertices of a `.ply` file, or of an attribute `_NAME` of one number of a `.gltf`,
+/// `.glb`
+///         or `.vrm` file, case as there; or `red`, `green`, `blue` or `alpha`, of the vertex colours of these
+///         (COLOR_0) and of an `.obj` file (`v x y z r g b`): from 0 to 1, also if the file has integers
+/// Cost    that of `loadMesh`
+/// Errors  those of `loadMesh`; InvalidOption if the file has no such map, or only for some of its vertices: the
+/// message
+///         names those that it has; UnsupportedFormat for other formats
+TETSKIN_IO_API Result<std::vector<double>> loadVertexMap(const std::string& path, const std::string& name);
 
 /// The parts of a tet file that were not read as they are. Also written if reading fails, up to the point of failure.
 struct TETSKIN_IO_API TetFileReport {
@@ -109,8 +122,9 @@ TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* rep
 /// Writes a cage: the file of `saveTetMesh`, followed, in a `.vtk` file, by all data of the cage, so that `loadCage`
 /// gives a bit-identical cage:
 /// - FIELD:      `mesh_hash` (unsigned_int, upper and lower 32 bits), `vertex_tets` (int, one per vertex of the mesh)
-/// - CELL_DATA:  `fill`, `factor` (double), `part`, `lattice_tet`, `quadratic_tet` (int), `fine_fill` (unsigned_char,
-///   kFineTets per tet): volumeFraction, stiffnessFactor, component, sourceTet, quadraticTet and fineVolumeFraction
+/// - CELL_DATA:  `fill`, `factor`, `painted_stiffness`, `painted_density` (double), `part`,
+///   `lattice_tet`, `quadratic_tet` (int), `fine_fill` (unsigned_char, kFineTets per tet): volumeFraction,
+///   stiffnessFactor, paintedStiffness, paintedDensity, component, sourceTet, quadraticTet and fineVolumeFraction
 /// - POINT_DATA: `mass` (double)
 ///
 /// ParaView shows these arrays; Bullet's reader and simple programs stop before them. A cage without data gives the

@@ -17,9 +17,11 @@
 //   splitLattice     duplicates joined where they are connected        split_lattice
 //   fitCage          pull the boundary towards the surface             cage_fit
 //   fillOf           volume fraction of each tet, and masses           cage_fill
+//   paintCage        maps of the vertices, spread inside                     painted_maps
 //   embed            vertices that no triangle uses, in what was built for the others
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/cage/src/fill/cage_fill.h>
+#include <tetskin/cage/src/fill/painted_maps.h>
 #include <tetskin/cage/src/fit/cage_binding.h>
 #include <tetskin/cage/src/fit/cage_fit.h>
 #include <tetskin/cage/src/fit/cage_quality.h>
@@ -70,7 +72,7 @@ Status checkInput(const TriangleMesh& mesh, const CageOptions& options) {
     return {StatusCode::Empty, "the mesh has " + std::to_string(mesh.vertexCount()) +
                                    " vertices but no triangles; a cage needs a surface, so triangulate it first"};
   }
-  return {};
+  return cage_detail::checkMaps(mesh, {options.stiffness, options.density});
 }
 
 Status notDivisible(const Surface& surface) {
@@ -277,6 +279,7 @@ Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageRep
   report.verticesOutside =
       cage_detail::countOutside(surface.points, surface.points.size(), bound.tets.mesh, bound.tets.tetOf);
   Cage cage = cageOf(mesh, surface, std::move(bound));
+  if (Status status = paintCage(cage, mesh, {options.stiffness, options.density}); !status.ok()) return status;
   if (!progress.reach(1.0)) return cancelled();
   return cage;
 } catch (const Cancellation&) {

@@ -58,6 +58,8 @@ Cage used(const Cage& cage) {
       copy[k] = n;
     }
   }
+  result.paintedStiffness = cage.paintedStiffness;
+  result.paintedDensity = cage.paintedDensity;
   result.volumeFraction = cage.volumeFraction;
   result.fineVolumeFraction = cage.fineVolumeFraction;
   result.quadraticTet = cage.quadraticTet;

@@ -20,8 +20,19 @@ constexpr int kMaxSolveIterations = 200;
 /// Factors of stiffness and mass of empty tets: they must move with the rest without resisting it.
 constexpr double kMinScale = 1e-3, kMinMass = 1e-4;
 
+/// The values times those painted on the tets of the cage, of which theirs are equal parts.
+std::vector<double> painted(std::vector<double> values, const std::vector<double>& map) {
+  if (map.empty()) return values;
+  const std::size_t pieces = values.size() / map.size();
+  assert(pieces * map.size() == values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] *= map[k / pieces];
+  return values;
+}
+
 Eigen::VectorXd massesOf(const Cage& cage) {
-  if (cage.masses.empty()) return lumpedVolumes(cage.mesh, std::vector<double>(cage.mesh.tetCount(), 1.0));
+  if (cage.masses.empty()) {
+    return lumpedVolumes(cage.mesh, painted(std::vector<double>(cage.mesh.tetCount(), 1.0), cage.paintedDensity));
+  }
   Eigen::VectorXd masses(static_cast<Eigen::Index>(3 * cage.mesh.nodeCount()));
   for (std::size_t n = 0; n < cage.mesh.nodeCount(); ++n) {
     masses.segment<3>(static_cast<Eigen::Index>(3 * n)).setConstant(cage.masses[n]);
@@ -52,6 +63,8 @@ Cage quadraticCage(const Cage& cage, const TetMesh& refined, const std::vector<d
   assert(refined.tetCount() == kSubTets * cage.mesh.tetCount());
   Cage result(refined);
   for (std::size_t t = 0; t < refined.tetCount(); ++t) result.quadraticTet.push_back(static_cast<int>(t / kSubTets));
+  if (!cage.paintedStiffness.empty())
+    result.paintedStiffness = painted(std::vector<double>(refined.tetCount(), 1.0), cage.paintedStiffness);
   if (cage.volumeFraction.empty()) return result;
   result.volumeFraction = fill;
   // A tet of the refinement has eight of the 64 fractions, each of which applies to eight of its own 64 tets.
@@ -83,13 +96,13 @@ Eigen::RowVectorXd quotients(const Eigen::RowVectorXd& a, const Eigen::RowVector
 
 }  // namespace
 
-RefinedBodies::Level::Level(Refinement made, double poissonRatio, const std::vector<double>& fill,
+RefinedBodies::Level::Level(Refinement made, double poissonRatio, const std::vector<double>& fill, const Cage& cage,
                             const Cage& quadratic)
     : refinement(std::move(made)),
-      scale(atLeast(fill, kMinScale)),
+      scale(painted(atLeast(fill, kMinScale), cage.paintedStiffness)),
       stiffness(quadratic.mesh.nodes.empty() ? BlockRows(refinement.mesh, poissonRatio, scale)
                                              : BlockRows(quadratic, poissonRatio, {})),
-      masses(massesOf(refinement.mesh, fill)),
+      masses(massesOf(refinement.mesh, painted(fill, cage.paintedDensity))),
       diagonal(stiffness.diagonal()),
       rigid(refinement.mesh, masses) {}
 
@@ -102,9 +115,9 @@ RefinedBodies::RefinedBodies(Cage cage, double poissonRatio, int refinements)
   for (int k = 1; k <= refinements; ++k) {
     Progress::goOnWithRound();
     Refinement made = refineUniformly(k == 1 ? cage_.mesh : at(1).refinement.mesh);
-    std::vector<double> fill = fillAt(cage_, k);
+    const std::vector<double> fill = fillAt(cage_, k);
     const Cage quadratic = refinements == 1 ? quadraticCage(cage_, made.mesh, fill) : Cage();
-    levels_.push_back(std::make_unique<Level>(std::move(made), poissonRatio, std::move(fill), quadratic));
+    levels_.push_back(std::make_unique<Level>(std::move(made), poissonRatio, fill, cage_, quadratic));
   }
 }
 

@@ -51,8 +51,10 @@ class RefinedBodies {
 
  private:
   struct Level {
+    /// cage       the coarsest one, for its painted maps
     /// quadratic  empty: linear tets; otherwise the cage of quadratic ones
-    Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill, const Cage& quadratic);
+    Level(Refinement refinement, double poissonRatio, const std::vector<double>& fill, const Cage& cage,
+          const Cage& quadratic);
     Refinement refinement;      ///< of the coarser level
     std::vector<double> scale;  ///< by tet
     BlockRows stiffness;

@@ -77,6 +77,7 @@ std::vector<RestQuadraticTet> restQuadraticTets(const Cage& cage, const std::vec
                                                 const std::vector<double>& stiffnessScale) {
   assert(stiffnessScale.empty() || stiffnessScale.size() == cage.mesh.tetCount());
   const bool given = !stiffnessScale.empty();
+  const std::vector<double> factors = given ? stiffnessScale : cage.materialStiffness();
   // Weights 1 to 3 are coordinates, in which the tet has this volume.
   constexpr double kUnitVolume = 1.0 / 6.0;
   const TetCorners unit = {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
@@ -93,7 +94,7 @@ std::vector<RestQuadraticTet> restQuadraticTets(const Cage& cage, const std::vec
     Moments moments;
     double ghost = 0.0;
     for (const int t : tet.tets) {
-      double factor = given ? stiffnessScale[t] : cage.stiffnessFactor.empty() ? 1.0 : cage.stiffnessFactor[t];
+      double factor = factors.empty() ? 1.0 : factors[t];
       ghost += kGhost * factor / static_cast<double>(kSubTets);
       const bool fine = !given && !cage.fineVolumeFraction.empty();
       if (!given && !fine && !cage.volumeFraction.empty()) factor *= cage.volumeFraction[t];

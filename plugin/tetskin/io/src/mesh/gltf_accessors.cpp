@@ -156,13 +156,13 @@ Status GltfAccessors::addSparse(const tinygltf::Accessor& accessor, std::uint64_
 }
 
 Status GltfAccessors::read(int accessor, int arity, std::vector<double>& numbers) {
-  assert(arity >= 1 && arity <= 3);
+  assert(arity >= 1 && arity <= 4);
   if (accessor < 0 || static_cast<std::size_t>(accessor) >= model_.accessors.size()) {
     return error(StatusCode::IndexOutOfRange,
                  "refers to accessor " + std::to_string(accessor) + " of " + std::to_string(model_.accessors.size()));
   }
   const tinygltf::Accessor& stated = model_.accessors[static_cast<std::size_t>(accessor)];
-  const int types[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3};
+  const int types[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
   if (stated.type != types[arity - 1]) {
     return error(StatusCode::Malformed, "has another number than " + std::to_string(arity) +
                                             " of components in accessor " + std::to_string(accessor));

@@ -23,7 +23,7 @@ class GltfAccessors {
       : path_(path), model_(model), binaryChunk_(binaryChunk) {}
 
   /// Reads the numbers of an accessor; normalised integers become fractions of their largest value.
-  /// arity   numbers per element: 1, 2 or 3
+  /// arity   numbers per element: 1 to 4
   /// Errors  Malformed, IndexOutOfRange; FileNotFound and UnsupportedFormat for a buffer
   Status read(int accessor, int arity, std::vector<double>& numbers);
 

@@ -40,8 +40,10 @@ bool isSupported(const std::string& extension) {
 
 class GltfReader {
  public:
-  GltfReader(const std::string& path, const tinygltf::Model& model, const std::optional<std::string>& binaryChunk)
-      : path_(path), model_(model), accessors_(path, model, binaryChunk) {}
+  /// map  null: none
+  GltfReader(const std::string& path, const tinygltf::Model& model, const std::optional<std::string>& binaryChunk,
+             MapRequest* map)
+      : path_(path), model_(model), accessors_(path, model, binaryChunk), map_(map) {}
   Result<TriangleMesh> read();
 
  private:
@@ -58,14 +60,17 @@ class GltfReader {
   Status addMesh(int mesh, const std::string& nodeName, bool skinned, const Eigen::Affine3d& toScene);
   Status addVertices(const Vertices& vertices, const Eigen::Affine3d& toScene, ScenePart& part);
   Status addTriangles(const tinygltf::Primitive& primitive, bool mirrored, ScenePart& part);
+  Status addMap(const tinygltf::Primitive& primitive, std::size_t vertices, std::vector<double>& values);
   std::string materialOf(const tinygltf::Primitive& primitive) const;
 
   const std::string& path_;
   const tinygltf::Model& model_;
   GltfAccessors accessors_;
+  MapRequest* map_;
   std::vector<Visit> stack_;
   std::vector<bool> visited_;  ///< by node
   std::vector<ScenePart> parts_;
+  std::vector<std::vector<double>> maps_;  ///< by part; empty: it has none
 };
 
 /// The root nodes of the displayed scene, which is the first one by default; without any scene, all nodes that are not
@@ -95,6 +100,10 @@ Result<TriangleMesh> GltfReader::read() {
     const Visit next = stack_.back();
     stack_.pop_back();
     if (Status status = visit(next); !status.ok()) return status;
+  }
+  if (map_) {
+    for (const std::vector<double>& values : maps_)
+      map_->values.insert(map_->values.end(), values.begin(), values.end());
   }
   return joinParts(path_, parts_);
 }
@@ -163,6 +172,11 @@ Status GltfReader::addMesh(int m, const std::string& nodeName, bool skinned, con
     if (added) {
       Status status = addVertices(vertices, toScene, parts_.emplace_back());
       if (!status.ok()) return status;
+      maps_.emplace_back();
+    }
+    if (map_ && maps_[at->second].empty()) {
+      Status status = addMap(primitive, parts_[at->second].positions.size(), maps_[at->second]);
+      if (!status.ok()) return status;
     }
     const auto& accessor = model_.accessors[static_cast<std::size_t>(vertices[0])];
     if (accessor.bufferView < 0 && !primitive.extensions.empty()) {
@@ -221,6 +235,31 @@ Status GltfReader::addVertices(const Vertices& vertices, const Eigen::Affine3d& 
   return {};
 }
 
+/// Reads the wanted map of a primitive's vertices, if it has it, and notes which there are.
+Status GltfReader::addMap(const tinygltf::Primitive& primitive, std::size_t vertices, std::vector<double>& values) {
+  constexpr std::array<const char*, 4> kChannels = {"red", "green", "blue", "alpha"};
+  const int channel = colourChannel(map_->name);
+  for (const auto& [name, index] : primitive.attributes) {
+    const bool isColour = name == "COLOR_0";
+    if ((!isColour && name.compare(0, 1, "_") != 0) || index < 0) continue;
+    const auto at = static_cast<std::size_t>(index);
+    const int type = at < model_.accessors.size() ? model_.accessors[at].type : TINYGLTF_TYPE_SCALAR;
+    const int arity = !isColour ? 1 : type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
+    if (!isColour && type == TINYGLTF_TYPE_SCALAR) map_->present.insert(name);
+    if (isColour) map_->present.insert(kChannels.begin(), kChannels.begin() + arity);
+    if (isColour ? channel < 0 || channel >= arity : name != map_->name || type != TINYGLTF_TYPE_SCALAR) continue;
+    std::vector<double> numbers;
+    if (Status status = accessors_.read(index, arity, numbers); !status.ok()) return status;
+    if (numbers.size() != static_cast<std::size_t>(arity) * vertices) {
+      return accessors_.error(StatusCode::Malformed,
+                              "has another number of values in " + excerpt(name) + " than of positions");
+    }
+    for (std::size_t v = 0; v < vertices; ++v)
+      values.push_back(numbers[static_cast<std::size_t>(arity) * v + static_cast<std::size_t>(std::max(channel, 0))]);
+  }
+  return {};
+}
+
 /// Appends the triangles of a list, a strip (every second triangle is turned over) or a fan.
 Status GltfReader::addTriangles(const tinygltf::Primitive& primitive, bool mirrored, ScenePart& part) {
   const std::size_t vertexCount = part.positions.size();
@@ -251,7 +290,7 @@ Status GltfReader::addTriangles(const tinygltf::Primitive& primitive, bool mirro
   return {};
 }
 
-Result<TriangleMesh> parse(const std::string& path) {
+Result<TriangleMesh> parse(const std::string& path, MapRequest* map) {
   Result<std::string> bytes = readFile(path);
   if (!bytes.ok()) return bytes.status();
   Result<GltfText> split = splitGltf(path, std::move(bytes).value());
@@ -277,14 +316,14 @@ Result<TriangleMesh> parse(const std::string& path) {
   if (!parsed) {
     return words.error(StatusCode::Malformed, "cannot be read: " + excerpt(errors.substr(0, errors.find('\n')), 200));
   }
-  return GltfReader(path, model, text.binary).read();
+  return GltfReader(path, model, text.binary, map).read();
 }
 
 }  // namespace
 
-Result<TriangleMesh> readGltf(const std::string& path) {
+Result<TriangleMesh> readGltf(const std::string& path, MapRequest* map) {
   try {
-    return parse(path);
+    return parse(path, map);
   } catch (const std::exception& error) {
     return fileError(StatusCode::Malformed, path, 0,
                      "cannot be read: " + std::string(error.what()) + "; export the model again");

@@ -4,6 +4,10 @@
 #include <tetskin/io/src/mesh/mesh_readers.h>
 #include <tetskin/io/src/text/file_text.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace tetskin {
 
 namespace io {
@@ -18,10 +22,11 @@ std::string whyNoGltf() {
 
 namespace {
 
-Result<TriangleMesh> readGltfIfPossible(const std::string& path) {
+Result<TriangleMesh> readGltfIfPossible(const std::string& path, MapRequest* map = nullptr) {
 #ifdef TETSKIN_TINYGLTF
-  return readGltf(path);
+  return readGltf(path, map);
 #else
+  (void)map;
   return fileError(StatusCode::UnsupportedFormat, path, 0, "cannot be read: " + whyNoGltf());
 #endif
 }
@@ -32,7 +37,49 @@ std::string described(const MeshFileReport::Faces& faces, const std::string& wha
          std::to_string(faces.firstLine) + ")";
 }
 
+/// The mesh with a map on it.
+Result<TriangleMesh> readWithMap(const std::string& path, MapRequest& map) {
+  const std::string extension = lowerExtension(path);
+  MeshFileReport unread;
+  if (extension == ".obj") return readObj(path, unread, &map);
+  if (extension == ".ply") return readPly(path, &map);
+  if (extension == ".gltf" || extension == ".glb" || extension == ".vrm") return readGltfIfPossible(path, &map);
+  return fileError(
+      StatusCode::UnsupportedFormat, path, 0,
+      "cannot have a map that is read here; save the model as PLY or glTF, or pass the values as an array");
+}
+
+/// Ok if each vertex has a finite value.
+Status checkMap(const std::string& path, const MapRequest& map, std::size_t vertices) {
+  const std::string name = excerpt(map.name);
+  if (map.present.count(map.name) == 0) {
+    std::string others;
+    for (const std::string& other : map.present) others += (others.empty() ? "" : ", ") + excerpt(other);
+    return fileError(
+        StatusCode::InvalidOption, path, 0,
+        "has no map " + name + " on its vertices; " +
+            (others.empty() ? "it has none: export the model with it (Blender: Attributes or Vertex Colors)"
+                            : "name one that it has: " + others));
+  }
+  if (map.values.size() != vertices) {
+    return fileError(StatusCode::InvalidOption, path, 0,
+                     "has a map " + name + " on only " + std::to_string(map.values.size()) + " of " +
+                         std::to_string(vertices) + " vertices; paint it on all of the model");
+  }
+  const auto bad = std::find_if_not(map.values.begin(), map.values.end(), [](double v) { return std::isfinite(v); });
+  if (bad == map.values.end()) return {};
+  return fileError(StatusCode::NonFinite, path, 0,
+                   "has a value in its map " + name + " that is not finite, at vertex " +
+                       std::to_string(bad - map.values.begin()) + "; correct it");
+}
+
 }  // namespace
+
+int colourChannel(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kChannels = {"red", "green", "blue", "alpha"};
+  const auto found = std::find(kChannels.begin(), kChannels.end(), name);
+  return found == kChannels.end() ? -1 : static_cast<int>(found - kChannels.begin());
+}
 
 }  // namespace io
 
@@ -59,6 +106,14 @@ Result<TriangleMesh> loadMesh(const std::string& path, MeshFileReport* report) {
                          "3MF packages are not supported; save the model as STL or PLY");
   }
   return io::readWithAssimp(path);
+}
+
+Result<std::vector<double>> loadVertexMap(const std::string& path, const std::string& name) {
+  io::MapRequest map{name, {}, {}};
+  const Result<TriangleMesh> mesh = io::readWithMap(path, map);
+  if (!mesh.ok()) return mesh.status();
+  if (Status status = io::checkMap(path, map, mesh.value().vertexCount()); !status.ok()) return status;
+  return std::move(map.values);
 }
 
 }  // namespace tetskin

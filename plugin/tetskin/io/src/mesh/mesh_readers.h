@@ -6,9 +6,22 @@
 
 #include <tetskin/io/files.h>
 
+#include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace tetskin::io {
+
+/// A map of one number per vertex that is read along with a mesh: see `loadVertexMap`.
+struct MapRequest {
+  std::string name;
+  std::vector<double> values;     ///< of vertices, in the order of the mesh; fewer than these if some have none
+  std::set<std::string> present;  ///< names that the file has
+};
+
+/// 0 to 3 for red, green, blue and alpha, the names of a vertex colour's channels in all formats; -1 for others.
+int colourChannel(std::string_view name);
 
 /// Reads a Wavefront OBJ file as it is:
 /// - positions are the `v` lines in order, exact in double, including those that no face names;
@@ -21,7 +34,7 @@ namespace tetskin::io {
 /// report  counts faces that were not read as they are
 /// Cost: linear, about 20 ms for 60,000 triangles.
 /// Errors: FileNotFound; with the line: Malformed, IndexOutOfRange, NonFinite; Empty without vertices or faces.
-Result<TriangleMesh> readObj(const std::string& path, MeshFileReport& report);
+Result<TriangleMesh> readObj(const std::string& path, MeshFileReport& report, MapRequest* map = nullptr);
 
 /// Reads a PLY file, ASCII or binary of either byte order, without changes: every vertex in the file's order; polygons
 /// and triangle strips cut into triangles, faces of fewer than three corners left out; normals (nx, ny, nz), and
@@ -32,7 +45,7 @@ Result<TriangleMesh> readObj(const std::string& path, MeshFileReport& report);
 /// counts it states.
 ///
 /// Errors: as `loadMesh`. Messages of ASCII files name the line.
-Result<TriangleMesh> readPly(const std::string& path);
+Result<TriangleMesh> readPly(const std::string& path, MapRequest* map = nullptr);
 
 /// Reads an OFF text file without changes: every vertex in the file's order; polygons cut into triangles, faces of
 /// fewer than three corners left out; normals of an NOFF file. Anything after the coordinates of a vertex and the
@@ -56,7 +69,7 @@ std::string whyNoGltf();
 
 /// Reads a `.gltf`, `.glb` or `.vrm` file as `loadMesh` describes. Throws nothing. Defined only if `whyNoGltf` is
 /// empty.
-Result<TriangleMesh> readGltf(const std::string& path);
+Result<TriangleMesh> readGltf(const std::string& path, MapRequest* map = nullptr);
 
 /// Reads any format that assimp reads, as `loadMesh` describes. Without assimp: UnsupportedFormat, if there is such a
 /// file. Throws nothing.

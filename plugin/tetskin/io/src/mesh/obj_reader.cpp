@@ -9,6 +9,7 @@
 #include <tetskin/io/src/text/number_text.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -43,14 +44,16 @@ void note(MeshFileReport::Faces& faces, std::size_t line) {
 /// Collects the statements of one file, with polygons not yet triangulated.
 class ObjParser {
  public:
-  ObjParser(const std::string& path, std::string_view text, MeshFileReport& report)
-      : path_(path), scanner_(text), report_(report) {}
+  /// map  null: none
+  ObjParser(const std::string& path, std::string_view text, MeshFileReport& report, MapRequest* map)
+      : path_(path), scanner_(text), report_(report), map_(map) {}
   Result<TriangleMesh> parse();
 
  private:
   Status readStatement();
   Status readNumbers(int needed, int wanted, Eigen::Vector3d& values);
   Status readPosition();
+  Status readColour();
   Status readFace();
   Status readCorner(std::string_view word, Corner& corner);
   Status readIndex(std::string_view text, const char* what, std::size_t count, long long& index);
@@ -72,6 +75,7 @@ class ObjParser {
   ObjScanner scanner_;
   ObjStatement statement_;
   MeshFileReport& report_;
+  MapRequest* map_;
   std::string_view name_, material_;
   std::vector<Corner> corners_;
   std::vector<Face> faces_;
@@ -150,7 +154,22 @@ Status ObjParser::readPosition() {
     return error(StatusCode::UnsupportedFormat, "more than 2147483647 vertices; split the model");
   }
   mesh_.positions.push_back(position);
-  return {};
+  return map_ ? readColour() : Status();
+}
+
+/// Three numbers after the position; a single one is its weight.
+Status ObjParser::readColour() {
+  constexpr std::size_t kColourAt = 3, kWithColour = 6;
+  ObjWords words(statement_.rest);
+  std::array<std::string_view, kWithColour> all;
+  for (std::string_view& word : all) word = words.next();
+  if (all.back().empty()) return {};
+  map_->present.insert({"red", "green", "blue"});
+  const int channel = colourChannel(map_->name);
+  if (channel < 0 || channel > 2) return {};
+  const std::string_view word = all[kColourAt + static_cast<std::size_t>(channel)];
+  if (parseDouble(word, map_->values.emplace_back())) return {};
+  return error(StatusCode::Malformed, excerpt(word) + " is not a number; correct it");
 }
 
 Status ObjParser::readFace() {
@@ -293,10 +312,10 @@ std::vector<Point> ObjParser::perVertex(int Corner::*attribute, const std::vecto
 
 }  // namespace
 
-Result<TriangleMesh> readObj(const std::string& path, MeshFileReport& report) {
+Result<TriangleMesh> readObj(const std::string& path, MeshFileReport& report, MapRequest* map) {
   const Result<std::string> text = readObjText(path);
   if (!text.ok()) return text.status();
-  return ObjParser(path, withoutMark(text.value()), report).parse();
+  return ObjParser(path, withoutMark(text.value()), report, map).parse();
 }
 
 }  // namespace tetskin::io

@@ -29,14 +29,17 @@ struct Columns {
   std::array<std::size_t, 3> position{}, normal{};
   std::array<std::size_t, 2> texcoord{};
   std::size_t corners = 0, cornerTexcoords = 0;  ///< lists
+  std::array<std::size_t, 1> map{};
 
   Columns() = default;
-  explicit Columns(const PlyElement& element)
+  /// wanted  null: none
+  Columns(const PlyElement& element, const MapRequest* wanted)
       : position{element.find({"x"}), element.find({"y"}), element.find({"z"})},
         normal{element.find({"nx"}), element.find({"ny"}), element.find({"nz"})},
         texcoord{element.find({"s", "u", "texture_u"}), element.find({"t", "v", "texture_v"})},
         corners(element.find({"vertex_indices", "vertex_index"}, true)),
-        cornerTexcoords(element.find({"texcoord"}, true)) {}
+        cornerTexcoords(element.find({"texcoord"}, true)),
+        map{wanted ? element.find({wanted->name}) : element.properties.size()} {}
 };
 
 /// The numbers in some columns of a row; false if it lacks one.
@@ -51,13 +54,14 @@ bool take(const Row& row, const std::array<std::size_t, Count>& columns, double*
 
 class PlyReader {
  public:
-  PlyReader(const std::string& path, std::string_view text) : path_(path), in_(text) {}
+  PlyReader(const std::string& path, std::string_view text, MapRequest* map) : path_(path), in_(text), map_(map) {}
   Result<TriangleMesh> read();
 
  private:
   bool linesSuffice() const;
   Status readElement(const PlyElement& element);
   Status checkVertices(const PlyElement& element);
+  void findMap(const PlyElement& element);
   Status checkRoom(const PlyElement& element) const;
   Status readRow(const PlyElement& element, std::uint64_t index, Row& row);
   bool readNumber(const NumberType& type, double& value);
@@ -75,6 +79,8 @@ class PlyReader {
 
   const std::string& path_;
   TextScanner in_;
+  MapRequest* map_;        ///< null: none
+  double mapScale_ = 1.0;  ///< of integers of colours
   PlyHeader header_;
   bool byLine_ = false;  ///< a text in which each element begins a line; anything after it on the line is ignored
   Columns columns_;      ///< of the element that is being read
@@ -120,10 +126,11 @@ bool PlyReader::linesSuffice() const {
 Status PlyReader::readElement(const PlyElement& element) {
   Status status = checkRoom(element);
   if (!status.ok() || element.properties.empty()) return status;
-  columns_ = Columns(element);
+  columns_ = Columns(element, map_);
   const bool isVertex = element.name == "vertex", isFace = element.name == "face",
              isStrip = element.name == "tristrips";
   if (isVertex) status = checkVertices(element);
+  if (isVertex && map_) findMap(element);
   Row row(element.properties.size());
   for (std::uint64_t index = 0; status.ok() && index < element.count; ++index) {
     status = readRow(element, index, row);
@@ -134,6 +141,17 @@ Status PlyReader::readElement(const PlyElement& element) {
     if (byLine_) in_.restOfLine();
   }
   return status;
+}
+
+/// Notes which maps there are, and how numbers of the wanted one are scaled.
+void PlyReader::findMap(const PlyElement& element) {
+  for (const PlyProperty& property : element.properties) {
+    if (property.isList) continue;
+    map_->present.emplace(property.name);
+    const bool whole = property.name == map_->name && colourChannel(property.name) >= 0 && !property.type.real;
+    if (whole) mapScale_ = 1.0 / (std::ldexp(1.0, static_cast<int>(8 * property.type.bytes)) - 1.0);
+  }
+  for (const char* place : {"x", "y", "z"}) map_->present.erase(place);
 }
 
 Status PlyReader::checkVertices(const PlyElement& element) {
@@ -204,6 +222,8 @@ Status PlyReader::addVertex(std::uint64_t index, const Row& row) {
   }
   mesh_.positions.push_back(position);
   if (take(row, columns_.normal, normal.data())) mesh_.normals.push_back(unitNormal(normal));
+  double value = 0.0;
+  if (map_ && take(row, columns_.map, &value)) map_->values.push_back(mapScale_ * value);
   Eigen::Vector2d texcoord;
   if (take(row, columns_.texcoord, texcoord.data())) mesh_.texcoords.push_back(texcoord.cast<float>());
   return {};
@@ -281,11 +301,11 @@ void endLines(std::string& text) {
 
 }  // namespace
 
-Result<TriangleMesh> readPly(const std::string& path) {
+Result<TriangleMesh> readPly(const std::string& path, MapRequest* map) {
   Result<std::string> text = readFile(path);
   if (!text.ok()) return text.status();
   endLines(text.value());
-  return PlyReader(path, text.value()).read();
+  return PlyReader(path, text.value(), map).read();
 }
 
 }  // namespace tetskin::io

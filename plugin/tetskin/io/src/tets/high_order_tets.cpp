@@ -180,6 +180,8 @@ void Cutter::cutTets() {
   cage.quadraticTet = report_.quadraticTets > 0 ? std::move(numbers) : std::vector<int>();
   repeat(cage.volumeFraction, from);
   repeat(cage.stiffnessFactor, from);
+  repeat(cage.paintedStiffness, from);
+  repeat(cage.paintedDensity, from);
   repeat(cage.component, from);
   // Data about duplicates, and about parts of tets, does not apply to the parts.
   cage.vertexTets.clear();

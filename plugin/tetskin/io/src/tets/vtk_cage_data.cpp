@@ -160,6 +160,8 @@ Status VtkCageData::readArray(const VtkArray& array) {
   if (is(Owner::File, "vertex_tets")) return readInto(array, 1, cage_.vertexTets);
   if (is(Owner::Cells, "fill")) return readInto(array, 1, cage_.volumeFraction);
   if (is(Owner::Cells, "factor")) return readInto(array, 1, cage_.stiffnessFactor);
+  if (is(Owner::Cells, "painted_stiffness")) return readInto(array, 1, cage_.paintedStiffness);
+  if (is(Owner::Cells, "painted_density")) return readInto(array, 1, cage_.paintedDensity);
   if (is(Owner::Cells, "part")) return readInto(array, 1, cage_.component);
   if (is(Owner::Cells, "lattice_tet")) return readInto(array, 1, cage_.sourceTet);
   if (is(Owner::Cells, "quadratic_tet")) return readInto(array, 1, cage_.quadraticTet);
@@ -212,6 +214,8 @@ Status VtkCageData::fault(const std::string& what) const {
 void VtkCageData::keepTets(const std::vector<bool>& isTet) {
   keepValues(cage_.volumeFraction, isTet);
   keepValues(cage_.stiffnessFactor, isTet);
+  keepValues(cage_.paintedStiffness, isTet);
+  keepValues(cage_.paintedDensity, isTet);
   keepValues(cage_.component, isTet);
   keepValues(cage_.sourceTet, isTet);
   keepValues(cage_.quadraticTet, isTet);
@@ -229,10 +233,13 @@ void appendCageData(std::string& text, const Cage& cage) {
   appendFieldArray(text, "vertex_tets", "int", cage.vertexTets, 1);
 
   const bool ofCells = !(cage.volumeFraction.empty() && cage.stiffnessFactor.empty() && cage.component.empty() &&
-                         cage.sourceTet.empty() && cage.quadraticTet.empty() && cage.fineVolumeFraction.empty());
+                         cage.paintedStiffness.empty() && cage.paintedDensity.empty() && cage.sourceTet.empty() &&
+                         cage.quadraticTet.empty() && cage.fineVolumeFraction.empty());
   if (ofCells) appendHeader(text, "CELL_DATA", cage.mesh.tetCount());
   appendScalars(text, "fill", "double", cage.volumeFraction);
   appendScalars(text, "factor", "double", cage.stiffnessFactor);
+  appendScalars(text, "painted_stiffness", "double", cage.paintedStiffness);
+  appendScalars(text, "painted_density", "double", cage.paintedDensity);
   appendScalars(text, "part", "int", cage.component);
   appendScalars(text, "lattice_tet", "int", cage.sourceTet);
   appendScalars(text, "quadratic_tet", "int", cage.quadraticTet);

@@ -57,9 +57,18 @@ Status checkNumbers(const std::vector<int>& numbers, std::size_t count, const ch
 
 }  // namespace
 
+std::vector<double> Cage::materialStiffness() const {
+  if (paintedStiffness.empty() || stiffnessFactor.empty())
+    return paintedStiffness.empty() ? stiffnessFactor : paintedStiffness;
+  std::vector<double> scale = paintedStiffness;
+  for (std::size_t t = 0; t < scale.size(); ++t) scale[t] *= stiffnessFactor[t];
+  return scale;
+}
+
 std::vector<double> Cage::stiffnessScale() const {
-  if (volumeFraction.empty()) return stiffnessFactor;
-  std::vector<double> scale = stiffnessFactor.empty() ? std::vector<double>(mesh.tetCount(), 1.0) : stiffnessFactor;
+  std::vector<double> scale = materialStiffness();
+  if (volumeFraction.empty()) return scale;
+  if (scale.empty()) scale.assign(mesh.tetCount(), 1.0);
   for (std::size_t t = 0; t < scale.size(); ++t) scale[t] *= std::max(volumeFraction[t], Limits::kMinVolumeFraction);
   return scale;
 }
@@ -80,6 +89,10 @@ Status validateAttributes(const Cage& cage) {
                               [](double value) { return value >= 0.0 && value <= 1.0; });
   if (status.ok())
     status = checkValues(cage.stiffnessFactor, cage.mesh.tetCount(), "stiffnessFactor", "tets", "above 0", positive);
+  if (status.ok())
+    status = checkValues(cage.paintedStiffness, cage.mesh.tetCount(), "paintedStiffness", "tets", "above 0", positive);
+  if (status.ok())
+    status = checkValues(cage.paintedDensity, cage.mesh.tetCount(), "paintedDensity", "tets", "above 0", positive);
   if (status.ok()) status = checkValues(cage.masses, cage.mesh.nodeCount(), "masses", "nodes", "above 0", positive);
   if (status.ok()) status = checkNumbers(cage.component, cage.mesh.tetCount(), "component");
   if (status.ok()) status = checkNumbers(cage.sourceTet, cage.mesh.tetCount(), "sourceTet");

@@ -48,14 +48,22 @@ void refineFill(const Cage& linear, Cage& refined) {
   }
 }
 
-/// Distributes masses by the tets' filled volumes, so that their sum stays the same; an empty tet gets a share that
-/// holds its nodes.
+/// Each of the eight tets gets the value of theirs.
+std::vector<double> eightfold(const std::vector<double>& values) {
+  std::vector<double> result;
+  for (const double value : values) result.insert(result.end(), kSubTets, value);
+  return result;
+}
+
+/// Distributes masses by the tets' filled volumes and densities, so that their sum stays the same; an empty tet gets a
+/// share that holds its nodes.
 void refineMasses(const Cage& linear, Cage& refined) {
   if (linear.masses.empty()) return;
   refined.masses.assign(refined.mesh.nodeCount(), 0.0);
   for (std::size_t t = 0; t < refined.mesh.tetCount(); ++t) {
     const double fraction = refined.volumeFraction.empty() ? 1.0 : refined.volumeFraction[t];
-    const double volume = std::abs(signedVolume(cornersOf(refined.mesh, refined.mesh.tets[t])));
+    const double density = refined.paintedDensity.empty() ? 1.0 : refined.paintedDensity[t];
+    const double volume = density * std::abs(signedVolume(cornersOf(refined.mesh, refined.mesh.tets[t])));
     for (const int n : refined.mesh.tets[t]) {
       refined.masses[n] += 0.25 * volume * std::max(fraction, Limits::kMinVolumeFraction);
     }
@@ -116,6 +124,8 @@ Result<Cage> refineQuadratic(const Cage& linear) {
   if (Status status = checkTetCounts(mesh.nodeCount(), kSubTets * mesh.tetCount()); !status.ok()) return status;
   Cage cage(refineUniformly(positive).mesh);
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) cage.quadraticTet.push_back(static_cast<int>(t / kSubTets));
+  cage.paintedStiffness = eightfold(linear.paintedStiffness);
+  cage.paintedDensity = eightfold(linear.paintedDensity);
   refineFill(linear, cage);
   refineMasses(linear, cage);
   cage.meshHash = linear.meshHash;
