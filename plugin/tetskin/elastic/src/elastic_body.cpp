@@ -6,7 +6,7 @@
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/elastic/elastic_body.h>
-#include <tetskin/elastic/src/exported/body_dynamics.h>
+#include <tetskin/elastic/src/dynamics/body_pressure.h>
 
 #include <algorithm>
 #include <cassert>
@@ -77,7 +77,7 @@ template <class Scalar>
 struct ElasticBody<Scalar>::Impl {
   /// options  completed by the cage's values
   Impl(elastic_detail::RestTets rest, const TetMesh& cage, const ElasticOptions& options)
-      : dynamics(std::move(rest), cage.nodeCount()), masses(options.nodeMasses) {
+      : dynamics(std::move(rest), cage.nodeCount()), masses(options.nodeMasses), volume(totalVolume(cage)) {
     for (const Eigen::Vector3d& p : cage.nodes) {
       for (int k = 0; k < 3; ++k) positions.push_back(static_cast<Scalar>(p[k]));
     }
@@ -136,10 +136,16 @@ struct ElasticBody<Scalar>::Impl {
     }
   }
 
+  Status checkPressure(double pressure) const {
+    return elastic_detail::checkPressure<Scalar>(pressure, std::accumulate(masses.begin(), masses.end(), 0.0), volume);
+  }
+
   BodyDynamics<Scalar> dynamics;
+  elastic_detail::BodyPressure<Scalar> inside;
   elastic_detail::ConjugateGradient<Scalar> solve;
   elastic_detail::SolveLimits limits;
   std::vector<double> masses;  ///< by node, before any is pinned
+  double volume = 0.0;         ///< of the tets at rest
   std::vector<Scalar> positions, velocities;
 };
 
@@ -178,6 +184,30 @@ void ElasticBody<Scalar>::setPinned(std::size_t node, bool pinned) {
   if (!impl_) return;
   assert(node < nodeCount());
   impl_->dynamics.setMass(node, pinned ? Scalar(0) : static_cast<Scalar>(impl_->masses[node]));
+}
+
+template <class Scalar>
+Status ElasticBody<Scalar>::setPressure(double pressure) {
+  if (!impl_) return {StatusCode::Empty, "the body is empty"};
+  Status status = impl_->checkPressure(pressure);
+  return status.ok() ? impl_->inside.setConstant(pressure, impl_->dynamics) : status;
+}
+
+template <class Scalar>
+Status ElasticBody<Scalar>::setGas(double pressure, double outside) {
+  if (!impl_) return {StatusCode::Empty, "the body is empty"};
+  Status status = impl_->checkPressure(pressure + outside);
+  return status.ok() ? impl_->inside.setGas(pressure, outside, impl_->probe(), impl_->dynamics) : status;
+}
+
+template <class Scalar>
+double ElasticBody<Scalar>::pressure() {
+  return impl_ ? impl_->inside.pressure(impl_->probe(), impl_->dynamics) : 0.0;
+}
+
+template <class Scalar>
+double ElasticBody<Scalar>::volume() {
+  return impl_ ? impl_->inside.volume(impl_->probe(), impl_->dynamics) : 0.0;
 }
 
 template <class Scalar>
