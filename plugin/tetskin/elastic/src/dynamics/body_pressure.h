@@ -89,12 +89,14 @@ class BodyPressure {
     of.setPressure(law_, surface_);
     return {};
   }
-  /// The body has new dynamics, of as many nodes.
+  /// The body has new dynamics.
   void moveTo(BodyDynamics<Scalar>& of) {
+    given_ = given_ && surface_->nodes().back() < of.nodeCount();
     if (!given_) surface_.reset();
     if (acts() && !restore(law_, of).ok()) (void)end(of);
   }
-  std::size_t faceCount() const { return given_ ? surface_->faceCount() : 0; }
+  /// Number of faces of the surface that `setSurface` has set; 0: none.
+  std::size_t givenFaces() const { return given_ ? surface_->faceCount() : 0; }
 
  private:
   static constexpr double kLeastVolume = 1e-3;

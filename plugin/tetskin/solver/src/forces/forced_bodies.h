@@ -6,7 +6,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/elastic/src/exported/body_dynamics.h>
+#include <tetskin/elastic/src/dynamics/body_pressure.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 
@@ -52,6 +52,8 @@ Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
 Status checkMaterial(const ElasticMaterial& material);
 /// Ok unless the material is too stiff for the body's mass: see elastic_detail::checkStiffness.
 Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
+/// Ok unless it is not finite, or too large for the body's mass and size: see elastic_detail::checkPressure.
+Status checkPressure(const btSoftBody& body, double pressure);
 
 /// One body, and the data derived from it.
 struct ForcedBody {
@@ -59,6 +61,7 @@ struct ForcedBody {
   std::vector<double> stiffnessScale;     ///< by tet, or empty
   std::vector<QuadraticShape> quadratic;  ///< those whose parts are still tets of the body, see `withQuadraticTets`
   std::unique_ptr<Dynamics> dynamics;
+  elastic_detail::BodyPressure<btScalar> pressure;
   std::size_t tetCount = 0;  ///< tets of the body when `dynamics` was created
   btScalar restMeasure = 0;  ///< measure of some tets: changes if the body is scaled
   /// The world in which it was added; in another world the body would have another force.
@@ -76,7 +79,10 @@ struct ForcedBody {
   bool hasOwnCounts() const;
   bool hasItsRestShapes() const;
 
-  /// Writes or reads what the dynamics remember from step to step. When reading, the nodes and the material are already
+  /// The positions of its nodes.
+  elastic_detail::BodyProbe<btScalar> probe() const;
+
+  /// Writes or reads the pressure, and what the dynamics remember from step to step. When reading, the nodes and the material are already
   /// the snapshot's.
   void serialize(WorldStream& stream);
 };
