@@ -212,6 +212,28 @@ TYPED_TEST(PressureOf, BalloonsOfAnyMassRestWhereTheirPressureSays) {
   }
 }
 
+TYPED_TEST(PressureOf, AThinSphereBurstsWhereItsEquilibriumEnds) {
+  constexpr double kWall = 0.04;
+  ElasticOptions options = rubber();
+  options.stiffnessDamping = 0.5;
+  const double limit = kWall * options.youngsModulus / (2.0 * (1.0 - kWall / 2) * (1.0 - options.poissonRatio));
+  for (const double share : {0.8, 0.95, 1.05, 1.2}) {
+    ElasticBody<TypeParam> body = made<TypeParam>(sphereOfVolume(1.0 - kWall, 2, 1, false), options);
+    const double volume = body.volume();
+    for (int k = 0; k < 600; ++k) {
+      ASSERT_TRUE(body.setPressure(limit * share * std::min(1.0, k / 200.0 + 0.01)).ok());
+      body.step(1.0 / 60.0);
+    }
+    // p R / (2 t E) (1 - nu) = (x - 1) / x^2, with x the stretch.
+    const double stretch = 2.0 * (1.0 - std::sqrt(std::max(1.0 - share, 0.0))) / share;
+    if (share < 1.0) {
+      EXPECT_NEAR(std::cbrt(body.volume() / volume) / stretch, 1.0, 0.06) << share;
+    } else {
+      EXPECT_GT(body.volume() / volume, 60.0) << share;
+    }
+  }
+}
+
 TYPED_TEST(PressureOf, WhatBurstsOrIsCrushedStaysFinite) {
   const Cage cage = hollowSphere(0.45, 0.5, 1, 1);
   for (const double pressure : {1e5, 1e7, -1e4, -1e6}) {

@@ -98,10 +98,10 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// and acts on their walls; otherwise it is in the body, and acts on its whole surface outwards. Needs
   /// ForceModel::Corotated. The body wakes.
   ///
-  /// A balloon under constant pressure has no equilibrium beyond the strain at which its wall gives way faster than it
-  /// tightens (corotated elasticity: p R / (2 t E) = 1 / (1 - nu) for a sphere). It then bursts to 64 times its volume
-  /// at rest, above which the pressure falls, to 0 at 125 times. Suction falls to 0 below a tenth of the volume. Energy
-  /// that the pressure supplies is the application's: blow a body up in a second, not in a step.
+  /// A thin sphere of radius R and wall t has no equilibrium above p = t E / (2 R (1 - nu)), where it is twice as large
+  /// as at rest: its wall gives way faster than it tightens. It bursts to 64 times its volume at rest, above which the
+  /// pressure falls, to 0 at 125 times. Suction falls to 0 below a tenth of the volume. The energy that a pressure
+  /// supplies is the application's: blow a body up in a second, not in a step.
   /// Cost    per step: O(faces), about as much as an iteration of the solve; the first call: O(T log T)
   /// Errors  NonFinite; InvalidOption: one of Bullet's force models; too large for the body's mass and size, as a
   ///         Young's modulus; tets that enclose nothing; within a step. Nothing is changed on an error
@@ -128,6 +128,10 @@ class TETSKIN_SOLVER_API DeformableBody {
   ///            encloses nothing, or joins parts of the cage that are not connected; those of `setPressure`. Nothing is
   ///            changed on an error
   Status setPressureSurface(const TriangleMesh& mesh, const Embedding& embedding);
+  /// Prepares such a surface, which is made when pressure or volume are first asked for; where that fails, as the mesh
+  /// is open, the tets' boundary serves. Does nothing while there is pressure. `World` does so for its bodies.
+  /// mesh  kept
+  void preparePressureSurface(std::shared_ptr<const TriangleMesh> mesh, const Embedding& embedding);
 
   /// Sets the body's gravity, world length / s^2. Until the first call the body follows the world's gravity, including
   /// later changes. The body wakes. Error: InvalidOption if not finite, or above 1e6 body sizes per second squared;

@@ -9,7 +9,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <utility>
 
 namespace tetskin::elastic_detail {
 
@@ -73,6 +75,12 @@ class BodyPressure {
     of.setPressure(law_, surface_);
     return {};
   }
+  /// Prepares a surface that is made when it is needed; where that fails, pressure acts on the boundary of the tets.
+  void offerSurface(std::function<Result<PressureSurface>()> make) {
+    if (given_ || acts()) return;
+    surface_.reset();
+    make_ = std::move(make);
+  }
   /// The volume of the surface, and the pressure in it; 0 without a surface.
   double volume(const BodyProbe<Scalar>& now, BodyDynamics<Scalar>& of) {
     return findSurface(of).ok() ? of.volumeIn(*surface_, now) : 0.0;
@@ -93,6 +101,8 @@ class BodyPressure {
   void moveTo(BodyDynamics<Scalar>& of) {
     given_ = given_ && surface_->nodes().back() < of.nodeCount();
     if (!given_) surface_.reset();
+    if (nodes_ > 0 && nodes_ != of.nodeCount()) make_ = nullptr;
+    nodes_ = of.nodeCount();
     if (acts() && !restore(law_, of).ok()) (void)end(of);
   }
   /// Number of faces of the surface that `setSurface` has set; 0: none.
@@ -100,6 +110,7 @@ class BodyPressure {
 
  private:
   static constexpr double kLeastVolume = 1e-3;
+  std::size_t nodes_ = 0;  ///< of the last dynamics
 
   Status end(BodyDynamics<Scalar>& of) {
     law_ = {};
@@ -109,7 +120,8 @@ class BodyPressure {
   Status findSurface(BodyDynamics<Scalar>& of) {
     if (surface_) return {};
     if (!of.tets()) return {StatusCode::InvalidOption, "pressure needs a body of elastic tets"};
-    Result<PressureSurface> made = PressureSurface::ofTets(of.tets()->rest());
+    Result<PressureSurface> made = make_ && !given_ ? make_() : Status{StatusCode::Empty, ""};
+    if (!made.ok()) made = PressureSurface::ofTets(of.tets()->rest());
     if (!made.ok()) return made.status();
     surface_ = std::make_shared<PressureSurface>(std::move(made).value());
     return {};
@@ -118,6 +130,7 @@ class BodyPressure {
   PressureLaw law_;
   std::shared_ptr<PressureSurface> surface_;  ///< null: of the tets, not made yet
   bool given_ = false;                        ///< by `setSurface`
+  std::function<Result<PressureSurface>()> make_;
 };
 
 }  // namespace tetskin::elastic_detail

@@ -201,7 +201,15 @@ Result<PressureSurface> PressureSurface::ofMesh(const std::vector<std::array<dou
   return surface;
 }
 
-/// Hollows have walls that face into them: seen as solids, their volume is below 0.
+/// The solid angle of a triangle, seen from the origin, over that of a sphere.
+double windingOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double cosine = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return std::atan2(a.dot(b.cross(c)), cosine) / (2.0 * EIGEN_PI);
+}
+
+/// Hollows have walls that face into them: seen as solids, their volume is below 0, and they lie in others. What lies
+/// outside was only wound the other way.
 Status PressureSurface::choose(const std::string& name) {
   std::vector<Corners> faces;
   const auto corners = [](const auto& face) {
@@ -225,18 +233,30 @@ Status PressureSurface::choose(const std::string& name) {
     size += std::abs(volume);
   }
   constexpr double kNothing = 1e-9;
-  const auto isHollow = [&](double volume) { return volume < -kNothing * size; };
-  const bool hollow = std::any_of(volumes.begin(), volumes.end(), isHollow);
+  std::vector<char> hollows(faces.size(), 0), seen(faces.size(), 0);  // by part
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto part = static_cast<std::size_t>(parts[f]);
+    if (std::exchange(seen[part], char(1)) || !(volumes[part] < -kNothing * size)) continue;
+    const Vector3d from = at(points_, static_cast<std::size_t>(faces[f][0]));
+    double winding = 0.0;
+    for (std::size_t g = 0; g < faces.size(); ++g) {
+      const auto x = [&](std::size_t k) { return Vector3d(at(points_, static_cast<std::size_t>(faces[g][k])) - from); };
+      if (volumes[static_cast<std::size_t>(parts[g])] > 0.0) winding += windingOf(x(0), x(1), x(2));
+    }
+    hollows[part] = winding > 0.5;
+  }
+  const bool hollow = std::find(hollows.begin(), hollows.end(), 1) != hollows.end();
+  hollow_ = hollow;
   const auto acts = [&](std::size_t f) {
-    const double volume = volumes[static_cast<std::size_t>(parts[f])];
-    return hollow ? isHollow(volume) : volume > kNothing * size;
+    const auto part = static_cast<std::size_t>(parts[f]);
+    return hollow ? hollows[part] != 0 : std::abs(volumes[part]) > kNothing * size;
   };
   const auto keep = [&](auto& list, std::size_t firstFace) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < list.size(); ++k) {
       if (!acts(firstFace + k)) continue;
       auto face = list[k];
-      if (hollow) {
+      if (volumes[static_cast<std::size_t>(parts[firstFace + k])] < 0.0) {
         std::swap(face[1], face[2]);
         if constexpr (std::tuple_size_v<std::decay_t<decltype(face)>> > 3) std::swap(face[3], face[5]);
       }

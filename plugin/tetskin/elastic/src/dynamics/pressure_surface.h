@@ -39,6 +39,8 @@ class TETSKIN_ELASTIC_API PressureSurface {
   const std::vector<std::uint32_t>& nodes() const { return nodes_; }
   std::size_t faceCount() const { return triangles_.size() + quadratic_.size(); }
   double restVolume() const { return restVolume_; }
+  /// Whether it is that of hollows.
+  bool isHollow() const { return hollow_; }
 
   /// Three numbers for each of `nodes`, for the caller to fill.
   double* positions() { return positions_.data(); }
@@ -79,6 +81,7 @@ class TETSKIN_ELASTIC_API PressureSurface {
   Lists cornersOf_;   ///< by vertex: places in `corners_`
   Lists verticesOf_;  ///< by place in `nodes_`, with weights
   double restVolume_ = 0.0;
+  bool hollow_ = false;
   std::vector<double> positions_, derivative_;  ///< by node
   std::vector<double> points_, vectors_;        ///< by vertex
   std::vector<double> corners_;                 ///< derivatives: one of each triangle, six of each quadratic face

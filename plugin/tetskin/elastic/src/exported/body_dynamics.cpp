@@ -42,7 +42,8 @@ constexpr double kFlatAlpha = 200.0;
 
 /// Tension in the material of a body under pressure p in a volume V is p V over the material's, on the average of all
 /// directions, and up to half as much again along thin walls. It resists bending of thin walls more than the material
-/// does; without it in the matrix, those of light balloons would flutter.
+/// does; without it in the matrix, those of light balloons would flutter. In the matrix it resists rotations of the
+/// whole body, too, which the pressure in fact undoes: see `isStretched`.
 constexpr double kTension = 2.0;
 
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
@@ -248,14 +249,13 @@ void BodyDynamics<S>::findPressure(ParallelFor* threads) {
   if (!pressureSurface_) return;
   double* to = pressureSurface_->positions();
   for (const std::uint32_t slot : pressureSlots_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      *to++ = places_.at(slot)[k] + lastSeconds_ * static_cast<double>(velocities_[4 * slot + k]);
-    }
+    places_.fromDisplacement(slot, &moved_[4 * slot], to);
+    to += 3;
   }
   const double volume = pressureSurface_->evaluate(true, threads), pressure = pressure_.at(volume);
   const double slope = pressure_.slope(volume), root = std::sqrt(slope);
   const double tension = kTension * std::abs(pressure * volume) / materialVolume_;
-  if (pressure > 0.0) stretched_ += tension / shearModulus_;
+  if (pressure > 0.0 && pressureSurface_->isHollow()) stretched_ += tension / shearModulus_;
   const double* by = pressureSurface_->derivative();
   for (std::size_t n = 0; n < pressureSlots_.size(); ++n) {
     double squared = 0.0;

@@ -196,6 +196,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Its velocity as a rigid body of its momentum: at the beginning of the step, with what acts on it beside
   /// elasticity, or of the solution.
   RigidVelocity rigidVelocity(std::size_t component, bool solved) const;
+  /// Whether the matrix contains a tension, by pressure, that resists rotations of a component as a whole: with forces
+  /// from elsewhere, its rigid motion is then to be a separate unknown, which meets the masses alone.
+  bool isStretched() const { return spread_ > 1.0; }
   std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
   std::size_t componentCount() const { return components_.count(); }
   double componentMass(std::size_t component) const { return components_.mass(component); }
