@@ -115,7 +115,7 @@ int main() try {
     // A pump that fills it in two seconds: each call sets the amount of gas that has this pressure at present.
     const double filled = std::min((frame - 60) / 120.0, 1.0);
     if (filled > 0.0 && frame <= 180) {
-      if (const tetskin::Status set = body->setGas(3000 * filled); !set.ok()) throw std::runtime_error(set.message);
+      if (const tetskin::Status set = body->setGas(1500 * filled); !set.ok()) throw std::runtime_error(set.message);
     }
     if (frame % 10 == 0) {
       std::vector<float> points(skin.positions().data(), skin.positions().data() + 3 * ring.vertexCount());

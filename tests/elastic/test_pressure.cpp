@@ -144,14 +144,16 @@ TEST(Pressure, ForcesAreTheSlopesOfTheEnergy) {
 TEST(Pressure, TheLawOfEnergyHoldsAtAllVolumes) {
   using elastic_detail::PressureLaw;
   for (const PressureLaw& law :
-       {PressureLaw{PressureLaw::Kind::Constant, 3.0, 0.0, 2.0}, PressureLaw{PressureLaw::Kind::Constant, -3.0, 0.0, 2.0},
-        PressureLaw{PressureLaw::Kind::Gas, 3.0, 0.0, 2.0}, PressureLaw{PressureLaw::Kind::Gas, -1.0, 5.0, 2.0}}) {
+       {PressureLaw{PressureLaw::Kind::Constant, 3.0, 0.0, 2.0},
+        PressureLaw{PressureLaw::Kind::Constant, -3.0, 0.0, 2.0}, PressureLaw{PressureLaw::Kind::Gas, 3.0, 0.0, 2.0},
+        PressureLaw{PressureLaw::Kind::Gas, -1.0, 5.0, 2.0}}) {
     EXPECT_NEAR(law.energy(2.0), 0.0, 1e-12);
     EXPECT_EQ(law.at(2.0), law.pressure);
     for (const double volume : {0.001, 0.03, 0.05, 0.15, 0.3, 1.0, 2.0, 20.0, 120.0, 140.0, 240.0, 260.0}) {
       constexpr double kStep = 1e-6;
       const auto slope = [&](auto&& f) { return (f(volume + kStep) - f(volume - kStep)) / (2 * kStep); };
-      EXPECT_NEAR(law.at(volume), -slope([&](double v) { return law.energy(v); }), 1e-5 * (1 + std::abs(law.at(volume))));
+      EXPECT_NEAR(law.at(volume), -slope([&](double v) { return law.energy(v); }),
+                  1e-5 * (1 + std::abs(law.at(volume))));
       EXPECT_NEAR(law.slope(volume), -slope([&](double v) { return law.at(v); }), 1e-5 * (1 + law.slope(volume)));
       EXPECT_GE(law.slope(volume), 0.0);
     }
@@ -177,8 +179,8 @@ TYPED_TEST(PressureOf, AGasKeepsPressureTimesVolume) {
   EXPECT_NEAR(std::cbrt(body.volume() * 1.2e5 / amount), 1.0, 1e-4);
 }
 
-/// Undamped, from 1e2 to 1e6 Pa, light and heavy: each comes to the same rest by its steps' own damping, or swings about
-/// it, without gaining energy.
+/// Undamped, from 1e2 to 1e6 Pa, light and heavy: each comes to the same rest by its steps' own damping, or swings
+/// about it, without gaining energy.
 TYPED_TEST(PressureOf, BalloonsOfAnyMassRestWhereTheirPressureSays) {
   Cage cage = hollowSphere(0.45, 0.5, 1, 1);
   for (const double pressure : {1e2, 1e4, 1e5, 1e6}) {

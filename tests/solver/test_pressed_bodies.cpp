@@ -267,7 +267,8 @@ TEST(PressedBodies, StepsHaveTheSameBitsWithAnyThreads) {
     TetskinWorld world;
     world.bodySolver().setDeterministic(true);
     if (threads > 0) world.bodySolver().setThreads(&pool);
-    const auto first = added(world, balloonAt(kRadius), latex()), second = added(world, balloonAt(3 * kRadius), latex());
+    const auto first = added(world, balloonAt(kRadius), latex()),
+               second = added(world, balloonAt(3 * kRadius), latex());
     EXPECT_TRUE(first->setGas(5e3).ok());
     EXPECT_TRUE(second->setPressure(1e3).ok());
     frames(world, 30, 2);

@@ -207,9 +207,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
                    setter([](DeformableBody& b, double v) { return b.setPressure(v); }),
                    "Inside, above that outside, in pressure units; 0: none; below 0: suction. In its hollows if it has "
                    "any (a balloon, a tyre), otherwise in the whole; on the visible surface where that is closed.")
-      .def("set_gas", locked([](BodyHandle& b, double pressure, double outside) {
-             check(alive(b).setGas(pressure, outside));
-           }),
+      .def("set_gas",
+           locked([](BodyHandle& b, double pressure, double outside) { check(alive(b).setGas(pressure, outside)); }),
            "pressure"_a, "outside"_a = 0.0,
            "Fills it with a gas of this pressure above that outside: from now on (pressure + outside) x volume is "
            "constant. outside: absolute, 0 for a soft toy, 101325 for a real tyre in Pa. 0 and 0: lets the gas out.")

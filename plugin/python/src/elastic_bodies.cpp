@@ -90,17 +90,18 @@ void bindElasticBodies(nb::module_& module) {
       .def_prop_rw(
           "pressure", [](ElasticModel& m) { return m.body->pressure(); },
           [](ElasticModel& m, double pressure) { check(m.body->setPressure(pressure)); },
-          "Inside, above that outside, in pressure units; 0: none. In its hollows if it has any, otherwise in the whole.")
+          "Inside, above that outside, in pressure units; 0: none. In its hollows if it has any, otherwise in the "
+          "whole.")
       .def(
-          "set_gas",
-          [](ElasticModel& m, double pressure, double outside) { check(m.body->setGas(pressure, outside)); },
+          "set_gas", [](ElasticModel& m, double pressure, double outside) { check(m.body->setGas(pressure, outside)); },
           "pressure"_a, "outside"_a = 0.0,
           "Fills it with a gas of this pressure above that outside: (pressure + outside) x volume is constant then.")
       .def_prop_ro(
           "volume", [](ElasticModel& m) { return m.body->volume(); },
           "The volume that pressure fills: of its hollows or, without any, of the body.")
       .def_prop_ro(
-          "energy", [](ElasticModel& m) { return m.body->energy(); }, "Elastic energy at the current positions, minus the work of pressure.");
+          "energy", [](ElasticModel& m) { return m.body->energy(); },
+          "Elastic energy at the current positions, minus the work of pressure.");
 }
 
 }  // namespace tetskin::python

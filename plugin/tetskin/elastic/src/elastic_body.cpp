@@ -6,7 +6,7 @@
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/elastic/elastic_body.h>
-#include <tetskin/elastic/src/dynamics/body_pressure.h>
+#include <tetskin/elastic/src/exported/body_pressure.h>
 
 #include <algorithm>
 #include <cassert>

@@ -628,9 +628,8 @@ Status DeformableBody::setPressureSurface(const TriangleMesh& mesh, const Embedd
 void DeformableBody::preparePressureSurface(std::shared_ptr<const TriangleMesh> mesh, const Embedding& embedding) {
   if (!impl_->corotated() || !mesh) return;
   ForcedBody& forced = impl_->corotated()->body();
-  forced.pressure.offerSurface([&forced, mesh = std::move(mesh), embedding] {
-    return embeddedSurface(*mesh, embedding, *forced.dynamics);
-  });
+  forced.pressure.offerSurface(
+      [&forced, mesh = std::move(mesh), embedding] { return embeddedSurface(*mesh, embedding, *forced.dynamics); });
 }
 
 }  // namespace tetskin

@@ -32,8 +32,8 @@ struct PressureLaw {
   enum class Kind : std::uint8_t { None, Constant, Gas };
 
   Kind kind = Kind::None;
-  double pressure = 0.0;  ///< beside that outside: the constant one, or that of the gas at the volume `reference`
-  double outside = 0.0;   ///< of the gas: the absolute pressure outside
+  double pressure = 0.0;   ///< beside that outside: the constant one, or that of the gas at the volume `reference`
+  double outside = 0.0;    ///< of the gas: the absolute pressure outside
   double reference = 1.0;  ///< volume, above 0: of the gas when it was set; of the surface at rest
 
   bool operator==(const PressureLaw& other) const {

@@ -69,9 +69,8 @@ std::vector<Edge> sortedEdges(const std::vector<Corners>& faces) {
       edges.push_back({{std::min(a, b), std::max(a, b)}, f, a < b ? 1 : -1});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
-  });
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& a, const Edge& b) { return a.ends != b.ends ? a.ends < b.ends : a.face < b.face; });
   return edges;
 }
 
@@ -106,6 +105,7 @@ std::vector<int> closedParts(const std::vector<Corners>& faces, std::size_t& ope
 struct FaceRule {
   double b, weight;
 };
+/// Dunavant's rule of six points.
 constexpr FaceRule kFaceRules[2] = {{0.445948490915965, 0.223381589678011}, {0.091576213509771, 0.109951743655322}};
 
 /// Of a quadratic triangle at a point: the shape functions, and their derivatives by the second and the third weight.
@@ -225,14 +225,15 @@ Status PressureSurface::choose(const std::string& name) {
   }
   std::vector<double> volumes(faces.size(), 0.0);
   double size = 0.0;
-  const Vector3d origin = faces.empty() ? Vector3d(Vector3d::Zero()) : at(points_, static_cast<std::size_t>(faces[0][0]));
+  const Vector3d origin =
+      faces.empty() ? Vector3d(Vector3d::Zero()) : at(points_, static_cast<std::size_t>(faces[0][0]));
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto x = [&](std::size_t k) { return Vector3d(at(points_, static_cast<std::size_t>(faces[f][k])) - origin); };
     const double volume = x(0).dot(x(1).cross(x(2))) / 6.0;
     volumes[static_cast<std::size_t>(parts[f])] += volume;
     size += std::abs(volume);
   }
-  constexpr double kNothing = 1e-9;
+  constexpr double kNothing = 1e-9;  // share of all pyramids over the faces, below which a part encloses nothing
   std::vector<char> hollows(faces.size(), 0), seen(faces.size(), 0);  // by part
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto part = static_cast<std::size_t>(parts[f]);
@@ -258,7 +259,7 @@ Status PressureSurface::choose(const std::string& name) {
       auto face = list[k];
       if (volumes[static_cast<std::size_t>(parts[firstFace + k])] < 0.0) {
         std::swap(face[1], face[2]);
-        if constexpr (std::tuple_size_v<std::decay_t<decltype(face)>> > 3) std::swap(face[3], face[5]);
+        if constexpr (std::tuple_size_v < std::decay_t < decltype(face) >>> 3) std::swap(face[3], face[5]);
       }
       list[kept++] = face;
     }

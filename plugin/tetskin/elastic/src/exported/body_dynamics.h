@@ -296,9 +296,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::vector<double> gasStiffness_;                  ///< u of BlockMatrix::setOuter over the root of alpha
   double gasFrequency_ = 0.0;                         ///< square of that of the gas alone, 1 / s^2
   double shearModulus_ = 1.0;
-  double materialVolume_ = 0.0;                       ///< of the tets, times their stiffness factors
-  double stretched_ = 1.0;                            ///< see BlockMatrix::assemble, by the pressure of this step
-  double spread_ = 1.0;                               ///< of the last assembly
+  double materialVolume_ = 0.0;  ///< of the tets, times their stiffness factors
+  double stretched_ = 1.0;       ///< see BlockMatrix::assemble, by the pressure of this step
+  double spread_ = 1.0;          ///< of the last assembly
   ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
       forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces

@@ -180,9 +180,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   AlignedVector<S> residual_, direction_, rest_, step_, solution_;  // in the wide layout
   AlignedVector<S> stepPoints_, lowerPoints_;
   std::vector<std::uint32_t> outerSlots_;
-  std::vector<S> outer_;         ///< by entry of `outerSlots_`
-  AlignedVector<S> outerExtra_;  ///< in the wide layout
-  bool extraIsZero_ = false;     ///< `outerExtra_` is, except at `outerSlots_`
+  std::vector<S> outer_;            ///< by entry of `outerSlots_`
+  AlignedVector<S> outerExtra_;     ///< in the wide layout
+  bool extraIsZero_ = false;        ///< `outerExtra_` is, except at `outerSlots_`
   mutable std::vector<S> partial_;  // by range
   std::vector<Coupling> couplings_;
   std::vector<std::uint32_t> used_;        ///< numbers of couplings, since the last `free`

@@ -24,8 +24,8 @@ struct StiffnessPoint {
 template <class S>
 struct MatrixSource {
   const RestTets& rest;
-  const S* corners;  ///< see CorotatedTets::cornersForMatrix
-  double ratio;      ///< lambda / mu
+  const S* corners;     ///< see CorotatedTets::cornersForMatrix
+  double ratio;         ///< lambda / mu
   double spread = 1.0;  ///< see BlockMatrix::assemble
 };
 

@@ -194,7 +194,8 @@ void ForcedBody::reset(const ElasticMaterial& material) {
 elastic_detail::BodyProbe<btScalar> ForcedBody::probe() const {
   elastic_detail::BodyProbe<btScalar> probe(dynamics->matrix());
   assert(hasOwnCounts());
-  for (int n = 0; n < body->m_nodes.size(); ++n) toPoint(body->m_nodes[n].m_x, probe.point(static_cast<std::size_t>(n)));
+  for (int n = 0; n < body->m_nodes.size(); ++n)
+    toPoint(body->m_nodes[n].m_x, probe.point(static_cast<std::size_t>(n)));
   return probe;
 }
 

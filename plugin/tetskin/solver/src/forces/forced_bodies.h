@@ -6,7 +6,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/elastic/src/dynamics/body_pressure.h>
+#include <tetskin/elastic/src/exported/body_pressure.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 
@@ -82,8 +82,8 @@ struct ForcedBody {
   /// The positions of its nodes.
   elastic_detail::BodyProbe<btScalar> probe() const;
 
-  /// Writes or reads the pressure, and what the dynamics remember from step to step. When reading, the nodes and the material are already
-  /// the snapshot's.
+  /// Writes or reads the pressure, and what the dynamics remember from step to step. When reading, the nodes and the
+  /// material are already the snapshot's.
   void serialize(WorldStream& stream);
 };
 

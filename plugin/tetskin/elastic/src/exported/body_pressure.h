@@ -24,8 +24,9 @@ Status checkPressure(double pressure, double mass, double volume) {
   const double size = cubeRoot(volume), maximum = kMaxStiffness<Scalar> * mass / volume * size * size;
   if (!(mass > 0.0 && volume > 0.0) || std::abs(pressure) <= maximum) return {};
   char text[160];
-  std::snprintf(text, sizeof text, "a pressure of %.3g is too large for a mass of %.3g in a volume of %.3g: at most %.3g",
-                pressure, mass, volume, maximum);
+  std::snprintf(text, sizeof text,
+                "a pressure of %.3g is too large for a mass of %.3g in a volume of %.3g: at most %.3g", pressure, mass,
+                volume, maximum);
   return {StatusCode::InvalidOption, text};
 }
 
@@ -109,6 +110,7 @@ class BodyPressure {
   std::size_t givenFaces() const { return given_ ? surface_->faceCount() : 0; }
 
  private:
+  /// Share of the volume at rest below which a gas cannot be set.
   static constexpr double kLeastVolume = 1e-3;
   std::size_t nodes_ = 0;  ///< of the last dynamics
 
