@@ -217,9 +217,9 @@ TYPED_TEST(PressureOf, BalloonsOfAnyMassRestWhereTheirPressureSays) {
 TYPED_TEST(PressureOf, AThinSphereBurstsWhereItsEquilibriumEnds) {
   constexpr double kWall = 0.04;
   ElasticOptions options = rubber();
-  options.stiffnessDamping = 0.5;
+  options.stiffnessDamping = 0.02;
   const double limit = kWall * options.youngsModulus / (2.0 * (1.0 - kWall / 2) * (1.0 - options.poissonRatio));
-  for (const double share : {0.8, 0.95, 1.05, 1.2}) {
+  for (const double share : {0.5, 0.8, 1.2}) {
     ElasticBody<TypeParam> body = made<TypeParam>(sphereOfVolume(1.0 - kWall, 2, 1, false), options);
     const double volume = body.volume();
     for (int k = 0; k < 600; ++k) {

@@ -313,8 +313,8 @@ void PressureSurface::index(const std::vector<SurfaceVertex>* vertices) {
   for (const QuadraticFace& face : quadratic_) {
     for (const std::uint32_t v : face) corners.push_back({v, corner++, 1.0});
   }
-  nodesOf_ = listsOf(ofVertices, used.size());
-  verticesOf_ = listsOf(ofNodes, nodes_.size());
+  if (vertices) nodesOf_ = listsOf(ofVertices, used.size());
+  if (vertices) verticesOf_ = listsOf(ofNodes, nodes_.size());
   cornersOf_ = listsOf(corners, used.size());
   corners_.assign(3 * corner, 0.0);
   vectors_.assign(3 * used.size(), 0.0);
@@ -344,20 +344,27 @@ PressureSurface::Lists PressureSurface::listsOf(std::vector<Entry> entries, std:
 void PressureSurface::gather(const Lists& lists, const std::vector<double>& from, std::vector<double>& to,
                              ParallelFor* threads) {
   forItems(threads, lists.starts.size() - 1, [&](std::size_t owner) {
-    double sum[3] = {};
+    double x = 0.0, y = 0.0, z = 0.0;
     for (std::size_t k = lists.starts[owner]; k < lists.starts[owner + 1]; ++k) {
-      for (std::size_t i = 0; i < 3; ++i) sum[i] += lists.factors[k] * from[3 * lists.items[k] + i];
+      const double factor = lists.factors[k], *v = &from[3 * lists.items[k]];
+      x += factor * v[0];
+      y += factor * v[1];
+      z += factor * v[2];
     }
-    std::copy_n(sum, 3, &to[3 * owner]);
+    to[3 * owner] = x;
+    to[3 * owner + 1] = y;
+    to[3 * owner + 2] = z;
   });
 }
 
 double PressureSurface::evaluate(bool derivative, ParallelFor* threads) {
-  gather(nodesOf_, positions_, points_, threads);
+  const bool ownNodes = nodesOf_.items.empty();  // vertices are nodes, in the same order
+  if (ownNodes) std::copy(positions_.begin(), positions_.end(), points_.begin());
+  if (!ownNodes) gather(nodesOf_, positions_, points_, threads);
   const double volume = sumOfFaces(threads);
   if (!derivative) return volume;
-  gather(cornersOf_, corners_, vectors_, threads);
-  gather(verticesOf_, vectors_, derivative_, threads);
+  gather(cornersOf_, corners_, ownNodes ? derivative_ : vectors_, threads);
+  if (!ownNodes) gather(verticesOf_, vectors_, derivative_, threads);
   return volume;
 }
 
@@ -375,12 +382,14 @@ double PressureSurface::sumOfFaces(ParallelFor* threads) {
   return std::accumulate(partial_.begin(), partial_.end(), 0.0);
 }
 
-/// Of the pyramid from the first vertex; a third of the area belongs to each corner.
+/// Of the pyramid from the first vertex to the face; a third of the area belongs to each corner.
 double PressureSurface::volumeOf(const Triangle& face, double* corner) const {
-  const Vector3d a = at(points_, face[0]), area = (at(points_, face[1]) - a).cross(at(points_, face[2]) - a) / 2.0;
-  const Vector3d centre = (a + at(points_, face[1]) + at(points_, face[2])) / 3.0;
-  for (int k = 0; k < 3; ++k) corner[k] = area[k] / 3.0;
-  return area.dot(centre - at(points_, 0)) / 3.0;
+  const double *o = points_.data(), *a = o + 3 * face[0], *b = o + 3 * face[1], *c = o + 3 * face[2];
+  const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+  corner[0] = (u[1] * v[2] - u[2] * v[1]) / 6.0;
+  corner[1] = (u[2] * v[0] - u[0] * v[2]) / 6.0;
+  corner[2] = (u[0] * v[1] - u[1] * v[0]) / 6.0;
+  return corner[0] * (a[0] - o[0]) + corner[1] * (a[1] - o[1]) + corner[2] * (a[2] - o[2]);
 }
 
 double PressureSurface::volumeOf(const QuadraticFace& face, double* corners) const {

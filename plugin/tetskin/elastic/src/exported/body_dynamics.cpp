@@ -111,6 +111,7 @@ void BodyDynamics<S>::setPressure(const PressureLaw& law, std::shared_ptr<Pressu
     }
   }
   pressureSurface_ = std::move(surface);
+  changed_ |= !pressureSurface_ && spread_ != 1.0;
   materialVolume_ = 0.0;
   if (!pressureSurface_) return;
   const RestTets& rest = tets_->rest();
@@ -697,7 +698,8 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
   stream(known);
   stream(solved);
   stream(alpha);
-  if (pressureSurface_) stream(spread_);
+  double spread = pressureSurface_ ? spread_ : 1.0;
+  if (pressureSurface_) stream(spread);
   stream(stiffnessOverInertia_);
   stream(untouched_);
   stream(lastSeconds_);
@@ -707,7 +709,9 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
   if (tets_) matrix_.serializeWide(stream, matrix_.solution());
   loneSolve_.serialize(stream, matrix_);
   if (stream.restoring()) {
-    if (!changed && (changed_ || turned || alpha != alpha_)) assembleAgain(alpha);
+    const bool same = alpha == alpha_ && spread == spread_;
+    spread_ = spread;
+    if (!changed && (changed_ || turned || !same)) assembleAgain(alpha);
     alpha_ = alpha;
     changed_ = changed;
     remembered_ = known;

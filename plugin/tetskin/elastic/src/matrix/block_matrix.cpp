@@ -301,8 +301,10 @@ void BlockMatrix<S>::fixAlong(std::size_t node, const S n[3]) {
 template <class S>
 void BlockMatrix<S>::setOuter(const std::vector<std::uint32_t>& slots, const std::vector<double>& u) {
   assert(u.size() == 3 * slots.size());
-  outerSlots_ = slots;
-  extraIsZero_ = false;
+  if (slots != outerSlots_) {
+    outerSlots_ = slots;
+    extraIsZero_ = false;
+  }
   outer_.assign(u.size(), S(0));
   std::transform(u.begin(), u.end(), outer_.begin(), [](double value) { return static_cast<S>(value); });
 }
