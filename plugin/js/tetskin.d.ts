@@ -502,6 +502,15 @@ export interface Body extends Thing {
   readonly relativeStiffness: number;
   poissonRatio: number;
   stiffnessDamping: number;
+  /** Inside its hollows, or the whole of a body without any, above that outside; pressure units; 0: none. */
+  pressure: number;
+  /** The volume that pressure fills. */
+  readonly volume: number;
+  /**
+   * Fills it with a gas of this pressure: from now on (pressure + outside) x volume is constant.
+   * @param outside  absolute pressure outside; 0, or 101325 for a real tyre in Pa
+   */
+  setGas(pressure: number, outside?: number): void;
   friction: number;
   /** 0 to 1. The product of both objects' counts, so both need one: see `BodyOptions`. */
   restitution: number;

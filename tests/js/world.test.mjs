@@ -277,7 +277,13 @@ test("materials change while it runs", () => {
   body.setGravity(null);
   steps(world, 30);
   assert.ok(body.relativeStiffness > 0);
-  const refused = {youngsModulus: -1, poissonRatio: 0.5, stiffnessDamping: -1, friction: 2};
+  const {volume} = body;
+  body.pressure = 500;
+  assert.ok(body.pressure === 500 && volume > 0);
+  body.setGas(1000, 1e5);
+  assert.ok(Math.abs(body.pressure - 1000) < 1);
+  body.pressure = 0;
+  const refused = {pressure: 1e30, youngsModulus: -1, poissonRatio: 0.5, stiffnessDamping: -1, friction: 2};
   for (const [name, value] of Object.entries(refused)) {
     const before = body[name];
     assert.throws(() => { body[name] = value; }, failure("InvalidOption"));

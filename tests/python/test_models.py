@@ -271,6 +271,19 @@ def test_recomputed_normals_stay_split_at_hard_edges(mesh, cage):
         assert np.array_equal(add(facets, normals="recomputed").normals, split)
 
 
+def test_an_elastic_body_is_filled_with_gas(cage):
+    body = ts.ElasticBody(cage, youngs_modulus=1e5, density=100, stiffness_damping=0.1)
+    before = body.volume
+    body.set_gas(2e4, outside=1e5)
+    assert body.pressure == pytest.approx(2e4)
+    for _ in range(60):
+        body.step(1 / 60)
+    assert body.volume > 1.01 * before
+    assert (body.pressure + 1e5) * body.volume == pytest.approx(1.2e5 * before, rel=1e-6)
+    body.pressure = 500
+    assert body.pressure == 500
+
+
 def test_an_elastic_body_swings_without_a_world(cage):
     body = ts.ElasticBody(cage, youngs_modulus=1e4, density=100)
     held = cage.nodes[:, 0] < -1

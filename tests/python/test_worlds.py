@@ -112,6 +112,29 @@ def test_pins_are_masks_and_move(mesh, cage):
     assert not body.pinned.any()
 
 
+def test_pressure_and_gas_fill_a_body(mesh, cage):
+    world = ts.World(gravity=(0, 0, 0))
+    body = world.add_body(cage, mesh, youngs_modulus=2e5, stiffness_damping=0.1)
+    before = body.volume
+    assert body.pressure == 0 and before > 0
+    body.pressure = 1e4
+    settle(world, 30)
+    assert body.pressure == 1e4 and body.volume > 1.02 * before
+    body.pressure = 0
+    settle(world, 60)
+    body.set_gas(pressure=2e4)
+    amount = body.pressure * body.volume
+    saved = world.save()
+    settle(world, 60)
+    assert body.volume > 1.02 * before and body.pressure * body.volume == pytest.approx(amount, rel=1e-4)
+    world.restore(saved)
+    assert body.pressure == pytest.approx(2e4, rel=1e-5)
+    body.set_gas(1e3, outside=101325)
+    assert body.pressure == pytest.approx(1e3, rel=1e-3)
+    body.set_gas(0)
+    assert body.pressure == 0
+
+
 def test_materials_are_read_and_set(mesh, cage):
     world = ts.World()
     body = world.add_body(

@@ -43,6 +43,8 @@ TEST(RecordedCalls, OfADeformableBody) {
              if (k == 1) s.ball->followWorldGravity();
            }},
           CALL((void)s.ball->setYoungsModulus(3 * s.ball->youngsModulus())),
+          CALL((void)s.ball->setPressure(500)),
+          CALL((void)s.ball->setGas(300, 1e3)),
           CALL((void)s.ball->setPoissonRatio(0.45)),
           CALL((void)s.ball->setStiffnessDamping(0.1)),
           {"teleport",

@@ -6,6 +6,7 @@
 
 #include "solver/deformable_test.h"
 #include "support/bars.h"
+#include "support/hollow_sphere.h"
 #include "support/replays.h"
 #include "support/rigids.h"
 
@@ -298,6 +299,51 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
     return scene;
   };
   expectReplays(make, 45, {0, 4, 6, 12, 19, 27, 32});
+}
+
+TEST(SnapshotsOfSoftBodies, OfBodiesUnderPressure) {
+  const auto make = [] {
+    auto scene = std::make_unique<Scene>();
+    for (const double height : {0.5, 1.7}) {
+      TetMesh cage = hollowSphere(0.4, 0.5, 1, 1);
+      SoftBodyOptions options;
+      options.youngsModulus = 1e5;
+      scene->bodies.push_back(added(scene->worldOf, lifted(cage, height), options));
+    }
+    scene->before = [scene = scene.get()](int frame) {
+      if (frame == 2) {
+        EXPECT_TRUE(scene->bodies[0]->setGas(1e3, 1e4).ok());
+      }
+      if (frame == 8) {
+        EXPECT_TRUE(scene->bodies[1]->setPressure(2e3).ok());
+      }
+      if (frame == 20) {
+        EXPECT_TRUE(scene->bodies[0]->setPressure(0).ok());
+      }
+    };
+    return scene;
+  };
+  expectReplays(make, 30, {0, 5, 12, 24});
+}
+
+TEST(SnapshotsOfSoftBodies, OfAGasThatSleeps) {
+  auto scene = std::make_unique<Scene>();
+  scene->bodies.push_back(added(scene->worldOf, latticeCage(2, 2, 2, 0.3)));
+  DeformableBody& body = *scene->bodies[0];
+  ASSERT_TRUE(body.setGas(50, 100).ok());
+  const Bytes start = saved(*scene);
+  for (int f = 0; f < 400 && scene->soft().isActive(); ++f) scene->frame(f);
+  ASSERT_FALSE(scene->soft().isActive());
+  const Bytes asleep = saved(*scene);
+  const double pressure = body.pressure(), volume = body.volume();
+  restore(*scene, start);
+  EXPECT_NEAR(body.pressure(), 50, 1e-3);
+  EXPECT_NE(body.volume(), volume);
+  ASSERT_TRUE(body.setPressure(0).ok());
+  restore(*scene, asleep);
+  EXPECT_FALSE(scene->soft().isActive());
+  EXPECT_EQ(body.pressure(), pressure);
+  EXPECT_EQ(body.volume(), volume);
 }
 
 }  // namespace

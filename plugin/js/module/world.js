@@ -274,6 +274,9 @@ class Body extends Member {
   transform(position, rotation = [0, 0, 0, 1]) {
     this.core.transform(own(this), vectorOf(position, "position"), vectorOf(rotation, "rotation", 4));
   }
+  setGas(pressure, outside = 0) {
+    this.core.setGas(own(this), numberOf(pressure, "pressure"), numberOf(outside, "outside"));
+  }
   reset() {
     this.core.resetBody(own(this));
   }
@@ -316,6 +319,8 @@ properties(Body, {
   relativeStiffness: [kNumber, "relativeStiffness"],
   poissonRatio: [kNumber, "poissonRatio", "setPoissonRatio"],
   stiffnessDamping: [kNumber, "stiffnessDamping", "setStiffnessDamping"],
+  pressure: [kNumber, "pressure", "setPressure"],
+  volume: [kNumber, "bodyVolume"],
   friction: [kNumber, "bodyFriction", "setBodyFriction"],
   restitution: [kNumber, "bodyRestitution", "setBodyRestitution"],
 });

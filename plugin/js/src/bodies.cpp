@@ -132,6 +132,9 @@ template <auto Set>
 void write(BodyHandle& body, double value) {
   check((alive(*body.state).*Set)(value));
 }
+void setGas(BodyHandle& body, double pressure, double outside) {
+  check(alive(*body.state).setGas(pressure, outside));
+}
 double friction(BodyHandle& body) {
   return static_cast<double>(alive(*body.state).body().m_cfg.kDF);
 }
@@ -195,6 +198,10 @@ EMSCRIPTEN_BINDINGS(bodies) {
   expose<&write<&DeformableBody::setPoissonRatio>>("setPoissonRatio");
   expose<&read<&DeformableBody::stiffnessDamping>>("stiffnessDamping");
   expose<&write<&DeformableBody::setStiffnessDamping>>("setStiffnessDamping");
+  expose<&read<&DeformableBody::pressure>>("pressure");
+  expose<&write<&DeformableBody::setPressure>>("setPressure");
+  expose<&read<&DeformableBody::volume>>("bodyVolume");
+  expose<&setGas>("setGas");
   expose<&friction>("bodyFriction");
   expose<&setFriction>("setBodyFriction");
   expose<&restitution>("bodyRestitution");

@@ -203,6 +203,17 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
       .def_prop_rw("stiffness_damping", number([](DeformableBody& b) { return b.stiffnessDamping(); }),
                    setter([](DeformableBody& b, double v) { return b.setStiffnessDamping(v); }),
                    "Seconds: Rayleigh damping, 0 or more.")
+      .def_prop_rw("pressure", number([](DeformableBody& b) { return b.pressure(); }),
+                   setter([](DeformableBody& b, double v) { return b.setPressure(v); }),
+                   "Inside, above that outside, in pressure units; 0: none; below 0: suction. In its hollows if it has "
+                   "any (a balloon, a tyre), otherwise in the whole; on the visible surface where that is closed.")
+      .def("set_gas",
+           locked([](BodyHandle& b, double pressure, double outside) { check(alive(b).setGas(pressure, outside)); }),
+           "pressure"_a, "outside"_a = 0.0,
+           "Fills it with a gas of this pressure above that outside: from now on (pressure + outside) x volume is "
+           "constant. outside: absolute, 0 for a soft toy, 101325 for a real tyre in Pa. 0 and 0: lets the gas out.")
+      .def_prop_ro("volume", number([](DeformableBody& b) { return b.volume(); }),
+                   "The volume that pressure fills: of its hollows or, without any, of the body.")
       .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),
                    locked([](BodyHandle& b, double friction) { facade::setFriction(*b.state, friction); }),
                    "0 to 1; multiplied by that of rigid bodies.")

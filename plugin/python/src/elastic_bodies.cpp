@@ -79,9 +79,22 @@ Class<ElasticModel> bindElasticBodies(nb::module_& module) {
             for (const auto& force : m.body->forces()) rows.insert(rows.end(), force.begin(), force.end());
             return newRows3(std::move(rows));
           },
-          "(n, 3) float64 elastic forces at the current positions. A new array.")
+          "(n, 3) float64 elastic forces at the current positions, with those of pressure. A new array.")
+      .def_prop_rw(
+          "pressure", [](ElasticModel& m) { return m.body->pressure(); },
+          [](ElasticModel& m, double pressure) { check(m.body->setPressure(pressure)); },
+          "Inside, above that outside, in pressure units; 0: none. In its hollows if it has any, otherwise in the "
+          "whole.")
+      .def(
+          "set_gas", [](ElasticModel& m, double pressure, double outside) { check(m.body->setGas(pressure, outside)); },
+          "pressure"_a, "outside"_a = 0.0,
+          "Fills it with a gas of this pressure above that outside: (pressure + outside) x volume is constant then.")
       .def_prop_ro(
-          "energy", [](ElasticModel& m) { return m.body->energy(); }, "Elastic energy at the current positions.");
+          "volume", [](ElasticModel& m) { return m.body->volume(); },
+          "The volume that pressure fills: of its hollows or, without any, of the body.")
+      .def_prop_ro(
+          "energy", [](ElasticModel& m) { return m.body->energy(); },
+          "Elastic energy at the current positions, minus the work of pressure.");
   return body;
 }
 

@@ -90,6 +90,18 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// Pins a node, which then moves with its velocity and ignores forces, or releases it. The node must exist.
   void setPinned(std::size_t node, bool pinned = true);
 
+  /// Sets the pressure in the body, above that outside, from the next step on; see `DeformableBody::setPressure`, which
+  /// says on which surface. 0 ends it. Errors: NonFinite; InvalidOption: too large for the body's mass and size, or the
+  /// tets enclose nothing; nothing is changed then
+  Status setPressure(double pressure);
+  /// Fills the body with a gas of this pressure: see `DeformableBody::setGas`.
+  Status setGas(double pressure, double outside = 0.0);
+  /// The present pressure inside, above that outside, of a gas at its present volume; 0: none.
+  double pressure();
+  /// The present volume in which the pressure is: that of the hollows, or of a body without. Cost O(faces), the first
+  /// time O(T log T)
+  double volume();
+
   /// Advances by one step; returns the number of iterations. Cost O(T) for T tets per iteration.
   /// seconds       above 0 and finite, otherwise nothing moves
   /// acceleration  for all nodes that are not pinned, such as gravity, world length / s^2; finite, otherwise nothing
@@ -122,9 +134,10 @@ class TETSKIN_ELASTIC_API ElasticBody {
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;  ///< that was set last. The muscle must exist
 
-  /// nodeCount elastic forces at the current positions, world space, pressure times area.
+  /// nodeCount elastic forces at the current positions, with those of pressure, world space, pressure times area.
   std::vector<std::array<double, 3>> forces();
-  /// Elastic energy at the current positions, pressure times volume.
+  /// Elastic energy at the current positions, pressure times volume; minus the work that pressure has done since it was
+  /// set: a gas from its volume then on, a constant one from the volume at rest on.
   double energy();
 
  private:

@@ -5,6 +5,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/material_changes.h>
+#include <tetskin/core/embedding.h>
 
 #include <memory>
 
@@ -117,6 +118,47 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;  ///< that was set last. The muscle must exist
+  /// Sets the pressure in the body, in pressure units above that outside, from the next step on; 0 ends it, and below 0
+  /// it is suction. It follows the deformed surface: its forces are the pressure times the derivative of the volume
+  /// inside, so that their sum and torque are 0. Which surface that is, the tets' boundary decides, unless
+  /// `setPressureSurface` has named one: where it encloses hollows (a balloon, a tyre), the pressure is in all of them,
+  /// and acts on their walls; otherwise it is in the body, and acts on its whole surface outwards. Needs
+  /// ForceModel::Corotated. The body wakes.
+  ///
+  /// A thin sphere of radius R and wall t has no equilibrium above p = t E / (2 R (1 - nu)), where it is twice as large
+  /// as at rest: its wall gives way faster than it tightens. It bursts to 64 times its volume at rest, above which the
+  /// pressure falls, to 0 at 125 times. Suction falls to 0 below a tenth of the volume. The energy that a pressure
+  /// supplies is the application's: blow a body up in a second, not in a step.
+  /// Cost    per step: O(faces), about as much as an iteration of the solve; the first call: O(T log T)
+  /// Errors  NonFinite; InvalidOption: one of Bullet's force models; too large for the body's mass and size, as a
+  ///         Young's modulus; tets that enclose nothing; within a step. Nothing is changed on an error
+  Status setPressure(double pressure);
+  /// Fills the body with a gas of this pressure, above that outside: in place of a constant pressure, its amount stays.
+  /// At constant temperature, (pressure + outside) x volume keeps the value of now, so that the gas stiffens as it is
+  /// compressed, as a tyre does. Where this is nothing (a pressure of 0 without `outside`), the gas is let out.
+  /// pressure  gauge pressure, pressure units: above -outside
+  /// outside   absolute pressure outside, at least 0. With 0, pressure x volume itself is constant, in any units: soft,
+  ///           for a toy. A real balloon or tyre, in Pa, has 101325 around it: it hardly changes its volume
+  /// Errors    those of `setPressure`; InvalidOption: out of these ranges, or a body that is crushed flat
+  Status setGas(double pressure, double outside = 0.0);
+  /// The pressure inside now, above that outside; 0: none. That of a gas belongs to its present volume.
+  double pressure() const;
+  /// The volume inside now: of the hollows, or of the body without any; of the surface that `setPressure` acts on. 0 if
+  /// there is none, or with one of Bullet's force models. Cost O(faces), the first time O(T log T)
+  double volume() const;
+  /// Sets the surface on which pressure acts, and whose volume counts: a mesh in the body, such as the visible one. Its
+  /// hollows decide, as those of the tets do.
+  /// mesh       at rest, closed; vertices at the same place count as one (texture seams); not kept
+  /// embedding  of it in the body's cage; an empty one, with an empty mesh: the tets' boundary again; not kept
+  /// Cost       O(triangles log triangles)
+  /// Errors     SizeMismatch: mesh, embedding and body do not belong together; InvalidOption: the mesh is not closed,
+  ///            encloses nothing, or joins parts of the cage that are not connected; those of `setPressure`. Nothing is
+  ///            changed on an error
+  Status setPressureSurface(const TriangleMesh& mesh, const Embedding& embedding);
+  /// Prepares such a surface, which is made when pressure or volume are first asked for; where that fails, as the mesh
+  /// is open, the tets' boundary serves. Does nothing while there is pressure. `World` does so for its bodies.
+  /// mesh  kept
+  void preparePressureSurface(std::shared_ptr<const TriangleMesh> mesh, const Embedding& embedding);
 
   /// Sets the body's gravity, world length / s^2. Until the first call the body follows the world's gravity, including
   /// later changes. The body wakes. Error: InvalidOption if not finite, or above 1e6 body sizes per second squared;

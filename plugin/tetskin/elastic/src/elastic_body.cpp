@@ -8,6 +8,7 @@
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 #include <tetskin/elastic/src/exported/material_changes.h>
+#include <tetskin/elastic/src/exported/body_pressure.h>
 
 #include <algorithm>
 #include <cassert>
@@ -80,6 +81,7 @@ struct ElasticBody<Scalar>::Impl {
   Impl(elastic_detail::RestTets rest, const TetMesh& cage, const ElasticOptions& options)
       : dynamics(std::move(rest), cage.nodeCount()),
         masses(options.nodeMasses),
+        volume(totalVolume(cage)),
         changes(cage.tetCount()),
         tetCount(cage.tetCount()),
         youngsModulus(options.youngsModulus),
@@ -142,10 +144,16 @@ struct ElasticBody<Scalar>::Impl {
     }
   }
 
+  Status checkPressure(double pressure) const {
+    return elastic_detail::checkPressure<Scalar>(pressure, std::accumulate(masses.begin(), masses.end(), 0.0), volume);
+  }
+
   BodyDynamics<Scalar> dynamics;
+  elastic_detail::BodyPressure<Scalar> inside;
   elastic_detail::ConjugateGradient<Scalar> solve;
   elastic_detail::SolveLimits limits;
   std::vector<double> masses;  ///< by node, before any is pinned
+  double volume = 0.0;         ///< of the tets at rest
   std::vector<Scalar> positions, velocities;
   elastic_detail::MaterialChanges changes;
   std::size_t tetCount;
@@ -202,6 +210,30 @@ void ElasticBody<Scalar>::setPinned(std::size_t node, bool pinned) {
   if (!impl_) return;
   assert(node < nodeCount());
   impl_->dynamics.setMass(node, pinned ? Scalar(0) : static_cast<Scalar>(impl_->masses[node]));
+}
+
+template <class Scalar>
+Status ElasticBody<Scalar>::setPressure(double pressure) {
+  if (!impl_) return {StatusCode::Empty, "the body is empty"};
+  Status status = impl_->checkPressure(pressure);
+  return status.ok() ? impl_->inside.setConstant(pressure, impl_->dynamics) : status;
+}
+
+template <class Scalar>
+Status ElasticBody<Scalar>::setGas(double pressure, double outside) {
+  if (!impl_) return {StatusCode::Empty, "the body is empty"};
+  Status status = impl_->checkPressure(pressure + outside);
+  return status.ok() ? impl_->inside.setGas(pressure, outside, impl_->probe(), impl_->dynamics) : status;
+}
+
+template <class Scalar>
+double ElasticBody<Scalar>::pressure() {
+  return impl_ ? impl_->inside.pressure(impl_->probe(), impl_->dynamics) : 0.0;
+}
+
+template <class Scalar>
+double ElasticBody<Scalar>::volume() {
+  return impl_ ? impl_->inside.volume(impl_->probe(), impl_->dynamics) : 0.0;
 }
 
 template <class Scalar>

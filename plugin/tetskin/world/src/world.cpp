@@ -349,6 +349,7 @@ Result<std::shared_ptr<World::Body>> World::addBody(std::shared_ptr<const Cage> 
   }};
   Status bound = body->mesh ? bindSurface(*body, options, std::move(shape)) : Status{};
   if (!bound.ok()) return bound;
+  if (body->mesh) body->body->preparePressureSurface(body->mesh, body->binding->embedding());
   for (const int node : options.pinned) (void)body->body->setPinned(node);
   if (body->mesh && !options.visible) body->skin.setVisible(false);
   bodies_.push_back(body);

@@ -113,6 +113,7 @@ struct RowWork {
   const std::uint32_t* quadraticTerms = nullptr;
   const S* corners = nullptr;  ///< see `TetLoops::rotatedGradients`
   S ratio = 0;                 ///< lambda / mu
+  S spread = 1;                ///< see BlockMatrix::assemble
   S minMass = 0;               ///< relative to the trace of the stiffness's diagonal block; see `assemble`
 
   // For products and solves. Wide vectors are by chunk, points by slot.

@@ -24,7 +24,7 @@ struct LoneSystem {
   CorotatedTets<S>& tets;
   const NodePlaces<S>& places;
   const AlignedVector<S>& rightSide;  ///< in the wide layout
-  double alpha = 0.0;                 ///< of the assembly
+  double alpha = 0.0, spread = 1.0;   ///< of the assembly
 };
 
 template <class S>

@@ -219,11 +219,12 @@ void NodePlaces<S>::displacePoints(AlignedVector<S>& points) const {
 }
 
 template <class S>
-void NodePlaces<S>::fromDisplacement(std::size_t slot, const S* displacement, S* position) const {
+template <class T>
+void NodePlaces<S>::fromDisplacement(std::size_t slot, const S* displacement, T* position) const {
   Vector3d arm = Vector3d::Zero();
   if (hasFrames()) arm = frames_[partOf_[slot]].turn * (restAt(slot) - parts_[partOf_[slot]].centroid);
   for (std::size_t k = 0; k < 3; ++k) {
-    position[k] = static_cast<S>(arm[static_cast<Eigen::Index>(k)]) + displacement[k];
+    position[k] = static_cast<T>(arm[static_cast<Eigen::Index>(k)]) + static_cast<T>(displacement[k]);
   }
 }
 
@@ -259,5 +260,8 @@ void NodePlaces<S>::serialize(StateStream& stream) {
 }
 
 TETSKIN_INSTANTIATE_CLASS(NodePlaces)
+template void NodePlaces<float>::fromDisplacement<float>(std::size_t, const float*, float*) const;
+template void NodePlaces<float>::fromDisplacement<double>(std::size_t, const float*, double*) const;
+template void NodePlaces<double>::fromDisplacement<double>(std::size_t, const double*, double*) const;
 
 }  // namespace tetskin::elastic_detail

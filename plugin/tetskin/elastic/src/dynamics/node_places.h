@@ -66,7 +66,9 @@ class NodePlaces {
   /// component. Changes nothing else.
   void displacePoints(AlignedVector<S>& points) const;
   /// The position of a displaced node, up to a translation of its component.
-  void fromDisplacement(std::size_t slot, const S* displacement, S* position) const;
+  /// T  float or double
+  template <class T>
+  void fromDisplacement(std::size_t slot, const S* displacement, T* position) const;
 
   /// Writes or reads the positions of nodes and frames.
   void serialize(StateStream& stream);

@@ -52,6 +52,12 @@ template <class S>
 void TwoLevelGradient<S>::multiply(const Vector& velocities, Vector& impulses) const {
   for (std::size_t k = 0; k < impulses.size(); ++k) impulses[k] = masses_[k / 3] * velocities[k];
   stiffness_.addProduct(velocities, impulses);
+  const auto forOuter = [&](auto&& call) {
+    for (std::size_t k = 0; k < outer_.size(); ++k) call(outer_[k], 3 * outerSlots_[k / 3] + k % 3);
+  };
+  double factor = 0.0;
+  forOuter([&](double u, std::size_t at) { factor += u * velocities[at]; });
+  forOuter([&](double u, std::size_t at) { impulses[at] += factor * u; });
   for (std::size_t k = 0; k < impulses.size(); ++k) {
     if (!(masses_[k / 3] > 0.0)) impulses[k] = 0.0;
   }
@@ -71,6 +77,8 @@ int TwoLevelGradient<S>::solve(BlockMatrix<S>& matrix, const MatrixSource<S>& so
                                const std::vector<double>& points, double target, int maximum, ParallelFor* threads) {
   assert(rightSide && points.size() == solution_.size() && target > 0.0);
   for (std::size_t slot = 0; slot < masses_.size(); ++slot) masses_[slot] = static_cast<double>(matrix.massAt(slot));
+  outerSlots_ = matrix.outerSlots();
+  outer_.assign(matrix.outer().begin(), matrix.outer().end());
   stiffness_.take(source);
   matrix.clear();
   fromWide(rightSide, right_);

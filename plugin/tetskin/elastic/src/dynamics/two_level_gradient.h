@@ -39,6 +39,8 @@ class TwoLevelGradient {
   TetStiffness stiffness_;
   GroupMotions groups_;
   std::vector<double> masses_;  ///< by slot
+  std::vector<std::uint32_t> outerSlots_;
+  std::vector<double> outer_;  ///< see BlockMatrix::setOuter
   Vector right_, solution_, residual_, image_, step_, direction_;
   AlignedVector<S> impulses_, velocities_;  ///< in the wide layout
 };

@@ -40,6 +40,12 @@ constexpr double kFeelsTurns = 1.0;
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
 
+/// Tension in the material of a body under pressure p in a volume V is p V over the material's, on the average of all
+/// directions, and up to half as much again along thin walls. It resists bending of thin walls more than the material
+/// does; without it in the matrix, those of light balloons would flutter. In the matrix it resists rotations of the
+/// whole body, too, which the pressure in fact undoes: see `isStretched`.
+constexpr double kTension = 2.0;
+
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
 constexpr double kNear = 1e-4;
 
@@ -80,6 +86,7 @@ template <class S>
 void BodyDynamics<S>::setMaterial(const Lame& lame) {
   assert(tets_);
   tets_->setMaterial(lame);
+  shearModulus_ = lame.mu;
   components_.setStiffness(tets_->rest(), lame, matrix_);
   changed_ = true;
 }
@@ -88,6 +95,28 @@ template <class S>
 void BodyDynamics<S>::setDamping(double damping) {
   changed_ |= damping != damping_;
   damping_ = damping;
+}
+
+template <class S>
+void BodyDynamics<S>::setPressure(const PressureLaw& law, std::shared_ptr<PressureSurface> surface) {
+  assert(tets_ || !surface);
+  pressure_ = law;
+  if (surface != pressureSurface_) {
+    pressureSlots_.clear();
+    matrix_.setOuter({}, {});
+    if (surface) {
+      for (const std::uint32_t n : surface->nodes()) {
+        pressureSlots_.push_back(static_cast<std::uint32_t>(matrix_.slotOf(n)));
+      }
+    }
+  }
+  pressureSurface_ = std::move(surface);
+  changed_ |= !pressureSurface_ && spread_ != 1.0;
+  materialVolume_ = 0.0;
+  if (!pressureSurface_) return;
+  const RestTets& rest = tets_->rest();
+  materialVolume_ = std::accumulate(rest.volumes.begin(), rest.volumes.end(), 0.0);
+  for (const RestQuadraticTet& tet : rest.quadratic) materialVolume_ += tet.volume;
 }
 
 template <class S>
@@ -206,9 +235,58 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
   tets_->flowFor(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
+  findPressure(threads);
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
+  setGasStiffness();
   beginElastic(threads);
+}
+
+/// At the points that the rigid motion reaches, as the other forces.
+template <class S>
+void BodyDynamics<S>::findPressure(ParallelFor* threads) {
+  gasStiffness_.clear();
+  gasFrequency_ = 0.0;
+  stretched_ = 1.0;
+  if (!pressureSurface_) return;
+  double* to = pressureSurface_->positions();
+  for (const std::uint32_t slot : pressureSlots_) {
+    places_.fromDisplacement(slot, &moved_[4 * slot], to);
+    to += 3;
+  }
+  const double volume = pressureSurface_->evaluate(true, threads), pressure = pressure_.at(volume);
+  const double slope = pressure_.slope(volume), root = std::sqrt(slope);
+  const double tension = kTension * std::abs(pressure * volume) / materialVolume_;
+  if (pressure > 0.0 && pressureSurface_->isHollow()) stretched_ += tension / shearModulus_;
+  const double* by = pressureSurface_->derivative();
+  for (std::size_t n = 0; n < pressureSlots_.size(); ++n) {
+    double squared = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double d = by[3 * n + k];
+      S& force = forces_[4 * pressureSlots_[n] + k];
+      force = static_cast<S>(static_cast<double>(force) + pressure * d);
+      squared += d * d;
+      if (slope > 0.0) gasStiffness_.push_back(root * d);
+    }
+    const auto mass = static_cast<double>(matrix_.massAt(pressureSlots_[n]));
+    if (mass > 0.0) gasFrequency_ += slope * squared / mass;
+  }
+}
+
+/// Within a tenth.
+template <class S>
+bool BodyDynamics<S>::isSpread() const {
+  constexpr double kNear = 0.1;
+  return std::abs(stretched_ - spread_) <= kNear * (std::max(stretched_, spread_) - 1.0);
+}
+
+template <class S>
+void BodyDynamics<S>::setGasStiffness() {
+  if (gasStiffness_.empty()) return matrix_.setOuter({}, {});
+  std::vector<double> u = gasStiffness_;
+  const double root = std::sqrt(matrixAlpha());
+  for (double& value : u) value *= root;
+  matrix_.setOuter(pressureSlots_, u);
 }
 
 /// A deviation from rigid motion does not last for a step of a stiff body, so that there is nothing to remember.
@@ -227,7 +305,7 @@ void BodyDynamics<S>::chooseScheme() {
 template <class S>
 double BodyDynamics<S>::carriedShare() const {
   constexpr double kLasting = 0.5, kLeastInImpact = 0.8;
-  const double number = lastSeconds_ * lastSeconds_ * stiffnessOverInertia_;
+  const double number = lastSeconds_ * lastSeconds_ * std::max(stiffnessOverInertia_, gasFrequency_);
   if (lasts()) return kLasting * std::min(1.0, kResolvable / number);
   return std::max(std::min(1.0, kResolvableImpact / number), kLeastInImpact);
 }
@@ -255,7 +333,7 @@ void BodyDynamics<S>::assembleIfNeeded(double turnFraction, ParallelFor* threads
   // A stiff component rotates as a whole, and may be a single tet among many of other components.
   const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
   const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
-  if (changed_ || alpha != alpha_ || turned) assemble(alpha, threads);
+  if (changed_ || alpha != alpha_ || turned || !isSpread()) assemble(alpha, threads);
 }
 
 template <class S>
@@ -271,8 +349,9 @@ void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
   const auto flatAlpha = static_cast<S>(flat);
   changed_ = true;  // until it is done: memory may run out
   matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr,
-                   tets_ ? tets_->ratio() : S(0), threads);
+                   tets_ ? tets_->ratio() : S(0), threads, static_cast<S>(stretched_));
   alpha_ = alpha;
+  spread_ = stretched_;
   changed_ = false;
   findUnitImpulses(threads);
 }
@@ -342,7 +421,10 @@ void BodyDynamics<S>::carry(ParallelFor* threads) {
   toPoints(last_.data(), relative_);
   const bool flat = tets_->flattest() < kernels::kFlatVolume;
   changed_ |= flat;
-  if (flat) matrix_.assemble(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), tets_->ratio(), threads);
+  if (flat) {
+    matrix_.assemble(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), tets_->ratio(), threads,
+                     static_cast<S>(spread_));
+  }
   matrix_.multiply(relative_.data(), carried_.data(), threads);
   if (flat) assemble(alpha_, threads);
   const auto share = static_cast<S>(scheme_.carried);
@@ -367,6 +449,7 @@ void BodyDynamics<S>::beTouched(bool impact, ParallelFor* threads) {
   for (std::size_t k = 0; k < carried_.size(); ++k) rightSide_[k] -= carried_[k];
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
+  setGasStiffness();
   carry(threads);
 }
 
@@ -554,14 +637,36 @@ void BodyDynamics<S>::findForces(BodyProbe<S>& probe, ParallelFor* threads) {
   AlignedVector<S> moved = probe.points_;
   places_.displacePoints(moved);
   tets_->probeForces(moved.data(), probe.forces_.data(), threads);
+  if (!pressureSurface_) return;
+  const double pressure = pressure_.at(volumeIn(*pressureSurface_, probe));
+  for (std::size_t n = 0; n < pressureSlots_.size(); ++n) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      S& force = probe.forces_[4 * pressureSlots_[n] + k];
+      force = static_cast<S>(static_cast<double>(force) + pressure * pressureSurface_->derivative()[3 * n + k]);
+    }
+  }
 }
 
 template <class S>
 double BodyDynamics<S>::energy(BodyProbe<S> probe, ParallelFor* threads) {
   assert(&probe.matrix_ == &matrix_);
   if (!tets_) return 0.0;
+  const double ofPressure = pressureSurface_ ? pressure_.energy(volumeIn(*pressureSurface_, probe)) : 0.0;
   places_.displacePoints(probe.points_);
-  return tets_->energy(probe.points_.data(), threads);
+  return tets_->energy(probe.points_.data(), threads) + ofPressure;
+}
+
+/// Positions that are still the nodes' own get all of their digits.
+template <class S>
+double BodyDynamics<S>::volumeIn(PressureSurface& surface, const BodyProbe<S>& probe) const {
+  double* to = surface.positions();
+  for (const std::uint32_t n : surface.nodes()) {
+    const std::size_t slot = matrix_.slotOf(n);
+    const S* x = &probe.points_[4 * slot];
+    const bool own = places_.isAt(slot, x, S(0));
+    for (std::size_t k = 0; k < 3; ++k) *to++ = own ? places_.at(slot)[k] : static_cast<double>(x[k]);
+  }
+  return surface.evaluate(true, nullptr);
 }
 
 // ---- between steps
@@ -587,7 +692,7 @@ void BodyDynamics<S>::carry(bool turns, const std::array<double, 9>& turn, const
 template <class S>
 void BodyDynamics<S>::assembleAgain(double alpha) {
   matrix_.assemble(tets_ ? tets_->cornersAgain(static_cast<S>(alpha), nullptr) : nullptr, tets_ ? tets_->ratio() : S(0),
-                   nullptr);
+                   nullptr, static_cast<S>(spread_));
   findUnitImpulses(nullptr);
 }
 
@@ -606,6 +711,8 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
   stream(known);
   stream(solved);
   stream(alpha);
+  double spread = pressureSurface_ ? spread_ : 1.0;
+  if (pressureSurface_) stream(spread);
   stream(stiffnessOverInertia_);
   stream(untouched_);
   stream(lastSeconds_);
@@ -615,7 +722,9 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
   if (tets_) matrix_.serializeWide(stream, matrix_.solution());
   loneSolve_.serialize(stream, matrix_);
   if (stream.restoring()) {
-    if (!changed && (changed_ || turned || alpha != alpha_)) assembleAgain(alpha);
+    const bool same = alpha == alpha_ && spread == spread_;
+    spread_ = spread;
+    if (!changed && (changed_ || turned || !same)) assembleAgain(alpha);
     alpha_ = alpha;
     changed_ = changed;
     remembered_ = known;

@@ -17,10 +17,13 @@
 #include <tetskin/elastic/src/dynamics/body_components.h>
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 #include <tetskin/elastic/src/dynamics/lone_solve.h>
+#include <tetskin/elastic/src/dynamics/pressure_law.h>
+#include <tetskin/elastic/src/dynamics/pressure_surface.h>
 
 #include <array>
 #include <cassert>
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace tetskin::elastic_detail {
@@ -78,6 +81,11 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void setMaterial(const Lame& lame);
   /// damping  seconds
   void setDamping(double damping);
+  /// The pressure in the body, and where it acts; null: the body has none. Its forces, stiffness and energy count as
+  /// elastic ones everywhere.
+  void setPressure(const PressureLaw& law, std::shared_ptr<PressureSurface> surface);
+  /// The volume that a surface of the body encloses at the positions of a probe.
+  double volumeIn(PressureSurface& surface, const BodyProbe<S>& probe) const;
   /// Whether each step has the same bits on every processor; see `elasticInUse`.
   void setDeterministic(bool on);
   /// mass  0: the node is pinned
@@ -190,6 +198,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Its velocity as a rigid body of its momentum: at the beginning of the step, with what acts on it beside
   /// elasticity, or of the solution.
   RigidVelocity rigidVelocity(std::size_t component, bool solved) const;
+  /// Whether the matrix contains a tension, by pressure, that resists rotations of a component as a whole: with forces
+  /// from elsewhere, its rigid motion is then to be a separate unknown, which meets the masses alone.
+  bool isStretched() const { return spread_ > 1.0; }
   std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
   std::size_t componentCount() const { return components_.count(); }
   double componentMass(std::size_t component) const { return components_.mass(component); }
@@ -254,8 +265,11 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   enum class Stage { Between, Begun, Solvable, Remembered };
 
   NodeStates<S> nodes() const { return {matrix_, places_, velocities_}; }
-  LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_}; }
+  LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_, spread_}; }
   double flowsInImpact(std::size_t component, double energy, double seconds) const;
+  void findPressure(ParallelFor* threads);
+  void setGasStiffness();
+  bool isSpread() const;
   void chooseScheme();
   /// A contact that neither stops it nor throws it back.
   bool lasts() const { return untouched_ == 0 && !impact_; }
@@ -279,6 +293,15 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   NodePlaces<S> places_;
   std::optional<CorotatedTets<S>> tets_;
   LoneSolve<S> loneSolve_;
+  PressureLaw pressure_;
+  std::shared_ptr<PressureSurface> pressureSurface_;  ///< null: no pressure
+  std::vector<std::uint32_t> pressureSlots_;          ///< by node of the surface
+  std::vector<double> gasStiffness_;                  ///< u of BlockMatrix::setOuter over the root of alpha
+  double gasFrequency_ = 0.0;                         ///< square of that of the gas alone, 1 / s^2
+  double shearModulus_ = 1.0;
+  double materialVolume_ = 0.0;  ///< of the tets, times their stiffness factors
+  double stretched_ = 1.0;       ///< see BlockMatrix::assemble, by the pressure of this step
+  double spread_ = 1.0;          ///< of the last assembly
   ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
       forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces

@@ -73,7 +73,7 @@ TETSKIN_INLINE void addQuadraticTerm(const RowWork<S>& work, std::uint32_t term,
 }
 
 /// The block of a pair of nodes: the sum, over the tets around their edge and the points of each tet, of
-///   lambda / mu  a b^T + b a^T + (a . b) 1
+///   lambda / mu  a b^T + b a^T + spread (a . b) 1
 /// with a and b from `rotatedGradients`. It all follows from the sum of a b^T.
 template <class S, int W>
 TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int lane, Lanes<S, W> block[9]) {
@@ -91,7 +91,7 @@ TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int
   for (std::uint32_t term = work.quadraticSums[entry]; term < work.quadraticSums[entry + 1]; ++term) {
     addQuadraticTerm<S, W>(work, term, lane, sum);
   }
-  const V trace = sum[0] + sum[4] + sum[8];
+  const V trace = work.spread * (sum[0] + sum[4] + sum[8]);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) block[3 * i + j] = work.ratio * sum[3 * i + j] + sum[3 * j + i];
     block[4 * i] += trace;

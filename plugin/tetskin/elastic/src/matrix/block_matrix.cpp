@@ -137,11 +137,12 @@ double BlockMatrix<S>::sweep(Order order, ParallelFor* threads, Kernel&& kernel)
 }
 
 template <class S>
-void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads) {
+void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads, S spread) {
   assert(corners || pattern_.neighbours.empty());
   sweep(Order::Any, threads, [&](Work& part, const Table& table) {
     part.corners = corners;
     part.ratio = ratio;
+    part.spread = spread;
     part.minMass = kMinMass<S>;
     part.diagonal = freeDiagonal_.data();
     part.inverse = freeInverse_.data();
@@ -298,6 +299,38 @@ void BlockMatrix<S>::fixAlong(std::size_t node, const S n[3]) {
 }
 
 template <class S>
+void BlockMatrix<S>::setOuter(const std::vector<std::uint32_t>& slots, const std::vector<double>& u) {
+  assert(u.size() == 3 * slots.size());
+  if (slots != outerSlots_) {
+    outerSlots_ = slots;
+    extraIsZero_ = false;
+  }
+  outer_.assign(u.size(), S(0));
+  std::transform(u.begin(), u.end(), outer_.begin(), [](double value) { return static_cast<S>(value); });
+}
+
+/// u . v, of points.
+template <class S>
+S BlockMatrix<S>::outerFactor(const S* points) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < outerSlots_.size(); ++k) {
+    const S *u = &outer_[3 * k], *v = points + 4 * outerSlots_[k];
+    sum += static_cast<double>(u[0]) * static_cast<double>(v[0]) +
+           static_cast<double>(u[1]) * static_cast<double>(v[1]) +
+           static_cast<double>(u[2]) * static_cast<double>(v[2]);
+  }
+  return static_cast<S>(sum);
+}
+
+template <class S>
+void BlockMatrix<S>::addOuter(S factor, S* wide) const {
+  for (std::size_t k = 0; k < outerSlots_.size(); ++k) {
+    S* to = wide + wideOfSlot(outerSlots_[k]);
+    for (std::size_t i = 0; i < 3; ++i) to[i * kGroup] += factor * outer_[3 * k + i];
+  }
+}
+
+template <class S>
 void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) const {
   assert(points && wide);
   sweep(Order::Any, threads, [&](Work& part, const Table& table) {
@@ -306,6 +339,7 @@ void BlockMatrix<S>::multiply(const S* points, S* wide, ParallelFor* threads) co
     part.minMass = kMinMass<S>;
     changed_ ? table.multiply(part) : table.multiplyByDifferences(part);
   });
+  if (!outerSlots_.empty()) addOuter(outerFactor(points), wide);
 }
 
 template <class S>
@@ -369,6 +403,21 @@ void BlockMatrix<S>::backward(S factor, ParallelFor* threads) {
 
 template <class S>
 double BlockMatrix<S>::forward(const S* extra, ParallelFor* threads) {
+  if (!outerSlots_.empty()) {
+    outerExtra_.resize(wideSize());
+    if (extra) {
+      std::copy_n(extra, wideSize(), outerExtra_.data());
+    } else if (!extraIsZero_) {
+      std::fill(outerExtra_.begin(), outerExtra_.end(), S(0));
+    } else {
+      for (const std::uint32_t slot : outerSlots_) {
+        for (std::size_t i = 0; i < 3; ++i) outerExtra_[wideOfSlot(slot) + i * kGroup] = S(0);
+      }
+    }
+    extraIsZero_ = !extra;
+    addOuter(outerFactor(stepPoints_.data()), outerExtra_.data());
+    extra = outerExtra_.data();
+  }
   return sweep(Order::Forward, threads, [&](Work& part, const Table& table) {
     part.extra = extra;
     return table.forward(part);

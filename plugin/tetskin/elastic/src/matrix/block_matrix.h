@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// The matrix A = M + alpha K of one body: 3x3 blocks, one row per node, symmetric and positive. A large body is divided
+// The matrix A = M + alpha K of one body: 3x3 blocks, one row per node, symmetric and positive. A gas in it adds u u^T,
+// whose blocks would couple all nodes of its surface: products have it, sweeps do not. A large body is divided
 // into parts, with separators between them, so that a Gauss-Seidel sweep processes first all parts and then all
 // separators, on any number of threads. The rows of each are sorted by colour, so that eight of them are processed at
 // once: see elastic_kernels.h.
@@ -83,7 +84,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
 
   /// corners  see CorotatedTets::cornersForMatrix; null: no tets, so A = M
   /// ratio    lambda / mu
-  void assemble(const S* corners, S ratio, ParallelFor* threads);
+  /// spread   1 + sigma / mu, in a body that a tension sigma stretches in all directions: it resists rotations
+  void assemble(const S* corners, S ratio, ParallelFor* threads, S spread = S(1));
 
   /// Fixes a node in all directions, in one direction, or in all but one.
   void fix(std::size_t node);
@@ -101,6 +103,13 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   void applyCouplings();
   /// Reverts all changes by `fix`, `resist` and `couple`; pinned nodes stay pinned.
   void free();
+
+  /// Adds u u^T to A, until the next call.
+  /// slots  those at which u is not 0;  u  three numbers for each
+  void setOuter(const std::vector<std::uint32_t>& slots, const std::vector<double>& u);
+  /// What `setOuter` has added.
+  const std::vector<std::uint32_t>& outerSlots() const { return outerSlots_; }
+  const std::vector<S>& outer() const { return outer_; }
 
   /// The inverse of the node's diagonal block, as if it were not fixed: xx xy xz yy yz zz. 0 if it is pinned.
   void freeInverse(std::size_t node, S out[6]) const;
@@ -144,6 +153,8 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   enum class Order { Any, Forward, Backward };
 
   Work work(std::size_t firstChunk, std::size_t lastChunk) const;
+  S outerFactor(const S* points) const;
+  void addOuter(S factor, S* wide) const;
   template <class Kernel>
   double sweep(Order order, ParallelFor* threads, Kernel&& kernel) const;
   double lowerInto(const S* impulses, S* wide, ParallelFor* threads);
@@ -168,6 +179,10 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   AlignedVector<S> masses_, blocks_, diagonal_, inverse_, freeDiagonal_, freeInverse_;
   AlignedVector<S> residual_, direction_, rest_, step_, solution_;  // in the wide layout
   AlignedVector<S> stepPoints_, lowerPoints_;
+  std::vector<std::uint32_t> outerSlots_;
+  std::vector<S> outer_;            ///< by entry of `outerSlots_`
+  AlignedVector<S> outerExtra_;     ///< in the wide layout
+  bool extraIsZero_ = false;        ///< `outerExtra_` is, except at `outerSlots_`
   mutable std::vector<S> partial_;  // by range
   std::vector<Coupling> couplings_;
   std::vector<std::uint32_t> used_;        ///< numbers of couplings, since the last `free`

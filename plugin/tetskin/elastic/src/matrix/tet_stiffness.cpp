@@ -29,6 +29,7 @@ void TetStiffness::take(const MatrixSource<S>& source) {
   assert(source.corners);
   const RestTets& rest = source.rest;
   ratio_ = source.ratio;
+  spread_ = source.spread;
   std::size_t next = 0;
   const auto addPoint = [&](std::size_t nodes, auto&& component) {
     Eigen::Vector3d& first = vectors_[next];
@@ -54,7 +55,7 @@ void TetStiffness::take(const MatrixSource<S>& source) {
 }
 
 Eigen::Matrix3d TetStiffness::stress(const Eigen::Matrix3d& gradient) const {
-  Eigen::Matrix3d sum = gradient + gradient.transpose();
+  Eigen::Matrix3d sum = spread_ * gradient + gradient.transpose();
   sum.diagonal().array() += ratio_ * gradient.trace();
   return sum;
 }
@@ -71,8 +72,8 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
         for (int k = 0; k < 3; ++k) g[3 * i + k] += v[i] * a[k];
       }
     }
-    const double spread = ratio_ * (g[0] + g[4] + g[8]);
-    const double xx = 2.0 * g[0] + spread, yy = 2.0 * g[4] + spread, zz = 2.0 * g[8] + spread;
+    const double bulk = ratio_ * (g[0] + g[4] + g[8]), more = spread_ - 1.0;
+    const double xx = 2.0 * g[0] + bulk, yy = 2.0 * g[4] + bulk, zz = 2.0 * g[8] + bulk;
     const double xy = g[1] + g[3], xz = g[2] + g[6], yz = g[5] + g[7];
     for (std::size_t n = 0; n < at.nodes; ++n) {
       const double* a = at.vectors[n].data();
@@ -80,6 +81,9 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
       to[0] += xx * a[0] + xy * a[1] + xz * a[2];
       to[1] += xy * a[0] + yy * a[1] + yz * a[2];
       to[2] += xz * a[0] + yz * a[1] + zz * a[2];
+      for (int i = 0; i < 3 && more > 0.0; ++i) {
+        to[i] += more * (g[3 * i] * a[0] + g[3 * i + 1] * a[1] + g[3 * i + 2] * a[2]);
+      }
     }
   }
 }

@@ -13,7 +13,7 @@
 namespace tetskin::elastic_detail {
 
 /// An integration point of a tet: a linear tet has one, a quadratic tet four. A motion v of the nodes has the gradient
-/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + G + G^T) a_n.
+/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + spread G + G^T) a_n.
 struct StiffnessPoint {
   const std::uint32_t* slots = nullptr;      ///< of the tet's nodes
   const Eigen::Vector3d* vectors = nullptr;  ///< a, by node
@@ -24,8 +24,9 @@ struct StiffnessPoint {
 template <class S>
 struct MatrixSource {
   const RestTets& rest;
-  const S* corners;  ///< see CorotatedTets::cornersForMatrix
-  double ratio;      ///< lambda / mu
+  const S* corners;     ///< see CorotatedTets::cornersForMatrix
+  double ratio;         ///< lambda / mu
+  double spread = 1.0;  ///< see BlockMatrix::assemble
 };
 
 class TetStiffness {
@@ -39,7 +40,7 @@ class TetStiffness {
 
   /// Adds alpha K times velocities to impulses, both 3 scalars per slot. Cost O(T)
   void addProduct(const std::vector<double>& velocities, std::vector<double>& impulses) const;
-  /// The impulses per gradient G at a point: ratio tr(G) + G + G^T.
+  /// The impulses per gradient G at a point: ratio tr(G) + spread G + G^T.
   Eigen::Matrix3d stress(const Eigen::Matrix3d& gradient) const;
 
   std::size_t pointCount() const { return counts_.size(); }
@@ -51,7 +52,7 @@ class TetStiffness {
   std::vector<std::uint32_t> slots_;                               ///< of all tets' nodes
   std::vector<std::uint32_t> firstSlots_, firstVectors_, counts_;  ///< by point
   std::vector<Eigen::Vector3d> vectors_;
-  double ratio_ = 0.0;
+  double ratio_ = 0.0, spread_ = 1.0;
 };
 
 }  // namespace tetskin::elastic_detail

@@ -64,7 +64,8 @@ void ElasticForce::serialize(WorldStream& stream) {
 void ElasticForce::checkState(WorldStream& stream) {
   stream.same(body_.body->m_nodes.size(), "a soft body has another number of nodes");
   stream.same(body_.body->m_tetras.size(), "a soft body has another number of tets");
-  stream.same(body_.quadratic.size(), "a soft body has another number of quadratic tets");
+  const std::uint64_t faces = body_.pressure.givenFaces(), quadratic = body_.quadratic.size();
+  stream.same(quadratic + (faces << 32), "a soft body has other quadratic tets, or another surface of its pressure");
   stream.same(body_.dynamics->componentCount(), "a soft body has another number of parts");
   stream.same(body_.changes.muscleCount(), "a soft body has another number of muscles");
   stream.same(restMeasureOf(*body_.body), "a soft body has another shape at rest, or was scaled");

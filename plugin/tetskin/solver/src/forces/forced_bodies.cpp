@@ -123,19 +123,39 @@ Status checkMaterial(const ElasticMaterial& material) {
   return elastic_detail::checkMaterial<btScalar>(material.youngsModulus, material.poissonRatio, material.damping);
 }
 
-Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
+namespace {
+
+/// Of a body's tets, and of all its nodes, if pinned ones have as much as the others; 0: all are pinned.
+struct Matter {
   double mass = 0.0, volume = 0.0;
+};
+
+Matter matterOf(const btSoftBody& body) {
+  Matter matter;
   int free = 0;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     if (body.m_nodes[n].m_im == 0) continue;
-    mass += 1.0 / static_cast<double>(body.m_nodes[n].m_im);
+    matter.mass += 1.0 / static_cast<double>(body.m_nodes[n].m_im);
     ++free;
   }
   if (free == 0) return {};
-  for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
-  // Pinned nodes have mass, too.
-  const double whole = mass * body.m_nodes.size() / free;
-  return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, whole, volume);
+  for (int t = 0; t < body.m_tetras.size(); ++t) {
+    matter.volume += static_cast<double>(body.m_tetras[t].m_element_measure);
+  }
+  matter.mass = matter.mass * body.m_nodes.size() / free;
+  return matter;
+}
+
+}  // namespace
+
+Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
+  const Matter matter = matterOf(body);
+  return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, matter.mass, matter.volume);
+}
+
+Status checkPressure(const btSoftBody& body, double pressure) {
+  const Matter matter = matterOf(body);
+  return elastic_detail::checkPressure<btScalar>(pressure, matter.mass, matter.volume);
 }
 
 void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMaterial& material) {
@@ -155,6 +175,7 @@ void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMate
   dynamics->setLastSeconds(lastSeconds);
   restMeasure = restMeasureOf(*body);
   setMaterial(material);
+  pressure.moveTo(*dynamics);
 }
 
 void ForcedBody::setMaterial(const ElasticMaterial& material) {
@@ -176,6 +197,14 @@ void ForcedBody::reset(const ElasticMaterial& material) {
   build(linear, material);
 }
 
+elastic_detail::BodyProbe<btScalar> ForcedBody::probe() const {
+  elastic_detail::BodyProbe<btScalar> probe(dynamics->matrix());
+  assert(hasOwnCounts());
+  for (int n = 0; n < body->m_nodes.size(); ++n)
+    toPoint(body->m_nodes[n].m_x, probe.point(static_cast<std::size_t>(n)));
+  return probe;
+}
+
 bool ForcedBody::hasOwnCounts() const {
   assert(body && dynamics);
   return dynamics->nodeCount() == static_cast<std::size_t>(body->m_nodes.size()) &&
@@ -190,9 +219,14 @@ bool ForcedBody::hasItsRestShapes() const {
 void ForcedBody::serialize(WorldStream& stream, const ElasticMaterial& material) {
   changes.serialize(stream);
   if (stream.restoring()) applyChanges(material);
-  bool isCurrent = hasItsRestShapes();
-  stream(isCurrent);
-  if (!isCurrent) {
+  constexpr std::uint8_t kCurrent = 1, kPressure = 2;
+  auto flags = static_cast<std::uint8_t>((hasItsRestShapes() ? kCurrent : 0) | (pressure.acts() ? kPressure : 0));
+  stream(flags);
+  elastic_detail::PressureLaw law = pressure.law();
+  if ((flags & kPressure) == 0) law = {};
+  if ((flags & kPressure) != 0) law.serialize(stream);
+  if (stream.restoring() && law != pressure.law() && !pressure.restore(law, *dynamics).ok()) stream.fail();
+  if ((flags & kCurrent) == 0) {
     double seconds = dynamics->lastSeconds();
     stream(seconds);
     dynamics->setLastSeconds(seconds);

@@ -8,6 +8,7 @@
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 #include <tetskin/elastic/src/exported/material_changes.h>
+#include <tetskin/elastic/src/exported/body_pressure.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 
@@ -53,6 +54,8 @@ Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
 Status checkMaterial(const ElasticMaterial& material);
 /// Ok unless the material is too stiff for the body's mass: see elastic_detail::checkStiffness.
 Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
+/// Ok unless it is not finite, or too large for the body's mass and size: see elastic_detail::checkPressure.
+Status checkPressure(const btSoftBody& body, double pressure);
 
 /// One body, and the data derived from it.
 struct ForcedBody {
@@ -61,6 +64,7 @@ struct ForcedBody {
   std::vector<QuadraticShape> quadratic;    ///< those whose parts are still tets of the body, see `withQuadraticTets`
   elastic_detail::MaterialChanges changes;  ///< what the owner has set
   std::unique_ptr<Dynamics> dynamics;
+  elastic_detail::BodyPressure<btScalar> pressure;
   std::size_t tetCount = 0;  ///< tets of the body when `dynamics` was created
   btScalar restMeasure = 0;  ///< measure of some tets: changes if the body is scaled
   /// The world in which it was added; in another world the body would have another force.
@@ -80,8 +84,11 @@ struct ForcedBody {
   bool hasOwnCounts() const;
   bool hasItsRestShapes() const;
 
-  /// Writes or reads what the dynamics remember from step to step. When reading, the nodes and the material are already
-  /// the snapshot's.
+  /// The positions of its nodes.
+  elastic_detail::BodyProbe<btScalar> probe() const;
+
+  /// Writes or reads the pressure, and what the dynamics remember from step to step. When reading, the nodes and the
+  /// material are already the snapshot's.
   void serialize(WorldStream& stream, const ElasticMaterial& material);
 };
 

@@ -138,7 +138,7 @@ std::vector<ComponentUnknown> ComponentUnknown::makeAll(const Dynamics& dynamics
     unknown.spans_ = std::move(spans[unknown.component]);
     unknown.nodes_.assign(nodes.values.begin() + nodes.starts[unknown.component],
                           nodes.values.begin() + nodes.starts[unknown.component + 1]);
-    const bool rounded = unknown.rounding(dynamics) > kRounded;
+    const bool rounded = dynamics.isStretched() || unknown.rounding(dynamics) > kRounded;
     if (rounded) unknown.leaveOutElasticity(dynamics);
     unknown.findMass(dynamics, !rounded, right);
   }

@@ -120,7 +120,8 @@ Eigen::Index ReducedUnknowns::firstOf(std::size_t r, std::size_t e) const {
 bool ReducedUnknowns::needsComponents(const SystemBody& body) const {
   const SolvedBody& solved = body.solved;
   if (!solved.elastic || solved.acted.rowCount == 0 || bodies_.hasForces() || !solved.acted.fixed.empty()) return false;
-  return !(solved.dynamics->stiffnessNumber() < kStiffPart) || isJoined(body);
+  const bool needs = solved.dynamics->isStretched() || !(solved.dynamics->stiffnessNumber() < kStiffPart);
+  return needs || isJoined(body);
 }
 
 bool ReducedUnknowns::isJoined(const SystemBody& body) const {
