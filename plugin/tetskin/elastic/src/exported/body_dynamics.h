@@ -200,7 +200,11 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   RigidVelocity rigidVelocity(std::size_t component, bool solved) const;
   /// Whether the matrix contains a tension, by pressure, that resists rotations of a component as a whole: with forces
   /// from elsewhere, its rigid motion is then to be a separate unknown, which meets the masses alone.
-  bool isStretched() const { return spread_ > 1.0; }
+  bool isStretched() const {
+    constexpr double kFelt = 5e-3;  // share of the inertia
+    return tets_ && spread_ > 1.0 &&
+           alpha_ * (spread_ - 1.0) * stiffnessOverInertia_ > kFelt * (2.0 + static_cast<double>(tets_->ratio()));
+  }
   std::size_t componentOf(std::size_t node) const { return components_.of(matrix_.slotOf(node)); }
   std::size_t componentCount() const { return components_.count(); }
   double componentMass(std::size_t component) const { return components_.mass(component); }

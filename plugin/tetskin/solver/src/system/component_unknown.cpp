@@ -119,7 +119,7 @@ std::vector<ComponentUnknown> ComponentUnknown::makeAll(const Dynamics& dynamics
   const auto fields = std::make_shared<ComponentFields>();
   for (std::size_t k = 0; k < Dynamics::kRigidMotions; ++k) {
     AlignedVector<btScalar> product(matrix.wideSize(), btScalar(0));
-    matrix.multiply(points[k].data(), product.data(), threads);
+    if (!dynamics.isStretched()) matrix.multiply(points[k].data(), product.data(), threads);  // else left out
     fields->motions[k].assign(matrix.wideSize(), btScalar(0));
     fields->images[k].assign(matrix.wideSize(), btScalar(0));
     for (std::size_t n = 0; n < dynamics.nodeCount(); ++n) {
