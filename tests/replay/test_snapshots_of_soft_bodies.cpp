@@ -265,5 +265,40 @@ TEST(BodiesThatReturn, AreKnownToSnapshots) {
   EXPECT_EQ(placesOf(stays->body()), second);
 }
 
+/// Plastic flow, growth and a muscle of one body; what was set before a snapshot, and after it.
+TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
+  const auto make = [] {
+    SoftBodyOptions options;
+    options.youngsModulus = 2e4;
+    options.stiffnessDamping = 0.005;
+    auto scene = withBar(0.5, true, options);
+    DeformableBody& body = *scene->bodies[0];
+    Muscle muscle;
+    for (int t = 0; t < body.body().m_tetras.size(); t += 2) muscle.tets.push_back(t);
+    muscle.fibres = {Eigen::Vector3d(1, 0, 0)};
+    muscle.stress = 4e3;
+    EXPECT_TRUE(body.addMuscle(muscle).ok());
+    scene->before = [&body](int frame) {
+      Plasticity plasticity;
+      plasticity.yieldStress = frame < 20 ? 200.0 : 400.0;
+      plasticity.hardening = 1e3;
+      plasticity.flowRate = 20.0;
+      plasticity.largestStrain = 0.4;
+      if (frame == 5 || frame == 20) {
+        EXPECT_TRUE(body.setPlasticity(plasticity).ok());
+      }
+      if (frame == 30) body.resetPlasticFlow();
+      if (frame == 12 || frame == 13) {
+        EXPECT_TRUE(body.setGrowth(1.0 + 0.01 * (frame - 8)).ok());
+      }
+      if (frame % 4 == 0) {
+        EXPECT_TRUE(body.setActivation(0, 0.02 * frame).ok());
+      }
+    };
+    return scene;
+  };
+  expectReplays(make, 45, {0, 4, 6, 12, 19, 27, 32});
+}
+
 }  // namespace
 }  // namespace tetskin::test

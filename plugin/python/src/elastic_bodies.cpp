@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include "models.h"
-
-#include <tetskin/elastic/elastic_body.h>
+#include "handles.h"
 
 namespace tetskin::python {
 namespace {
-
-using Body = std::shared_ptr<ElasticBody<double>>;
-
-struct ElasticModel {
-  Body body;
-};
 
 void make(ElasticModel* self, const CageModel& cage, double youngsModulus, double poissonRatio, double stiffnessDamping,
           double density, double tolerance, int maxIterations, bool deterministic) {
@@ -24,7 +16,8 @@ void make(ElasticModel* self, const CageModel& cage, double youngsModulus, doubl
   options.maxIterations = maxIterations;
   options.deterministic = deterministic;
   new (self) ElasticModel{std::make_shared<ElasticBody<double>>(
-      released([&] { return take(ElasticBody<double>::create(*cage.cage, options)); }))};
+      released([&] { return take(ElasticBody<double>::create(*cage.cage, options)); })),
+                         cage.cage->mesh.tetCount()};
 }
 
 void assign(PointView<double> target, const ArrayLike& array, const char* name) {
@@ -41,10 +34,10 @@ void assign(PointView<double> target, const ArrayLike& array, const char* name) 
 
 }  // namespace
 
-void bindElasticBodies(nb::module_& module) {
-  Class<ElasticModel>(module, "ElasticBody",
-                      "A body of elastic tets by itself, without contact, for use in any engine.")
-      .words([](const ElasticModel& m) { return counted(m.body->nodeCount(), "node", "nodes"); })
+Class<ElasticModel> bindElasticBodies(nb::module_& module) {
+  Class<ElasticModel> body(module, "ElasticBody",
+                           "A body of elastic tets by itself, without contact, for use in any engine.");
+  body.words([](const ElasticModel& m) { return counted(m.body->nodeCount(), "node", "nodes"); })
       .def("__init__", make, "cage"_a, nb::kw_only(), "youngs_modulus"_a = 1e5, "poisson_ratio"_a = 0.3,
            "stiffness_damping"_a = 0.0, "density"_a = 1.0, "tolerance"_a = 5e-3, "max_iterations"_a = 200,
            "deterministic"_a = false,
@@ -89,6 +82,7 @@ void bindElasticBodies(nb::module_& module) {
           "(n, 3) float64 elastic forces at the current positions. A new array.")
       .def_prop_ro(
           "energy", [](ElasticModel& m) { return m.body->energy(); }, "Elastic energy at the current positions.");
+  return body;
 }
 
 }  // namespace tetskin::python

@@ -6,6 +6,7 @@
 
 #include "models.h"
 
+#include <tetskin/elastic/elastic_body.h>
 #include <tetskin/threads/thread_pool.h>
 #include <memory>
 #include <mutex>
@@ -74,6 +75,11 @@ struct Handle {
 using RigidHandle = Handle<World::RigidBody>;
 using JointHandle = Handle<World::Joint>;
 using BodyHandle = Handle<World::Body>;
+/// A body by itself, and the number of its tets.
+struct ElasticModel {
+  std::shared_ptr<ElasticBody<double>> body;
+  std::size_t tets = 0;
+};
 struct SpringHandle : Handle<World::Touch> {};
 struct WeldHandle : Handle<World::Touch> {};
 
@@ -102,7 +108,9 @@ void bindIdentity(Class<Of>& type) {
 }
 
 /// See models.h; these need the type of a body.
+Class<ElasticModel> bindElasticBodies(nb::module_& module);
 Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world);
+void bindMaterialChanges(nb::module_& module, Class<BodyHandle>& body, Class<ElasticModel>& elastic);
 void bindPages(nb::module_& module, Class<World>& world, Class<BodyHandle>& body);
 
 }  // namespace tetskin::python

@@ -41,7 +41,6 @@ MeshModel meshOf(const MeshLike& mesh);
 void bindMeshes(nb::module_& module);
 void bindCages(nb::module_& module);
 void bindSkins(nb::module_& module);
-void bindElasticBodies(nb::module_& module);
 void bindAnimations(nb::module_& module);
 void bindRigidBodies(nb::module_& module, Class<World>& world);
 void bindJoints(nb::module_& module, Class<World>& world);

@@ -59,11 +59,12 @@ NB_MODULE(_core, module) {
   bindMeshes(module);
   bindCages(module);
   bindSkins(module);
-  bindElasticBodies(module);
+  Class<ElasticModel> elastic = bindElasticBodies(module);
   Class<World> world = bindWorlds(module);
   bindRigidBodies(module, world);
   bindJoints(module, world);
   Class<BodyHandle> body = bindBodies(module, world);
+  bindMaterialChanges(module, body, elastic);
   bindContacts(module, world);
   bindTouch(module, world);
   bindRuns(module, world);

@@ -6,6 +6,7 @@
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/types.h>
+#include <tetskin/elastic/material_changes.h>
 
 #include <array>
 #include <memory>
@@ -95,6 +96,30 @@ class TETSKIN_ELASTIC_API ElasticBody {
   ///               moves
   /// threads       see `ParallelFor`; bit-identical with any number; null: none
   int step(double seconds, const std::array<double, 3>& acceleration = {}, ParallelFor* threads = nullptr);
+
+  // ---- What changes the state in which the body is at rest; each from the next step on. Errors of a `Status`:
+  // InvalidOption, SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then.
+
+  /// Lets the material flow where it yields; replaces what was set before. Costs a tenth of a step's forces.
+  Status setPlasticity(const Plasticity& plasticity);
+  void endPlasticity();      ///< nothing flows any more; what has flowed stays
+  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a second.
+  void resetPlasticFlow();
+  /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
+  /// parts have its mean.
+  std::vector<double> plasticStrains() const;
+  /// Makes tets grow to multiples of their first size, at which they are at rest; masses stay. Beside it, plastic flow
+  /// stays. A large change in one step is a blow: change it over some steps.
+  /// length  factor of length, 0.05 to 20; 1: none
+  Status setGrowth(double length);
+  Status setGrowth(const std::vector<double>& lengths);  ///< tetCount factors of length
+  /// The same along axes.
+  /// deformations  by tet, 3 x 3 by rows, symmetric: factors of length along three axes, rest space
+  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
+  Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
+  /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
+  Status setActivation(int muscle, double activation);
+  double activation(int muscle) const;  ///< that was set last. The muscle must exist
 
   /// nodeCount elastic forces at the current positions, world space, pressure times area.
   std::vector<std::array<double, 3>> forces();

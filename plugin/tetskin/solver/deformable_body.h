@@ -4,6 +4,7 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
+#include <tetskin/elastic/material_changes.h>
 
 #include <memory>
 
@@ -89,6 +90,32 @@ class TETSKIN_SOLVER_API DeformableBody {
   Status setPoissonRatio(double ratio);
   /// Applies from the next step on; 0 or more. The body wakes. Error: InvalidOption
   Status setStiffnessDamping(double seconds);
+
+  // ---- What changes the state in which the body is at rest: for ForceModel::Corotated alone. Each acts from the next
+  // step on, wakes the body, and is part of snapshots. Errors of a `Status`: InvalidOption, SizeMismatch or
+  // IndexOutOfRange, which say what is wrong; nothing is changed then. Tets are those of the cage. If the body is scaled,
+  // what has flowed is forgotten; if it gets other tets, all of it.
+
+  /// Lets the material flow where it yields; replaces what was set before.
+  Status setPlasticity(const Plasticity& plasticity);
+  void endPlasticity();     ///< nothing flows any more; what has flowed stays
+  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a second.
+  void resetPlasticFlow();
+  /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
+  /// parts have its mean.
+  std::vector<double> plasticStrains() const;
+  /// Makes tets grow to multiples of their first size, at which they are at rest; masses stay. Beside it, plastic flow
+  /// stays. A large change in one step is a blow: change it over some steps.
+  /// length  factor of length, 0.05 to 20; 1: none
+  Status setGrowth(double length);
+  Status setGrowth(const std::vector<double>& lengths);  ///< tetCount factors of length
+  /// The same along axes.
+  /// deformations  by tet, 3 x 3 by rows, symmetric: factors of length along three axes, rest space
+  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
+  Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed. Muscles stay until the body ends
+  /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
+  Status setActivation(int muscle, double activation);
+  double activation(int muscle) const;  ///< that was set last. The muscle must exist
 
   /// Sets the body's gravity, world length / s^2. Until the first call the body follows the world's gravity, including
   /// later changes. The body wakes. Error: InvalidOption if not finite, or above 1e6 body sizes per second squared;

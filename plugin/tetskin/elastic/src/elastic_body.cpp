@@ -7,6 +7,7 @@
 #include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
+#include <tetskin/elastic/src/tets/material_changes.h>
 
 #include <algorithm>
 #include <cassert>
@@ -77,7 +78,12 @@ template <class Scalar>
 struct ElasticBody<Scalar>::Impl {
   /// options  completed by the cage's values
   Impl(elastic_detail::RestTets rest, const TetMesh& cage, const ElasticOptions& options)
-      : dynamics(std::move(rest), cage.nodeCount()), masses(options.nodeMasses) {
+      : dynamics(std::move(rest), cage.nodeCount()),
+        masses(options.nodeMasses),
+        changes(cage.tetCount()),
+        tetCount(cage.tetCount()),
+        youngsModulus(options.youngsModulus),
+        poissonRatio(options.poissonRatio) {
     for (const Eigen::Vector3d& p : cage.nodes) {
       for (int k = 0; k < 3; ++k) positions.push_back(static_cast<Scalar>(p[k]));
     }
@@ -141,7 +147,25 @@ struct ElasticBody<Scalar>::Impl {
   elastic_detail::SolveLimits limits;
   std::vector<double> masses;  ///< by node, before any is pinned
   std::vector<Scalar> positions, velocities;
+  elastic_detail::MaterialChanges changes;
+  std::size_t tetCount;
+  double youngsModulus, poissonRatio;
+
+  /// Gives the tets what was set, if it is valid.
+  Status change(Status status) {
+    if (status.ok()) applyChanges();
+    return status;
+  }
+  void applyChanges() {
+    if (dynamics.tets()) changes.applyTo(*dynamics.tets(), poissonRatio, youngsModulus);
+  }
 };
+
+namespace {
+
+const Status kNoNodes{StatusCode::InvalidOption, "the body has no nodes"};
+
+}  // namespace
 
 template <class Scalar>
 Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const Cage& cage, const ElasticOptions& options) {
@@ -204,6 +228,53 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   p.dynamics.removeMomentum();
   p.write(seconds);
   return iterations;
+}
+
+template <class Scalar>
+Status ElasticBody<Scalar>::setPlasticity(const Plasticity& plasticity) {
+  return impl_ ? impl_->change(impl_->changes.setPlasticity(plasticity)) : kNoNodes;
+}
+template <class Scalar>
+void ElasticBody<Scalar>::endPlasticity() {
+  if (!impl_) return;
+  impl_->changes.endPlasticity();
+  impl_->applyChanges();
+}
+template <class Scalar>
+void ElasticBody<Scalar>::resetPlasticFlow() {
+  if (impl_ && impl_->dynamics.tets()) impl_->dynamics.tets()->forgetFlow();
+}
+template <class Scalar>
+std::vector<double> ElasticBody<Scalar>::plasticStrains() const {
+  if (!impl_ || !impl_->dynamics.tets()) return {};
+  return impl_->dynamics.tets()->plasticStrains(impl_->tetCount);
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::setGrowth(double length) {
+  return impl_ ? impl_->change(impl_->changes.setGrowth(length)) : kNoNodes;
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::setGrowth(const std::vector<double>& lengths) {
+  return impl_ ? impl_->change(impl_->changes.setGrowth(lengths)) : kNoNodes;
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
+  return impl_ ? impl_->change(impl_->changes.setGrowthTensors(deformations)) : kNoNodes;
+}
+template <class Scalar>
+Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {
+  if (!impl_) return kNoNodes;
+  return impl_->changes.addMuscle(muscle);
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::setActivation(int muscle, double activation) {
+  return impl_ ? impl_->change(impl_->changes.setActivation(muscle, activation)) : kNoNodes;
+}
+
+template <class Scalar>
+double ElasticBody<Scalar>::activation(int muscle) const {
+  assert(impl_);
+  return impl_->changes.activation(muscle);
 }
 
 template <class Scalar>

@@ -205,6 +205,19 @@ struct DeformableBody::Impl final : BodyOwner {
     if (status.ok()) apply(now);
     return status;
   }
+  /// Calls change(what the owner has set) of a corotated body and, if it succeeds, gives the result to the tets.
+  template <class Change>
+  Status changeMaterial(const char* what, Change&& change) {
+    ElasticForce* elastic = corotated();
+    if (!elastic) {
+      return {StatusCode::InvalidOption, std::string(what) + " needs ForceModel::Corotated"};
+    }
+    Status status = change(elastic->body().changes);
+    if (!status.ok()) return status;
+    elastic->applyChanges();
+    body->activate();
+    return status;
+  }
   void enter();
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
   void serialize(WorldStream& stream) override;
@@ -438,6 +451,61 @@ Status DeformableBody::setPoissonRatio(double ratio) {
 
 Status DeformableBody::setStiffnessDamping(double seconds) {
   return impl_->set({youngsModulus(), poissonRatio(), seconds});
+}
+
+Status DeformableBody::setPlasticity(const Plasticity& plasticity) {
+  return impl_->changeMaterial("plasticity", [&](auto& changes) { return changes.setPlasticity(plasticity); });
+}
+
+void DeformableBody::endPlasticity() {
+  (void)impl_->changeMaterial("plasticity", [](auto& changes) {
+    changes.endPlasticity();
+    return Status();
+  });
+}
+
+void DeformableBody::resetPlasticFlow() {
+  ElasticForce* elastic = impl_->corotated();
+  if (!elastic) return;
+  elastic->body().dynamics->tets()->forgetFlow();
+  body().activate();
+}
+
+std::vector<double> DeformableBody::plasticStrains() const {
+  ElasticForce* elastic = impl_->corotated();
+  if (!elastic) return std::vector<double>(static_cast<std::size_t>(body().m_tetras.size()), 0.0);
+  return elastic->body().dynamics->tets()->plasticStrains(elastic->body().tetCount);
+}
+
+Status DeformableBody::setGrowth(double length) {
+  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(length); });
+}
+
+Status DeformableBody::setGrowth(const std::vector<double>& lengths) {
+  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(lengths); });
+}
+
+Status DeformableBody::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
+  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowthTensors(deformations); });
+}
+
+Result<int> DeformableBody::addMuscle(const Muscle& muscle) {
+  int number = 0;
+  Status status = impl_->changeMaterial("a muscle", [&](auto& changes) {
+    const Result<int> added = changes.addMuscle(muscle);
+    if (added.ok()) number = added.value();
+    return added.ok() ? Status() : added.status();
+  });
+  if (!status.ok()) return status;
+  return number;
+}
+
+Status DeformableBody::setActivation(int muscle, double activation) {
+  return impl_->changeMaterial("a muscle", [&](auto& changes) { return changes.setActivation(muscle, activation); });
+}
+
+double DeformableBody::activation(int muscle) const {
+  return impl_->corotated()->body().changes.activation(muscle);
 }
 
 Status DeformableBody::setGravity(const btVector3& gravity) {

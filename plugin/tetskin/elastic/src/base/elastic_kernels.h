@@ -65,7 +65,22 @@ struct TetWork {
   S* sums = nullptr;           ///< by slot: forces are added here; null: written to a tet's first corners, by node
   S alpha = 0, flatAlpha = 0;  ///< the second one applies where a tet is flat or inverted
   S* alphas = nullptr;         ///< by pack and point: which of the two; unused if they are equal
+
+  // Of rest shapes that change: see rest_change.h.
+  /// (P D)^-1 - 1 by rows, and det D, wide, by pack and point; null: all tets have their first shapes.
+  S* changes = nullptr;
+  const S* assembledChanges = nullptr;  ///< those with which the matrix was assembled
+  const S* given = nullptr;             ///< D by rows, wide, by pack and point; null: 1
+  /// The norm of the deviator of E at which tets yield, and by how much it grows with the equivalent plastic strain,
+  /// wide, by pack; null: nothing flows.
+  const S* yields = nullptr;
+  S* flowed = nullptr;  ///< the equivalent plastic strain, wide, by pack and point
+  S flowShare = 1;      ///< share of what is beyond the yield surface that flows in this step; 0: none
+  S largestStrain = 0;  ///< the largest plastic strain that may remain; 0: any
 };
+
+/// Scalars of a pack's changes at one point.
+constexpr std::size_t kChange = 10 * kGroup;
 
 /// Ratio of volume to rest volume below which a tet counts as flat. No body is flat under its own weight; one that is
 /// squashed by ten times what it can carry is, and the corner on which one falls.
@@ -77,6 +92,7 @@ struct TetFindings {
   S maxTurned = 0;      ///< the largest squared difference between a rotation and that of the matrix, as quaternions
   double turned = 0.0;  ///< sum of these differences, each a quarter of the squared angle
   double energy = 0.0;
+  bool yields = false;  ///< some tet is beyond its yield surface
 };
 
 /// Rows of the matrix; no two of them are neighbours.

@@ -204,6 +204,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
   stiff_ = stiffnessNumber_ > kStiff;
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
+  tets_->flowFor(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
@@ -431,14 +432,24 @@ double BodyDynamics<S>::rigidCompliance(std::size_t component, const std::array<
 }
 
 template <class S>
-double BodyDynamics<S>::keptInImpact(std::size_t component) const {
+double BodyDynamics<S>::keptInImpact(std::size_t component, double energy) const {
   constexpr double kPi = 3.14159265358979324;  // half a period is a phase of it
-  const double ratio = 0.5 * damping_ * components_.impactFrequency(component);
+  const double frequency = components_.impactFrequency(component), ratio = 0.5 * damping_ * frequency;
   if (!(ratio < 1.0)) return 0.0;
   // exp(-x), to a few per cent: its bits are the same everywhere.
   const double quarter = 0.5 * kPi * ratio / std::sqrt(1.0 - ratio * ratio),
                root = 1.0 / (1.0 + quarter + 0.5 * quarter * quarter);
-  return root * root * root * root;
+  return root * root * root * root * (1.0 - flowsInImpact(component, energy, kPi / frequency));
+}
+
+/// The share of an impact's energy that flows within half a period: what is beyond the energy at which the whole yields.
+template <class S>
+double BodyDynamics<S>::flowsInImpact(std::size_t component, double energy, double seconds) const {
+  if (!tets_ || !tets_->flows()) return 0.0;
+  double mass = 0.0;
+  for (std::size_t k = 0; k < components_.count(); ++k) mass += components_.mass(k);
+  const double elastic = tets_->yieldEnergy() * components_.mass(component) / mass;
+  return elastic < energy ? (1.0 - elastic / energy) * tets_->flowShare(seconds) : 0.0;
 }
 
 template <class S>

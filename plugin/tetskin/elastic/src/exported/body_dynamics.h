@@ -181,8 +181,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// World space.
   double rigidCompliance(std::size_t component, const std::array<double, 3>& point,
                          const std::array<double, 3>& direction) const;
-  /// The share of its energy that material damping leaves it in an impact: that of a vibration in half a period.
-  double keptInImpact(std::size_t component) const;
+  /// The share of its energy that material damping leaves it in an impact, that of a vibration in half a period, and
+  /// that does not flow.
+  /// energy  with which it comes
+  double keptInImpact(std::size_t component, double energy) const;
   /// Its centre of mass at the beginning of the step, or the centroid of its pinned nodes.
   std::array<double, 3> centreOf(std::size_t component) const;
   /// Its velocity as a rigid body of its momentum: at the beginning of the step, with what acts on it beside
@@ -253,6 +255,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   NodeStates<S> nodes() const { return {matrix_, places_, velocities_}; }
   LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_}; }
+  double flowsInImpact(std::size_t component, double energy, double seconds) const;
   void chooseScheme();
   /// A contact that neither stops it nor throws it back.
   bool lasts() const { return untouched_ == 0 && !impact_; }

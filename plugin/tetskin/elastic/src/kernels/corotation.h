@@ -261,10 +261,11 @@ template <class S, int W>
 struct WideFindings {
   Lanes<S, W> squashed{}, maxTurned{}, turned{};  ///< the first one: 1 - the ratio of volumes
   double energy = 0.0;
+  bool yields = false;
 
   TetFindings<S> all() const {
     return {S(1) - largest<S, W>(squashed), largest<S, W>(maxTurned), static_cast<double>(laneSum<S, W>(turned)),
-            energy};
+            energy, yields};
   }
 };
 
@@ -387,22 +388,6 @@ TETSKIN_INLINE void noteVolumes(const WideMatrix<S, W>& stretch, const Lanes<S, 
                                 WideFindings<S, W>& findings) {
   const Lanes<S, W> squashed = all<S, W>(S(1)) - determinantOf<S, W>(stretch);
   findings.squashed = larger(shear > S(0) ? squashed : findings.squashed, findings.squashed);
-}
-
-/// Updates the rotations of W points.
-/// g            gradients of points
-/// shear, bulk  2 mu V and lambda V
-template <class S, int W>
-TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const WideMatrix<S, W>& g, const WideFrames<S, W>& frame, S* rotations,
-                                                 const S* assembled, const Lanes<S, W>& shear, const Lanes<S, W>& bulk,
-                                                 bool withEnergy, WideFindings<S, W>& findings) {
-  Quaternions<S, W> q = quaternions<S, W>(rotations);
-  WideMatrix<S, W> r, s;
-  turnToMaximum<S, W>(deformationGradient<S, W>(g, frame), q, r, s);
-  keepRotations<S, W>(q, rotations, assembled, findings);
-  noteVolumes<S, W>(s, shear, findings);
-  const WideMatrix<S, W> strain = strainOf<S, W>(q, r, g, frame);
-  return {r, stressOf<S, W>(strain, traceOf<S, W>(strain), shear, bulk, withEnergy, findings)};
 }
 
 /// Adds the forces on the nodes of W tets to the points of these nodes, tet by tet.

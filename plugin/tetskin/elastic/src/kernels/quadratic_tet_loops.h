@@ -12,7 +12,7 @@
 // whose gradient is the force, because the energy is stationary in R; for a uniform strain it equals the usual energy.
 #pragma once
 
-#include <tetskin/elastic/src/kernels/corotation.h>
+#include <tetskin/elastic/src/kernels/rest_change.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
@@ -179,6 +179,10 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
         weightsAt<S, W>(pack, point, lane, weights[point]);
         at[point].q = quaternions<S, W>(work.rotations + first + 4 * kGroup * point);
         gradients[point] = gradientOf<S, W>(pack, lane, x, weights[point]);
+        if (work.changes) {
+          gradients[point] =
+              elasticPart<S, W>(gradients[point], frame, changesAt<S, W>(work, Pack::kPoints * p + point, lane));
+        }
         turnToMaximum<S, W>(deformationGradient<S, W>(gradients[point], frame), at[point].q, at[point].r, at[point].s);
       }
       const V lost = lostTets<S, W>(at);
@@ -186,10 +190,10 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
       const bool anyLost = anyAbove<S, W>(lost, S(0.5));
       if (anyLost) turnAsAWhole<S, W>(lost, at, wholeTrace);
       for (WideVector<S, W>& v : force) v = {V{}, V{}, V{}};
-      const V shear = wide<S, W>(pack.shear + lane), bulk = wide<S, W>(pack.bulk + lane);
       for (std::size_t point = 0; point < Pack::kPoints; ++point) {
         keepRotations<S, W>(at[point].q, work.rotations + first + 4 * kGroup * point,
                             work.assembled + first + 4 * kGroup * point, findings);
+        V shear = wide<S, W>(pack.shear + lane), bulk = wide<S, W>(pack.bulk + lane);
         noteVolumes<S, W>(at[point].s, shear, findings);
         WideMatrix<S, W> strain = strainOf<S, W>(at[point].q, at[point].r, gradients[point], frame);
         V trace = traceOf<S, W>(strain);
@@ -198,7 +202,19 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
           replace<S, W>(lost, at[point].s, strain);
           replace<S, W>(lost, wholeTrace, trace);
         }
-        const RotatedStress<S, W> stress{at[point].r, stressOf<S, W>(strain, trace, shear, bulk, withEnergy, findings)};
+        WideChange<S, W> change{};
+        if (work.changes) {
+          const std::size_t number = Pack::kPoints * p + point;
+          change = changesAt<S, W>(work, number, lane);
+          if (flowWhereYielding<S, W>(work, p, number, lane, lost, strain, change, findings)) {
+            trace = lost > S(0) ? trace : traceOf<S, W>(strain);
+          }
+          noteChange<S, W>(change, work.assembledChanges + kChange * number + static_cast<std::size_t>(lane), findings);
+          shear *= change.volume;
+          bulk *= change.volume;
+        }
+        RotatedStress<S, W> stress{at[point].r, stressOf<S, W>(strain, trace, shear, bulk, withEnergy, findings)};
+        if (work.changes) stress.stress = plusTransposedProduct<S, W>(stress.stress, change.inverse);
         byShapeGradients<S, W>(pack, lane, weights[point], stress, [&](int a, const WideVector<S, W>& v) {
           force[a] = {force[a].x - v.x, force[a].y - v.y, force[a].z - v.z};
         });
@@ -226,11 +242,13 @@ TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& wo
   const V alpha = alphaOf<S, W>(work, first + static_cast<std::size_t>(lane), [&] {
     WideVector<S, W> x[10];
     nodesFromFirst<S, W>(pack, work.points, lane, x);
-    return deformationGradient<S, W>(gradientOf<S, W>(pack, lane, x, weights),
-                                     framesAt<S, W>(work, pack, lane, common));
+    return elasticGradient<S, W>(work, Pack::kPoints * p + point, lane, gradientOf<S, W>(pack, lane, x, weights),
+                                 framesAt<S, W>(work, pack, lane, common));
   });
-  const V factor = squareRoots<S, W>(alpha * (S(0.5) * wide<S, W>(pack.shear + lane)));
-  const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * first + lane));
+  V mu = S(0.5) * wide<S, W>(pack.shear + lane);
+  WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * first + lane));
+  if (work.changes) changeRest<S, W>(work, Pack::kPoints * p + point, lane, r, mu);
+  const V factor = squareRoots<S, W>(alpha * mu);
   byShapeGradients<S, W>(
       pack, lane, weights,
       [&](const V& gx, const V& gy, const V& gz) { return rotated<S, W>(r, factor * gx, factor * gy, factor * gz); },

@@ -4,7 +4,7 @@
 // Internal to the kernels: corotated elasticity of W linear tets at a time, with one deformation gradient each.
 #pragma once
 
-#include <tetskin/elastic/src/kernels/corotation.h>
+#include <tetskin/elastic/src/kernels/rest_change.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
@@ -53,10 +53,9 @@ TetFindings<S> forces(const TetWork<S, TetPack<S>>& work, bool withEnergy) {
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
-      const std::size_t at = 4 * kGroup * p + static_cast<std::size_t>(lane);
       const RotatedStress<S, W> stress = rotatedStress<S, W>(
-          gradientOf<S, W>(pack, work.points, lane), framesAt<S, W>(work, pack, lane, common), work.rotations + at,
-          work.assembled + at, wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
+          work, p, p, lane, gradientOf<S, W>(pack, work.points, lane), framesAt<S, W>(work, pack, lane, common),
+          wide<S, W>(pack.shear + lane), wide<S, W>(pack.bulk + lane), withEnergy, findings);
       S* const corners = work.sums ? own : work.corners + kScalars * (kGroup * p + static_cast<std::size_t>(lane));
       putCorners<S, W>(pack, lane, corners, [&](const V& gx, const V& gy, const V& gz) {
         const WideVector<S, W> v = stress(gx, gy, gz);
@@ -75,12 +74,14 @@ void rotatedGradients(const TetWork<S, TetPack<S>>& work) {
   for (std::size_t p = work.firstPack; p < work.lastPack; ++p) {
     const TetPack<S>& pack = work.packs[p];
     for (int lane = 0; lane < kGroup; lane += W) {
-      const WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
+      WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * kGroup * p + lane));
       const V alpha = alphaOf<S, W>(work, kGroup * p + static_cast<std::size_t>(lane), [&] {
-        return deformationGradient<S, W>(gradientOf<S, W>(pack, work.points, lane),
-                                         framesAt<S, W>(work, pack, lane, common));
+        return elasticGradient<S, W>(work, p, lane, gradientOf<S, W>(pack, work.points, lane),
+                                     framesAt<S, W>(work, pack, lane, common));
       });
-      const V mu = S(0.5) * wide<S, W>(pack.shear + lane), factor = squareRoots<S, W>(alpha * mu);
+      V mu = S(0.5) * wide<S, W>(pack.shear + lane);
+      if (work.changes) changeRest<S, W>(work, p, lane, r, mu);
+      const V factor = squareRoots<S, W>(alpha * mu);
       putCorners<S, W>(pack, lane, work.corners + kCorners<TetPack<S>> * (kGroup * p + static_cast<std::size_t>(lane)),
                        [&](const V& gx, const V& gy, const V& gz) {
                          return rotated<S, W>(r, factor * gx, factor * gy, factor * gz);

@@ -97,6 +97,8 @@ template <class S>
 void CorotatedTets<S>::setMaterial(const Lame& lame) {
   assert(lame.mu > 0.0 && lame.lambda >= 0.0);
   ratio_ = static_cast<S>(lame.lambda / lame.mu);
+  mu_ = lame.mu;
+  youngsModulus_ = lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu);
   const auto set = [&](auto& pack, std::size_t lane, double volume) {
     pack.shear[lane] = static_cast<S>(2.0 * lame.mu * volume);
     pack.bulk[lane] = static_cast<S>(lame.lambda * volume);
@@ -120,6 +122,14 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.alphas = packed.alphas.data();
   work.frames = frames_;
   work.partOf = partOf_;
+  if (packed.changes.empty()) return work;
+  work.changes = packed.changes.data();
+  work.assembledChanges = packed.assembledChanges.data();
+  work.given = isGiven_ ? packed.given.data() : nullptr;
+  work.yields = packed.yields.empty() || isAsked_ ? nullptr : packed.yields.data();
+  work.flowed = packed.flowed.data();
+  work.flowShare = flowShare_;
+  work.largestStrain = largestStrain_;
   return work;
 }
 
@@ -148,13 +158,16 @@ double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, Par
   flattest_ = S(1);
   maxTurned_ = S(0);
   turned_ = 0.0;
+  bool yields = false;
   double total = 0.0;
   for (const kernels::TetFindings<S>& part : findings_) {
     flattest_ = std::min(flattest_, part.flattest);
     maxTurned_ = std::max(maxTurned_, part.maxTurned);
     turned_ += part.turned;
+    yields |= part.yields;
     total += part.energy;
   }
+  if (!isAsked_) yields_ = yields;
   return total;
 }
 
@@ -190,7 +203,9 @@ void CorotatedTets<S>::ask(Query&& query) {
   const S flattest = flattest_, maxTurned = maxTurned_;
   const double turned = turned_;
   const S* const points = points_;
+  isAsked_ = true;
   query();
+  isAsked_ = false;
   linear_.rotations = linear;
   quadratic_.rotations = quadratic;
   flattest_ = flattest;
@@ -228,6 +243,7 @@ const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S fla
   assert(points_ || flatAlpha_ == S(0));
   forBoth([&](auto& packed) {
     packed.assembled = packed.rotations;
+    packed.assembledChanges = packed.changes;
     if (flatAlpha_ > S(0)) packed.alphas.resize(packed.rotations.size() / 4);
   });
   return corners(alpha, flatAlpha_ > S(0) ? flatAlpha_ : alpha, points_, threads);
@@ -238,6 +254,7 @@ const S* CorotatedTets<S>::cornersWithoutFlat(S alpha, ParallelFor* threads) {
   assert(points_ && alpha > S(0));
   forBoth([&](auto& packed) {
     packed.assembled = packed.rotations;
+    packed.assembledChanges = packed.changes;
     packed.alphas.resize(packed.rotations.size() / 4);
   });
   return corners(alpha, S(0), points_, threads);
@@ -264,10 +281,11 @@ const S* CorotatedTets<S>::corners(S alpha, S flatAlpha, const S* points, Parall
 template <class S>
 bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   forBoth([&](auto& packed) { stream.plain(packed.rotations.data(), packed.rotations.size()); });
+  bool changed = serializeChanges(stream, ofMatrix);
   if (!ofMatrix) return false;
   const S flatAlpha = flatAlpha_;
   stream(flatAlpha_);
-  bool changed = flatAlpha != flatAlpha_;
+  changed |= flatAlpha != flatAlpha_;
   forBoth([&](auto& packed) { changed |= serializeAssembled(stream, packed); });
   if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= serializeAlphas(stream, alpha, packed); });
   return changed;

@@ -8,6 +8,7 @@
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/core/types.h>
+#include <tetskin/elastic/material_changes.h>
 #include <tetskin/elastic/src/tets/material.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
@@ -60,6 +61,26 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// ofMatrix  false: without those of the matrix, which will be assembled anew
   /// Returns   true if reading has changed the data from which the matrix is assembled
   bool serialize(StateStream& stream, S alpha, bool ofMatrix);
+
+  // Rest shapes that change, see kernels/rest_change.h. Tets without any have no cost by it.
+  /// Shapes at which the tets are at rest beside their plastic flow: deformation gradients from the first ones, by rows
+  /// and tet of the cage; empty: the first ones. Plastic strains stay. Cost O(T)
+  void setGiven(const std::vector<std::array<double, 9>>& byTet);
+  /// plasticity  checked; null: nothing flows any more, and what has flowed stays. For this material: call it again
+  ///             after `setMaterial`
+  void setPlasticity(const Plasticity* plasticity);
+  /// Undoes all plastic flow. Nothing flows until nothing has been beyond its yield surface for half a second.
+  void forgetFlow();
+  /// The seconds in which the next `forces` lets tets flow.
+  void flowFor(double seconds);
+  bool flows() const { return !linear_.yields.empty() || !quadratic_.yields.empty(); }
+  /// The share of what is beyond the yield stress that flows in some seconds.
+  double flowShare(double seconds) const;
+  /// The energy of all tets if each is pulled until it yields for the first time.
+  double yieldEnergy() const { return yieldEnergy_; }
+  /// Equivalent plastic strains since the beginning or `forgetFlow`, by tet of the cage. Cost O(T)
+  std::vector<double> plasticStrains(std::size_t cageTets);
+
   /// lambda / mu, for BlockMatrix::assemble.
   S ratio() const { return ratio_; }
 
@@ -70,6 +91,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     AlignedVector<Pack> packs;
     AlignedVector<S> rotations, assembled;  ///< by pack and point
     AlignedVector<S> alphas;                ///< by pack and point, see TetWork; empty until some tet may be flat
+    AlignedVector<S> changes, assembledChanges, given, yields, flowed;  ///< see TetWork; empty until they are needed
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };
@@ -84,6 +106,11 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     visit(linear_);
     visit(quadratic_);
   }
+  template <class Visit>
+  void forTets(Visit&& visit);
+  bool changes() const { return !linear_.changes.empty() || !quadratic_.changes.empty(); }
+  void makeChanges();
+  bool serializeChanges(StateStream& stream, bool ofMatrix);
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
   kernels::TetWork<S, Pack> work(Packed<Pack>& packed, std::size_t task);
@@ -111,6 +138,14 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   const S* frames_ = nullptr;
   const std::uint32_t* partOf_ = nullptr;
   S ratio_ = 0;
+  double mu_ = 0.0;
+  double youngsModulus_ = 0.0, flowRate_ = 0.0, yieldEnergy_ = 0.0;
+  S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
+  bool isGiven_ = false;                 ///< shapes other than the first ones
+  bool yields_ = false;                  ///< some tet was beyond its yield surface in the last `forces`
+  bool returns_ = false;                 ///< since `forgetFlow`
+  double calmSeconds_ = 0.0;             ///< of a body that returns: since then nothing was beyond it
+  bool isAsked_ = false;                 ///< within a question, which lets nothing flow
   S flatAlpha_ = 0;  ///< of the matrix, where tets were flat; 0: no such value
   S flattest_ = 1;
   S maxTurned_ = 0;      ///< squared difference of quaternions

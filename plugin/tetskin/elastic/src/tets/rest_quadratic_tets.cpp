@@ -86,6 +86,7 @@ std::vector<RestQuadraticTet> restQuadraticTets(const Cage& cage, const std::vec
   for (const QuadraticTet& tet : tets) {
     RestQuadraticTet& made = rest.emplace_back();
     made.nodes = tet.nodes;
+    made.cageTets = tet.tets;
     const TetCorners corners = cornersOf(cage.mesh, {tet.nodes[0], tet.nodes[1], tet.nodes[2], tet.nodes[3]});
     const BarycentricMap map(corners);
     const std::array<Eigen::Vector3d, 4> gradients = map.gradients();

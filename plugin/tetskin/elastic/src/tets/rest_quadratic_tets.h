@@ -27,6 +27,7 @@ struct RestQuadraticTet {
   /// Integral of the stiffness factor over the material, a quarter for each point; above 0. For a full tet with the
   /// factor 1, its volume.
   double volume = 0.0;
+  std::array<int, kSubTets> cageTets{};  ///< the tets of the cage that it is
 };
 
 /// The quadratic tets of a cage, none of them flat.

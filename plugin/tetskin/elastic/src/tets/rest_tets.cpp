@@ -42,6 +42,7 @@ RestTets restTets(const Cage& cage, const std::vector<QuadraticTet>& quadratic,
     std::array<double, 9>& g = rest.gradients.emplace_back();
     for (std::size_t k = 0; k < 9; ++k) g[k] = gradients[1 + k / 3][static_cast<Eigen::Index>(k % 3)];
     rest.tets.push_back(cage.mesh.tets[t]);
+    rest.cageTets.push_back(static_cast<std::uint32_t>(t));
     rest.volumes.push_back((scale.empty() ? 1.0 : scale[t]) * std::abs(signedVolume(corners)));
   }
   return rest;

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct RestTets {
   std::vector<Tet> tets;
   std::vector<std::array<double, 9>> gradients;  ///< by rows: of the weights of nodes 1, 2 and 3, rest space
   std::vector<double> volumes;                   ///< above 0: volume times stiffness factor
+  std::vector<std::uint32_t> cageTets;           ///< which tet of the cage each is
   std::vector<RestQuadraticTet> quadratic;
   /// Nodes at rest, rest space: the tets have these shapes, to the last digit. Empty: unknown.
   std::vector<Eigen::Vector3d> nodes;

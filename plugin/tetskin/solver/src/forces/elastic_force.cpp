@@ -58,7 +58,7 @@ double ElasticForce::totalElasticEnergy(btScalar) {
 }
 
 void ElasticForce::serialize(WorldStream& stream) {
-  body_.serialize(stream);
+  body_.serialize(stream, material_);
 }
 
 void ElasticForce::checkState(WorldStream& stream) {
@@ -66,6 +66,7 @@ void ElasticForce::checkState(WorldStream& stream) {
   stream.same(body_.body->m_tetras.size(), "a soft body has another number of tets");
   stream.same(body_.quadratic.size(), "a soft body has another number of quadratic tets");
   stream.same(body_.dynamics->componentCount(), "a soft body has another number of parts");
+  stream.same(body_.changes.muscleCount(), "a soft body has another number of muscles");
   stream.same(restMeasureOf(*body_.body), "a soft body has another shape at rest, or was scaled");
 }
 

@@ -142,6 +142,7 @@ void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMate
   assert(body && linear.count() == static_cast<std::size_t>(body->m_tetras.size()));
   if (stiffnessScale.size() != linear.count()) stiffnessScale.clear();
   if (dynamics && tetCount != linear.count()) quadratic.clear();
+  if (!dynamics || tetCount != linear.count()) changes = elastic_detail::MaterialChanges(linear.count());
   tetCount = linear.count();
   const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
   const auto nodes = static_cast<std::size_t>(body->m_nodes.size());
@@ -160,13 +161,18 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
   assert(dynamics);
   dynamics->setMaterial(elastic_detail::lameOf(material.youngsModulus, material.poissonRatio));
   dynamics->setDamping(material.damping);
+  applyChanges(material);
+}
+
+void ForcedBody::applyChanges(const ElasticMaterial& material) {
+  changes.applyTo(*dynamics->tets(), material.poissonRatio, material.youngsModulus);
 }
 
 void ForcedBody::reset(const ElasticMaterial& material) {
   assert(hasItsRestShapes());
   elastic_detail::RestTets linear = restTetsOf(*body).value();
   linear.nodes = dynamics->tets()->rest().nodes;
-  dynamics.reset();
+  dynamics->setLastSeconds(0.0);
   build(linear, material);
 }
 
@@ -181,7 +187,9 @@ bool ForcedBody::hasItsRestShapes() const {
 }
 
 /// A body that was scaled or got nodes since the last step gets new dynamics at the beginning of the next.
-void ForcedBody::serialize(WorldStream& stream) {
+void ForcedBody::serialize(WorldStream& stream, const ElasticMaterial& material) {
+  changes.serialize(stream);
+  if (stream.restoring()) applyChanges(material);
   bool isCurrent = hasItsRestShapes();
   stream(isCurrent);
   if (!isCurrent) {

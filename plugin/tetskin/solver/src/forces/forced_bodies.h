@@ -7,6 +7,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
+#include <tetskin/elastic/src/tets/material_changes.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 
@@ -58,6 +59,7 @@ struct ForcedBody {
   btSoftBody* body = nullptr;
   std::vector<double> stiffnessScale;     ///< by tet, or empty
   std::vector<QuadraticShape> quadratic;  ///< those whose parts are still tets of the body, see `withQuadraticTets`
+  elastic_detail::MaterialChanges changes;  ///< what the owner has set
   std::unique_ptr<Dynamics> dynamics;
   std::size_t tetCount = 0;  ///< tets of the body when `dynamics` was created
   btScalar restMeasure = 0;  ///< measure of some tets: changes if the body is scaled
@@ -70,6 +72,8 @@ struct ForcedBody {
   /// linear  see `restTetsOf`; its nodes are the cage's, or empty
   void build(const elastic_detail::RestTets& linear, const ElasticMaterial& material);
   void setMaterial(const ElasticMaterial& material);
+  /// Gives the tets `changes`.
+  void applyChanges(const ElasticMaterial& material);
   /// Forgets all steps, as if the body had just been built.
   void reset(const ElasticMaterial& material);
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.
@@ -78,7 +82,7 @@ struct ForcedBody {
 
   /// Writes or reads what the dynamics remember from step to step. When reading, the nodes and the material are already
   /// the snapshot's.
-  void serialize(WorldStream& stream);
+  void serialize(WorldStream& stream, const ElasticMaterial& material);
 };
 
 }  // namespace tetskin::bullet_detail

@@ -90,6 +90,7 @@ RestTets withQuadraticTets(const RestTets& linear, const std::vector<double>& st
   for (std::size_t t = 0; t < linear.count(); ++t) {
     if (!isLinear[t]) continue;
     rest.tets.push_back(linear.tets[t]);
+    rest.cageTets.push_back(static_cast<std::uint32_t>(t));
     rest.gradients.push_back(linear.gradients[t]);
     rest.volumes.push_back(linear.volumes[t] * (stiffnessScale.empty() ? 1.0 : stiffnessScale[t]));
   }

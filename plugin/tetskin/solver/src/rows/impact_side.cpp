@@ -77,8 +77,8 @@ void ImpactSide::push(const btVector3& at, const btVector3& impulse) const {
   if (moves()) rigids_.push(rigids_.at(object_, at), impulse);
 }
 
-double ImpactSide::kept() const {
-  return soft_ ? soft_->dynamics->keptInImpact(component_) : 1.0;
+double ImpactSide::kept(double energy) const {
+  return soft_ ? soft_->dynamics->keptInImpact(component_, energy) : 1.0;
 }
 
 double ImpactSide::vibrationBefore() const {

@@ -39,7 +39,7 @@ class ImpactSide {
   /// Between two steps; of a soft body after its `findMotion`.
   void push(const btVector3& at, const btVector3& impulse) const;
   /// Share of its energy that its material's damping leaves it in an impact.
-  double kept() const;
+  double kept(double energy) const;
   /// The energy of its body's deformation and of the motion beside the rigid one, in joules: between two steps, or at
   /// the beginning of one, after its prediction.
   double vibration() const;

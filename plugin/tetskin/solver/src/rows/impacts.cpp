@@ -125,7 +125,7 @@ Meeting meetingOf(const Impact& impact, const Sides& sides) {
 double partingEnergy(const Impact& impact, const Sides& sides, const Meeting& meeting) {
   const double came = meeting.energyAt(meeting.in), parts = meeting.energyAt(std::max(meeting.out, 0.0));
   const double lost = std::max(std::min(impact.lost, came), 0.0);
-  const double kept = std::min(sides[0].kept(), sides[1].kept());
+  const double kept = std::min(sides[0].kept(came), sides[1].kept(came));
   const double elastic = parts + lost * std::min((std::sqrt(std::sqrt(kept)) * parts + kept * lost) / came, 1.0);
   const auto ofBoth = impact.pair.body->getRestitution() * impact.pair.object->getRestitution();
   const double e = std::max(static_cast<double>(ofBoth), 0.0);

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Plastic flow, growth and muscles: the same for a body in a world and for one by itself.
+#include "handles.h"
+
+#include <tetskin/elastic/elastic_body.h>
+
+namespace tetskin::python {
+namespace {
+
+// Where the two kinds of bodies differ.
+DeformableBody& changeable(BodyHandle& body) {
+  return alive(body);
+}
+ElasticBody<double>& changeable(ElasticModel& body) {
+  return *body.body;
+}
+std::size_t tetCount(const BodyHandle& body) {
+  return body.state->cage->mesh.tetCount();
+}
+std::size_t tetCount(const ElasticModel& body) {
+  return body.tets;
+}
+template <class Call>
+auto guarded(BodyHandle& body, Call&& call) {
+  const Locked lock(*body.world);
+  return call();
+}
+template <class Call>
+auto guarded(ElasticModel&, Call&& call) {
+  return call();
+}
+
+/// One number for all, or an array of one by tet.
+std::vector<double> numbersOf(const nb::object& given, const char* name) {
+  double one = 0.0;
+  if (nb::try_cast(given, one)) return {one};
+  const Numbers<double> numbers(ArrayLike{given}, name, 0);
+  return {numbers.data(), numbers.data() + numbers.rows()};
+}
+
+template <class Body>
+void setPlasticity(Body& body, const std::optional<nb::object>& yieldStress, double hardening,
+                   const std::optional<double>& flowRate, const std::optional<double>& largest) {
+  if (!yieldStress) return guarded(body, [&] { changeable(body).endPlasticity(); });
+  Plasticity plasticity;
+  const std::vector<double> stresses = numbersOf(*yieldStress, "yield_stress");
+  double one = 0.0;
+  if (nb::try_cast(*yieldStress, one)) {
+    plasticity.yieldStress = one;
+  } else {
+    plasticity.yieldStresses = stresses;
+  }
+  plasticity.hardening = hardening;
+  if (flowRate) plasticity.flowRate = *flowRate;
+  if (largest) plasticity.largestStrain = *largest;
+  guarded(body, [&] { check(changeable(body).setPlasticity(plasticity)); });
+}
+
+int dimensionsOf(const nb::object& array) {
+  return nb::cast<int>(nb::module_::import_("numpy").attr("ndim")(array));
+}
+
+template <class Body>
+void setGrowth(Body& body, const nb::object& growth) {
+  double one = 0.0;
+  if (nb::try_cast(growth, one)) return guarded(body, [&] { check(changeable(body).setGrowth(one)); });
+  if (dimensionsOf(growth) == 1) {
+    const std::vector<double> lengths = numbersOf(growth, "growth");
+    return guarded(body, [&] { check(changeable(body).setGrowth(lengths)); });
+  }
+  const nb::object rows = nb::module_::import_("numpy").attr("reshape")(growth, nb::make_tuple(-1, 9));
+  const bool square = dimensionsOf(growth) == 3 &&
+                      nb::cast<std::size_t>(nb::module_::import_("numpy").attr("shape")(growth)[nb::int_(1)]) == 3;
+  const Numbers<double> numbers(ArrayLike{rows}, "growth", 9);
+  if (!square) fail(StatusCode::SizeMismatch, "growth: a factor, one by tet (tets,), or matrices (tets, 3, 3)");
+  std::vector<std::array<double, 9>> tensors(numbers.rows());
+  for (std::size_t t = 0; t < tensors.size(); ++t) std::copy_n(numbers.data() + 9 * t, 9, tensors[t].begin());
+  guarded(body, [&] { check(changeable(body).setGrowthTensors(tensors)); });
+}
+
+/// A muscle of a body, which keeps it.
+template <class Body>
+struct MuscleOf {
+  Body body;
+  int number = 0;
+};
+
+template <class Body>
+MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fibres, double stress) {
+  Muscle muscle;
+  muscle.tets = indicesOf(tets, "tets", tetCount(body));
+  muscle.stress = stress;
+  const bool one = dimensionsOf(fibres.object) == 1;
+  const ArrayLike rows{one ? nb::module_::import_("numpy").attr("reshape")(fibres.object, nb::make_tuple(1, -1))
+                           : fibres.object};
+  const Numbers<double> numbers(rows, "fibres", 3);
+  for (std::size_t k = 0; k < numbers.rows(); ++k) muscle.fibres.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+  return {body, guarded(body, [&] { return take(changeable(body).addMuscle(muscle)); })};
+}
+
+template <class Body>
+void bindMuscle(nb::module_& module, const char* name) {
+  Class<MuscleOf<Body>>(module, name, "Tets of a body that contract along their fibres. Made by add_muscle.")
+      .def_prop_rw(
+          "activation",
+          [](MuscleOf<Body>& m) {
+            return guarded(m.body, [&] { return changeable(m.body).activation(m.number); });
+          },
+          [](MuscleOf<Body>& m, double activation) {
+            guarded(m.body, [&] { check(changeable(m.body).setActivation(m.number, activation)); });
+          },
+          "0 to 1, at first 0: the share of its stress with which it pulls.");
+}
+
+template <class Body>
+void bind(Class<Body>& type) {
+  type.def("set_plasticity", setPlasticity<Body>, "yield_stress"_a.none(), "hardening"_a = 0.0,
+           "flow_rate"_a.none() = nb::none(), "largest"_a.none() = nb::none(),
+           "Lets the material flow where it yields. yield_stress: pressure units, above 0: the von Mises stress, which "
+           "is that of a pulled bar; a number, or one by tet; None: nothing flows any more. hardening: pressure units: "
+           "by how much it grows per plastic strain. flow_rate: per second, at which what is beyond it flows; None: at "
+           "once. largest: the largest plastic strain that may remain; None: any.")
+      .def("reset_plastic_flow", [](Body& b) { guarded(b, [&] { changeable(b).resetPlasticFlow(); }); },
+           "The body returns to its first shape; it flows again when it has been there, below its yield stress, for "
+           "half a second.")
+      .def_prop_ro(
+          "plastic_strains",
+          [](Body& b) { return newColumn(guarded(b, [&] { return changeable(b).plasticStrains(); })); },
+          "(tets,) float64: how much each tet has flowed in all, to and fro. A new array.")
+      .def("set_growth", setGrowth<Body>, "growth"_a,
+           "Makes tets grow to multiples of their first size, at which they are at rest; masses stay. growth: a factor "
+           "of length, one by tet (tets,), or symmetric matrices (tets, 3, 3); 0.05 to 20, 1: none.")
+      .def("add_muscle", addMuscle<Body>, "tets"_a, "fibres"_a, "stress"_a = 3e5,
+           "Adds a muscle, which is relaxed: set its activation. tets: a mask or indices. fibres: directions, rest "
+           "space: one (3,), or one for each of its tets (n, 3). stress: pressure units: its tension at activation 1 "
+           "and its rest length.");
+}
+
+}  // namespace
+
+void bindMaterialChanges(nb::module_& module, Class<BodyHandle>& body, Class<ElasticModel>& elastic) {
+  bindMuscle<BodyHandle>(module, "Muscle");
+  bindMuscle<ElasticModel>(module, "ElasticMuscle");
+  bind(body);
+  bind(elastic);
+}
+
+}  // namespace tetskin::python

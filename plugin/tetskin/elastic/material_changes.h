@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// What changes the state in which a body is at rest: plastic flow, growth, muscles. For `DeformableBody`
+// (tetskin/solver) and `ElasticBody`.
+#pragma once
+
+#include <tetskin/core/types.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace tetskin {
+
+/// Plastic flow: beyond its yield stress a material keeps a part of its deformation, as clay, lead or wet sand do. Von
+/// Mises's criterion with isotropic hardening; flow keeps the volume. It takes energy and never gives any. What flows
+/// does not depend on the step, except that the flow of a step begins in the next one.
+struct Plasticity {
+  /// Pressure units, above 0: the von Mises stress at which the material yields, which is the stress of a bar that is
+  /// pulled. In a tet with a stiffness factor, its yield stress has that factor, too: all tets yield at the same strain,
+  /// yieldStress over Young's modulus.
+  double yieldStress = 0.0;
+  /// tetCount, above 0: yield stresses by tet. Empty: all have `yieldStress`
+  std::vector<double> yieldStresses;
+  double hardening = 0.0;  ///< pressure units, 0 or more: by how much the yield stress grows per plastic strain
+  /// Per second, above 0: the rate at which what is beyond the yield stress flows; infinite: at once
+  double flowRate = std::numeric_limits<double>::infinity();
+  /// Above 0: the largest plastic strain that a tet may keep; from there on it is elastic. As a logarithmic strain: 0.1
+  /// is a stretch by 1.105
+  double largestStrain = std::numeric_limits<double>::infinity();
+};
+
+/// The yield stress of a material whose strain deviator has this norm when it yields, which is how Rapier and others
+/// set it: sqrt(6) mu times the norm. Units of Young's modulus.
+/// norm  Frobenius norm of the deviator of the strain, above 0
+inline double yieldStressOf(double norm, double youngsModulus, double poissonRatio) {
+  return 2.449489742783178 * norm * youngsModulus / (2.0 * (1.0 + poissonRatio));
+}
+
+/// Tets that contract along their fibres.
+///
+/// A muscle of activation a pulls with a tension of a x `stress` on the area across its fibres when it is held at its
+/// rest length. When it is free, it shortens to 1 / (1 + w) of it, where
+///   w (1 + 2 nu w) = a stress / E,  nu: Poisson's ratio,  E: Young's modulus of the tet
+/// and becomes wider by sqrt(1 + 2 nu w). Between the two, tension follows elasticity.
+struct Muscle {
+  std::vector<int> tets;                 ///< of the cage, at least one, each once
+  std::vector<Eigen::Vector3d> fibres;   ///< directions, rest space, of any length above 0: one for each tet, or one for all
+  double stress = 3e5;                   ///< pressure units, above 0: the tension at activation 1; a human muscle has 3e5 Pa
+};
+
+}  // namespace tetskin

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// CorotatedTets: rest shapes that change. The kernels let what yields flow, see kernels/rest_change.h.
+#include <tetskin/core/src/base/instantiate.h>
+#include <tetskin/elastic/src/tets/corotated_tets.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace tetskin::elastic_detail {
+namespace {
+
+using kernels::kChange;
+using kernels::kGroup;
+using Matrix = Eigen::Matrix3d;
+
+/// 1 - exp(-x) for x of 0 or more, to nine digits, by arithmetic alone: its bits are the same everywhere.
+double shareIn(double x) {
+  if (!(x < 30.0)) return 1.0;
+  double left = 0.0;  // exp(-x / 64) - 1, by Taylor's series
+  for (int k = 8; k >= 1; --k) left = -x / 64.0 / k * (1.0 + left);
+  double kept = 1.0 + left;
+  for (int k = 0; k < 6; ++k) kept *= kept;
+  return x < 1e-3 ? x * (1.0 - 0.5 * x) : 1.0 - kept;
+}
+
+/// A matrix that is stored wide, by rows.
+template <class S>
+Matrix narrowMatrix(const S* from) {
+  Matrix matrix;
+  for (int k = 0; k < 9; ++k) matrix(k / 3, k % 3) = static_cast<double>(from[k * kGroup]);
+  return matrix;
+}
+
+template <class S>
+void putMatrix(const Matrix& matrix, S* to) {
+  for (int k = 0; k < 9; ++k) to[k * kGroup] = static_cast<S>(matrix(k / 3, k % 3));
+}
+
+/// The mean of what is given to some tets of the cage.
+template <class Tets>
+Matrix meanOf(const std::vector<std::array<double, 9>>& byTet, const Tets& tets) {
+  Matrix sum = Matrix::Zero();
+  for (const auto tet : tets) {
+    sum += Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(byTet[static_cast<std::size_t>(tet)].data());
+  }
+  return sum / static_cast<double>(tets.size());
+}
+
+template <class Tets>
+double meanOf(const std::vector<double>& byTet, const Tets& tets) {
+  double sum = 0.0;
+  for (const auto tet : tets) sum += byTet[static_cast<std::size_t>(tet)];
+  return sum / static_cast<double>(tets.size());
+}
+
+}  // namespace
+
+/// Calls visit(packed tets, index of a tet in its packs, tets of the cage that it is). The rest of the last pack
+/// repeats the last tet.
+template <class S>
+template <class Visit>
+void CorotatedTets<S>::forTets(Visit&& visit) {
+  for (std::size_t k = 0; k < kGroup * linear_.packs.size(); ++k) {
+    visit(linear_, k, std::array<std::uint32_t, 1>{rest_.cageTets[std::min(k, rest_.count() - 1)]});
+  }
+  for (std::size_t k = 0; k < kGroup * quadratic_.packs.size(); ++k) {
+    visit(quadratic_, k, rest_.quadratic[std::min(k, rest_.quadratic.size() - 1)].cageTets);
+  }
+}
+
+/// From now on, the tets have changes; at first, none.
+template <class S>
+void CorotatedTets<S>::makeChanges() {
+  if (changes()) return;
+  forBoth([](auto& packed) {
+    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    const std::size_t points = Pack::kPoints * packed.packs.size();
+    packed.changes.assign(kChange * points, S(0));
+    for (std::size_t at = 0; at < points; ++at) std::fill_n(&packed.changes[kChange * at + 9 * kGroup], kGroup, S(1));
+    packed.assembledChanges = packed.changes;
+    packed.flowed.assign(kGroup * points, S(0));
+  });
+}
+
+template <class S>
+void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet) {
+  if (byTet.empty() && !isGiven_) return;
+  makeChanges();
+  forBoth([&](auto& packed) { packed.given.resize(9 * packed.flowed.size(), S(0)); });
+  forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
+    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    const Matrix given = byTet.empty() ? Matrix(Matrix::Identity()) : meanOf(byTet, cageTets);
+    for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+      const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
+      S* const change = &packed.changes[kChange * at + lane];
+      S* const own = &packed.given[9 * kGroup * at + lane];
+      const Matrix before = isGiven_ ? narrowMatrix(own) : Matrix(Matrix::Identity());
+      const Matrix plastic = before * (Matrix::Identity() + narrowMatrix(change));  // P^-1
+      putMatrix(given, own);
+      putMatrix(given.inverse() * plastic - Matrix::Identity(), change);
+      change[9 * kGroup] = static_cast<S>(given.determinant());
+    }
+  });
+  isGiven_ = !byTet.empty();
+}
+
+template <class S>
+void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity) {
+  if (!plasticity) {
+    forBoth([](auto& packed) { packed.yields.clear(); });
+    return;
+  }
+  makeChanges();
+  flowRate_ = plasticity->flowRate;
+  largestStrain_ = std::isfinite(plasticity->largestStrain) ? static_cast<S>(plasticity->largestStrain) : S(0);
+  const double perStress = 1.0 / (std::sqrt(6.0) * mu_);
+  forBoth([&](auto& packed) { packed.yields.assign(2 * kGroup * packed.packs.size(), S(0)); });
+  yieldEnergy_ = 0.0;
+  forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
+    S* const yield = &packed.yields[2 * kGroup * (tet / kGroup) + tet % kGroup];
+    const auto& byTet = plasticity->yieldStresses;
+    const double stress = byTet.empty() ? plasticity->yieldStress : meanOf(byTet, cageTets);
+    yield[0] = static_cast<S>(perStress * stress);
+    yield[kGroup] = static_cast<S>(perStress * plasticity->hardening);
+    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    const auto shear = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
+    const double volume = shear * static_cast<double>(Pack::kPoints) / (2.0 * mu_);
+    yieldEnergy_ += 0.5 * volume * stress * stress / youngsModulus_;
+  });
+}
+
+/// A body on its way back to its first shape would flow again: it waits until it has been there for a while.
+template <class S>
+void CorotatedTets<S>::flowFor(double seconds) {
+  constexpr double kCalmSeconds = 0.5;
+  if (returns_) {
+    calmSeconds_ = yields_ ? 0.0 : calmSeconds_ + seconds;
+    returns_ = calmSeconds_ < kCalmSeconds;
+  }
+  flowShare_ = returns_ ? S(0) : static_cast<S>(flowShare(seconds));
+}
+
+template <class S>
+void CorotatedTets<S>::forgetFlow() {
+  if (!changes()) return;
+  returns_ = yields_ = true;
+  forBoth([&](auto& packed) {
+    std::fill(packed.flowed.begin(), packed.flowed.end(), S(0));
+    for (std::size_t at = 0; at < packed.flowed.size() / kGroup; ++at) {
+      for (std::size_t lane = 0; lane < kGroup; ++lane) {
+        Matrix inverse = Matrix::Identity();
+        if (isGiven_) inverse = narrowMatrix(&packed.given[9 * kGroup * at + lane]).inverse();
+        putMatrix(inverse - Matrix::Identity(), &packed.changes[kChange * at + lane]);
+      }
+    }
+  });
+}
+
+template <class S>
+double CorotatedTets<S>::flowShare(double seconds) const {
+  return std::isfinite(flowRate_) ? shareIn(flowRate_ * seconds) : 1.0;
+}
+
+template <class S>
+std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets) {
+  std::vector<double> strains(cageTets, 0.0);
+  if (!changes()) return strains;
+  forTets([&](auto& packed, std::size_t tet, const auto& own) {
+    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    double sum = 0.0;
+    for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+      sum += static_cast<double>(packed.flowed[kGroup * (Pack::kPoints * (tet / kGroup) + point) + tet % kGroup]);
+    }
+    for (const auto t : own) strains[t] = sum / static_cast<double>(Pack::kPoints);
+  });
+  return strains;
+}
+
+/// What is given, and the limits of flow, are set again by their owner.
+template <class S>
+bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
+  bool has = changes();
+  stream(has);
+  if (!has) {
+    const bool changed = changes();
+    forBoth([](auto& packed) {
+      packed.changes.clear();
+      packed.assembledChanges.clear();
+      packed.flowed.clear();
+      packed.given.clear();
+      packed.yields.clear();
+    });
+    isGiven_ = returns_ = yields_ = false;
+    return changed;
+  }
+  bool changed = false;
+  makeChanges();
+  stream(isGiven_);
+  stream(returns_);
+  stream(yields_);
+  stream(calmSeconds_);
+  forBoth([&](auto& packed) {
+    stream.plain(packed.changes.data(), packed.changes.size());
+    stream.plain(packed.flowed.data(), packed.flowed.size());
+    if (isGiven_) {
+      packed.given.resize(9 * packed.flowed.size());
+      stream.plain(packed.given.data(), packed.given.size());
+    }
+    if (!ofMatrix) return;
+    const AlignedVector<S> before = packed.assembledChanges;
+    stream.plain(packed.assembledChanges.data(), packed.assembledChanges.size());
+    changed |= before != packed.assembledChanges;
+  });
+  return changed;
+}
+
+#define TETSKIN_INSTANTIATE(S)                                                               \
+  template void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet); \
+  template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);               \
+  template void CorotatedTets<S>::forgetFlow();                                              \
+  template void CorotatedTets<S>::flowFor(double seconds);                                   \
+  template double CorotatedTets<S>::flowShare(double seconds) const;                         \
+  template std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets);       \
+  template bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix);
+TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
+#undef TETSKIN_INSTANTIATE
+
+}  // namespace tetskin::elastic_detail

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+//
+// Plastic flow, growth and muscles of bodies in a world. The laws themselves: see elastic/test_material_changes.cpp.
+#include "deformable_test.h"
+#include "support/bars.h"
+
+namespace tetskin::test {
+namespace {
+
+constexpr double kStiff = 2e5;
+
+/// Dimensions in metres; the density is 1000.
+std::unique_ptr<DeformableBody> block(EmptyWorld& world, const Cage& cage, double damping = 0.002) {
+  SoftBodyOptions options;
+  options.youngsModulus = kStiff;
+  options.stiffnessDamping = damping;
+  options.density = 1000.0;
+  Result<std::unique_ptr<DeformableBody>> body = DeformableBody::add(world.deformable(), cage, options);
+  EXPECT_TRUE(body.ok()) << body.status().message;
+  return std::move(body).value();
+}
+
+/// A cube of 0.4 m above the ground at y = 0.
+Cage cubeAt(double height) {
+  Cage cage;
+  cage.mesh = makeBox({4, 4, 4}, Eigen::Vector3d(0.4, 0.4, 0.4));
+  for (Eigen::Vector3d& p : cage.mesh.nodes) p.y() += height;
+  return cage;
+}
+
+double heightOf(const btSoftBody& body) {
+  double high = -HUGE_VAL;
+  for (int n = 0; n < body.m_nodes.size(); ++n) high = std::max<double>(high, body.m_nodes[n].m_x.y());
+  return high - lowest(body);
+}
+
+Plasticity clay() {
+  Plasticity plasticity;
+  plasticity.yieldStress = 0.02 * kStiff;
+  return plasticity;
+}
+
+struct Fallen {
+  double height = 0.0, rebound = 0.0;
+  bool asleep = false;
+};
+
+/// Drops a cube, with an initial speed.
+Fallen dropped(bool isClay, double speed, int substeps) {
+  TetskinWorld world;
+  const auto cube = block(world, cubeAt(0.02));
+  if (isClay) {
+    EXPECT_TRUE(cube->setPlasticity(clay()).ok());
+  }
+  btSoftBody& body = cube->body();
+  for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_v = btVector3(0, -static_cast<btScalar>(speed), 0);
+  Fallen result;
+  double lowestCentre = HUGE_VAL;
+  for (int frame = 0; frame < 180; ++frame) {
+    world.deformable().stepSimulation(btScalar(1) / 60, substeps, btScalar(1) / (60 * static_cast<btScalar>(substeps)));
+    const double centre = static_cast<double>(centreOf(body).y());
+    if (centre < lowestCentre) result.rebound = 0.0;
+    lowestCentre = std::min(lowestCentre, centre);
+    result.rebound = std::max(result.rebound, centre - lowestCentre);
+  }
+  result.height = heightOf(body);
+  result.asleep = !body.isActive();
+  return result;
+}
+
+TEST(MaterialChangesOfBodies, ClayKeepsItsDentAndHardlyRebounds) {
+  for (const double speed : {2.0, 4.0, 6.0}) {
+    const Fallen elastic = dropped(false, speed, 4), plastic = dropped(true, speed, 4), fine = dropped(true, speed, 16);
+    EXPECT_GT(elastic.height, 0.38) << speed;
+    EXPECT_LT(plastic.height, 0.37) << speed;
+    EXPECT_NEAR(plastic.height, fine.height, 0.05 * (0.4 - fine.height) + 0.002) << speed;
+    EXPECT_LT(plastic.rebound, 0.25 * elastic.rebound) << speed;
+    EXPECT_NEAR(plastic.rebound, fine.rebound, 0.012) << speed;
+    EXPECT_TRUE(plastic.asleep) << speed;
+  }
+}
+
+TEST(MaterialChangesOfBodies, ABodyThatChangesWakesAndSleepsAgain) {
+  TetskinWorld world;
+  const auto cube = block(world, cubeAt(0.001), 0.02);
+  step(world, 120);
+  ASSERT_FALSE(cube->body().isActive());
+  const double before = heightOf(cube->body());
+  ASSERT_TRUE(cube->setGrowth(1.2).ok());
+  EXPECT_TRUE(cube->body().isActive());
+  step(world, 240);
+  EXPECT_NEAR(heightOf(cube->body()) / before, 1.2, 0.01);
+  EXPECT_FALSE(cube->body().isActive());
+  Muscle muscle;
+  for (int t = 0; t < cube->body().m_tetras.size(); ++t) muscle.tets.push_back(t);
+  muscle.fibres = {Eigen::Vector3d(0, 1, 0)};
+  muscle.stress = 0.2 * kStiff;
+  ASSERT_TRUE(cube->addMuscle(muscle).ok());
+  ASSERT_TRUE(cube->setActivation(0, 1.0).ok());
+  EXPECT_EQ(cube->activation(0), 1.0);
+  EXPECT_TRUE(cube->body().isActive());
+  step(world, 240);
+  const double w = 0.4 / (1.0 + std::sqrt(1.0 + 8.0 * 0.3 * 0.2));
+  EXPECT_NEAR(heightOf(cube->body()) / before, 1.2 / (1.0 + w), 0.02);
+  EXPECT_FALSE(cube->body().isActive());
+  ASSERT_TRUE(cube->setPlasticity(clay()).ok());
+  EXPECT_TRUE(cube->body().isActive());
+  step(world, 120);
+  cube->resetPlasticFlow();
+  EXPECT_TRUE(cube->body().isActive());
+}
+
+TEST(MaterialChangesOfBodies, WhatIsSetSurvivesAResetAndWhatHasFlowedDoesNot) {
+  TetskinWorld world;
+  const auto cube = block(world, cubeAt(0.02));
+  ASSERT_TRUE(cube->setPlasticity(clay()).ok());
+  const auto drop = [&] {
+    btSoftBody& body = cube->body();
+    for (int n = 0; n < body.m_nodes.size(); ++n) body.m_nodes[n].m_v = btVector3(0, -5, 0);
+    step(world, 60);
+    return nodesOf(body);
+  };
+  const std::vector<btVector3> first = drop();
+  const std::vector<double> strains = cube->plasticStrains();
+  EXPECT_GT(*std::max_element(strains.begin(), strains.end()), 0.05);
+  ASSERT_TRUE(cube->reset().ok());
+  for (const double strain : cube->plasticStrains()) EXPECT_EQ(strain, 0.0);
+  EXPECT_EQ(drop(), first);
+}
+
+/// A bar that hangs, with all of its mass at its lower end, and is a muscle: at its rest length it carries its stress
+/// times its area.
+TEST(MaterialChangesOfBodies, AMuscleLiftsWhatItsStressTimesItsAreaSays) {
+  constexpr double kStress = 0.1 * kStiff, kArea = 0.01, kGravity = 9.8;
+  const TetMesh bar = lifted(makeBox({2, 10, 2}, Eigen::Vector3d(0.1, 0.5, 0.1)), 20.0);
+  for (const double load : {0.9, 1.0, 1.1}) {
+    TetskinWorld world;
+    world.deformable().setGravity(btVector3(0, -static_cast<btScalar>(kGravity), 0));
+    SoftBodyOptions options;
+    options.youngsModulus = kStiff;
+    options.stiffnessDamping = 0.05;
+    options.pinned = [](const Eigen::Vector3d& p) { return p.y() > 20.5 - 1e-6; };
+    const auto body = added(world, bar, options);
+    const double mass = load * kStress * kArea / kGravity;
+    for (int n = 0; n < body->body().m_nodes.size(); ++n) {
+      if (body->isPinned(n)) continue;
+      const bool isLow = bar.nodes[static_cast<std::size_t>(n)].y() < 20.0 + 1e-6;
+      body->body().setMass(n, static_cast<btScalar>(isLow ? mass / 9.0 : 1e-5));
+    }
+    Muscle muscle;
+    for (int t = 0; t < body->body().m_tetras.size(); ++t) muscle.tets.push_back(t);
+    muscle.fibres = {Eigen::Vector3d(0, 1, 0)};
+    muscle.stress = kStress;
+    ASSERT_TRUE(body->addMuscle(muscle).ok());
+    ASSERT_TRUE(body->setActivation(0, 1.0).ok());
+    step(world, 300);
+    const double longer = 20.0 - lowest(body->body());
+    const double perLoad = kStress / kStiff * 0.5;  // of the passive bar
+    EXPECT_NEAR(longer / perLoad, load - 1.0, 0.03) << load;
+  }
+}
+
+TEST(MaterialChangesOfBodies, OtherForceModelsRefuseThem) {
+  EmptyWorld world;
+  SoftBodyOptions options;
+  options.forceModel = ForceModel::NeoHookean;
+  const auto body = added(world, smallCageAbove(1.0), options);
+  Muscle muscle;
+  muscle.tets = {0};
+  muscle.fibres = {Eigen::Vector3d(1, 0, 0)};
+  for (const Status& status : {body->setPlasticity(clay()), body->setGrowth(1.1), body->addMuscle(muscle).status()}) {
+    EXPECT_EQ(status.code, StatusCode::InvalidOption);
+    EXPECT_NE(status.message.find("Corotated"), std::string::npos) << status.message;
+  }
+  body->endPlasticity();
+  body->resetPlasticFlow();
+  for (const double strain : body->plasticStrains()) EXPECT_EQ(strain, 0.0);
+}
+
+}  // namespace
+}  // namespace tetskin::test
