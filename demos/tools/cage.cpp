@@ -130,7 +130,7 @@ int runFilled(const CageCommand& command) {
     cage = std::move(refined).value();
     count = quadraticTetsOf(cage);
   }
-  const PaintedMaps maps = mapsOf(command);
+  const PaintedMaps maps = mapsOf(command);  // refuses any without a mesh
   EmbedReport fit;
   Surface surface;
   if (command.hasMesh) {
@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
                    {{{"tetskin_cage --mesh yours.obj -o yours_cage.vtk", "a cage of about 3,000 tets around your mesh"},
                      {"tetskin_cage --mesh yours.obj --tets 300 --calibrate -o yours_cage.vtk --json cage.json",
                       "about 300 tets, calibrated to the stiffness of the mesh, and a JSON file of their quality"},
-                     {"tetskin_cage --mesh yours.glb --stiffness-map red:1:4 -o yours_cage.vtk",
+                     {"tetskin_cage --mesh painted.obj --stiffness-map red:1:4 -o yours_cage.vtk",
                       "four times as stiff where the mesh's vertices are red"},
                      {"tetskin_cage --filled yours.vtk --quadratic -o yours_cage.vtk",
                       "a cage of quadratic tets, one for each tet of a mesh that fills the body"}},

@@ -215,7 +215,10 @@ TEST(PaintedMaps, ReplaceThoseBefore) {
   const Cage once = paintedCage(bar, maps.stiffness, maps.density);
   EXPECT_EQ(cage.paintedStiffness, once.paintedStiffness);
   EXPECT_LT(largestDifference(cage.masses, once.masses), 1e-12);
-  ASSERT_TRUE(paintCage(cage, bar, {}).ok());
+  ASSERT_TRUE(paintCage(cage, bar, {{}, {}}).ok());
+  EXPECT_TRUE(cage.paintedStiffness == once.paintedStiffness && !cage.paintedDensity.empty());
+  const std::vector<double> ones(bar.vertexCount(), 1.0);
+  ASSERT_TRUE(paintCage(cage, bar, {ones, ones}).ok());
   EXPECT_TRUE(cage.paintedStiffness.empty() && cage.paintedDensity.empty());
   EXPECT_LT(largestDifference(cage.masses, plain.masses), 1e-12);
 }

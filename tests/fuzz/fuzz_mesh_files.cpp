@@ -10,6 +10,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 using namespace tetskin;
 
@@ -42,7 +43,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const char* name = nameFor(data[0]);
   if (!name) return 0;
-  const Result<TriangleMesh> loaded = loadMesh(test::write(name, bytes));
+  const std::string path = test::write(name, bytes);
+  const Result<TriangleMesh> loaded = loadMesh(path);
+  const Result<std::vector<double>> map = loadVertexMap(path, "red");
+  TETSKIN_FUZZ_EXPECT(map.ok() ? loaded.ok() && map.value().size() == loaded.value().vertexCount()
+                               : !map.status().message.empty());
   if (!loaded.ok()) {
     TETSKIN_FUZZ_EXPECT(!loaded.status().message.empty());
     return 0;

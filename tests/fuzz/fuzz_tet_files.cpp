@@ -50,7 +50,8 @@ void checkCage(const std::string& path, const TetMesh& mesh) {
   const Result<Cage> again = loadCage(copy);
   TETSKIN_FUZZ_EXPECT(again.ok() && again.value().vertexTets == cage.value().vertexTets);
   TETSKIN_FUZZ_EXPECT(again.value().volumeFraction == cage.value().volumeFraction &&
-                      again.value().stiffnessFactor == cage.value().stiffnessFactor);
+                      again.value().stiffnessFactor == cage.value().stiffnessFactor &&
+                      again.value().paintedStiffness == cage.value().paintedStiffness);
   TETSKIN_FUZZ_EXPECT(again.value().masses == cage.value().masses && again.value().component == cage.value().component);
   TETSKIN_FUZZ_EXPECT(again.value().sourceTet == cage.value().sourceTet);
   TETSKIN_FUZZ_EXPECT(again.value().quadraticTet == cage.value().quadraticTet);

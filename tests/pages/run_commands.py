@@ -55,6 +55,9 @@ def make_inputs(folder, environment):
     """Makes every file that a page may need as input."""
     write_ring(folder / "yours.obj")
     shutil.copy(folder / "yours.obj", folder / "dragon.obj")
+    lines = (folder / "yours.obj").read_text().splitlines()
+    (folder / "painted.obj").write_text(  # red where x is above 0
+        "\n".join(f"{line} {int(line[2] != '-')} 0 0.5" if line[0] == "v" else line for line in lines))
     subprocess.run(["tetskin_cage", "--mesh", "dragon.obj", "--tets", "200", "--quiet", "-o", "rest.vtk"], cwd=folder,
                    env=environment, check=True)
     shutil.copy(folder / "rest.vtk", folder / "yours_cage.vtk")

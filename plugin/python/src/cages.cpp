@@ -19,7 +19,7 @@ CageModel made(const ArrayLike& nodes, const ArrayLike& tets) {
   return cageModel(Cage(std::move(mesh)));
 }
 
-std::vector<double> numbersOf(const std::optional<ArrayLike>& array, const char* name) {
+std::vector<double> mapValues(const std::optional<ArrayLike>& array, const char* name) {
   if (!array) return {};
   const Numbers<double> numbers(*array, name, 0);
   // An empty array is one of the wrong length, not none.
@@ -36,8 +36,8 @@ CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateEl
   options.targetTets = targetTets;
   options.duplicateElements = duplicateElements;
   options.fit = fit;
-  options.stiffness = numbersOf(stiffness, "stiffness");
-  options.density = numbersOf(density, "density");
+  options.stiffness = mapValues(stiffness, "stiffness");
+  options.density = mapValues(density, "density");
   options.progress = call.function();
   CageReport report;
   Result<Cage> cage = released([&] { return createCage(*model.mesh, options, &report); });
@@ -61,7 +61,7 @@ CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount,
 CageModel painted(const CageModel& model, const MeshLike& mesh, const std::optional<ArrayLike>& stiffness,
                   const std::optional<ArrayLike>& density) {
   const MeshModel surface = meshOf(mesh);
-  const PaintedMaps maps{numbersOf(stiffness, "stiffness"), numbersOf(density, "density")};
+  const PaintedMaps maps{mapValues(stiffness, "stiffness"), mapValues(density, "density")};
   Cage cage = *model.cage;
   check(released([&] { return paintCage(cage, *surface.mesh, maps); }));
   return cageModel(std::move(cage), model.cage->report);
@@ -72,7 +72,7 @@ std::pair<Column<double>, Column<double>> spreadOver(const CageModel& model, con
   const MeshModel surface = meshOf(mesh);
   nb::object array = nb::module_::import_("numpy").attr("asarray")(values.object);
   if (nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b") array = array.attr("astype")("float64");
-  const std::vector<double> numbers = numbersOf(ArrayLike{array}, "values");
+  const std::vector<double> numbers = mapValues(ArrayLike{array}, "values");
   const MapMean mean = geometric ? MapMean::Geometric : MapMean::Arithmetic;
   SpreadMap map = take(released([&] { return spreadMap(*model.cage, *surface.mesh, numbers, mean); }));
   return {newColumn(std::move(map.tets)), newColumn(std::move(map.nodes))};
@@ -185,9 +185,9 @@ void bindCages(nb::module_& module) {
       "compare. progress: as in create_cage.");
   module.def(
       "paint_cage", painted, "cage"_a, "mesh"_a, nb::kw_only(), "stiffness"_a = nb::none(), "density"_a = nb::none(),
-      "A copy of the cage with maps painted on its mesh, or on a level of detail of it, instead of those before: "
-      "(vertices,) factors above 0, or None: 1. The inside has the values of the nearest surface. Calibrate "
-      "after painting.");
+      "A copy of the cage with maps painted on its mesh, or on a level of detail of it: (vertices,) factors above "
+      "0, which replace those before; None leaves them. The inside has the values of the nearest surface. "
+      "Calibrate after painting.");
   module.def("spread_map", spreadOver, "cage"_a, "mesh"_a, "values"_a, nb::kw_only(), "geometric"_a = false,
              "Any map of (vertices,) numbers, or a mask of booleans, averaged over what each tet holds: (t,) and (n,) "
              "float64, by tet and by node. geometric: by logarithms, as the stiffness. For nodes to pin: those of at "

@@ -42,17 +42,18 @@ struct SpreadMap {
 TETSKIN_CAGE_API Result<SpreadMap> spreadMap(const Cage& cage, const TriangleMesh& mesh,
                                              const std::vector<double>& values, MapMean mean = MapMean::Arithmetic);
 
-/// Maps that a cage stores. Each has vertexCount finite values above 0, or is empty: 1 everywhere. Values are factors
-/// of what a body has: its Young's modulus and its density.
+/// Maps that a cage stores. Each has vertexCount finite values above 0, or is empty: not painted. Values are factors of
+/// what a body has: its Young's modulus and its density.
 struct PaintedMaps {
   std::vector<double> stiffness;  ///< averaged geometrically
   std::vector<double> density;    ///< averaged arithmetically
 };
 
-/// Spreads maps (see `spreadMap`) into a cage's `paintedStiffness`, `paintedDensity` and `masses`, instead of what was
-/// painted before; an empty map, or one of 1, leaves none. Masses become those of the painted density: their sum is its
-/// integral over the tets' material. A cage without masses gets them, in proportion to the tets' material. Stiffness
-/// factors stay as they are, so call `calibrate` after this. `createCage` does this with the maps in its options.
+/// Spreads maps (see `spreadMap`) into a cage's `paintedStiffness`, `paintedDensity` and `masses`. Each replaces the
+/// one that was painted before; a map of 1 removes it, an empty one leaves it. Masses become those of the painted
+/// density: their sum is its integral over the tets' material. A cage without masses gets them, in proportion to the
+/// tets' material. Stiffness factors stay as they are, so call `calibrate` after this. `createCage` does this with the
+/// maps in its options.
 ///
 /// cage    as for `spreadMap`; unchanged on an error
 /// Cost    that of `spreadMap` for each map

@@ -187,7 +187,7 @@ SpreadMap spread(const Cage& cage, const TriangleMesh& mesh, const std::vector<d
   return map;
 }
 
-/// The values by tet; none for an empty map, or one of 1.
+/// The values by tet; none for a map of 1.
 std::vector<double> factorsOf(const Cage& cage, const TriangleMesh& mesh, const std::vector<double>& values,
                               MapMean mean) {
   if (std::all_of(values.begin(), values.end(), [](double value) { return value == 1.0; })) return {};
@@ -247,8 +247,9 @@ Result<SpreadMap> spreadMap(const Cage& cage, const TriangleMesh& mesh, const st
 Status paintCage(Cage& cage, const TriangleMesh& mesh, const PaintedMaps& maps) {
   if (Status status = check(cage, mesh); !status.ok()) return status;
   if (Status status = cage_detail::checkMaps(mesh, maps); !status.ok()) return status;
+  if (!maps.stiffness.empty()) cage.paintedStiffness = factorsOf(cage, mesh, maps.stiffness, MapMean::Geometric);
+  if (maps.density.empty()) return {};
   std::vector<double> density = factorsOf(cage, mesh, maps.density, MapMean::Arithmetic);
-  cage.paintedStiffness = factorsOf(cage, mesh, maps.stiffness, MapMean::Geometric);
   if (density.empty() && cage.paintedDensity.empty()) return {};
   cage.masses = massesFor(cage, cage.paintedDensity, density);
   cage.paintedDensity = std::move(density);
