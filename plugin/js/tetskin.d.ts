@@ -468,6 +468,12 @@ export interface RigidBody extends Thing {
   applyImpulse(impulse: Vector, at?: Vector): void;
 }
 
+/** Tets of a body that contract along their fibres. The body keeps it. */
+export interface Muscle {
+  /** 0 to 1, at first 0: the share of its stress with which it pulls. */
+  activation: number;
+}
+
 /** Deleting it takes it out of its world, with its springs. */
 export interface Body extends Thing {
   readonly cage: Cage;
@@ -499,6 +505,30 @@ export interface Body extends Thing {
   friction: number;
   /** 0 to 1. The product of both objects' counts, so both need one: see `BodyOptions`. */
   restitution: number;
+  /**
+   * Lets the material flow where it yields, as clay does; null: nothing flows any more. `yieldStress`: pressure units,
+   * the von Mises stress, one for all tets or one for each. `hardening`: pressure units per plastic strain. `flowRate`:
+   * per second, at which what is beyond it flows; by default at once. `largest`: the largest plastic strain that may
+   * remain.
+   */
+  setPlasticity(
+    plasticity: {yieldStress: number | Numbers; hardening?: number; flowRate?: number; largest?: number} | null): void;
+  /** The body returns to its first shape; it flows again when it has been there for half a second. */
+  resetPlasticFlow(): void;
+  /** By tet: how much it has flowed in all, to and fro; a new array. */
+  readonly plasticStrains: Float64Array;
+  /**
+   * Makes tets grow to multiples of their first size, at which they are at rest; masses stay.
+   * @param growth  a factor of length, 0.05 to 20; one for each tet; or a symmetric matrix for each, nine numbers
+   */
+  setGrowth(growth: number | Numbers): void;
+  /**
+   * Adds a muscle, which is relaxed.
+   * @param tets    of the cage
+   * @param fibres  directions, rest space: one, or one for each of these tets, three numbers each
+   * @param stress  its tension at activation 1 and its rest length, pressure units
+   */
+  addMuscle(tets: Numbers, fibres: Numbers, stress?: number): Muscle;
   /** Its own gravity; null: the world's. */
   setGravity(gravity: Vector | null): void;
   /** Pins nodes at their current positions, or releases them. */

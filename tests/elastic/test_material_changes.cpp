@@ -492,6 +492,31 @@ TEST(MaterialChanges, BadValuesAreRefusedAndNothingChanges) {
   EXPECT_FALSE(none.setPlasticity(yielding(0.1)).ok());
 }
 
+TEST(MaterialChanges, FibresFollowTheNearestPieceOfACurve) {
+  const Cage bar = barOf(Order::Linear);
+  const std::vector<int> all = wholeBar(bar, 1e5).tets;
+  const Vector3d start(0, 0.1, 0.1), bend(0.5, 0.1, 0.1), end(0.5, 0.1, 9.0);
+  const std::vector<Vector3d> fibres = fibresAlong(bar.mesh, all, {start, start, bend, end}).value();
+  ASSERT_EQ(fibres.size(), all.size());
+  int along = 0;
+  for (const int t : all) {
+    const Vector3d& fibre = fibres[static_cast<std::size_t>(t)];
+    const bool isAlong = fibre.isApprox(Vector3d(1, 0, 0));
+    EXPECT_TRUE(isAlong || fibre.isApprox(Vector3d(0, 0, 1)));
+    double x = 0.0;
+    for (const int n : bar.mesh.tets[static_cast<std::size_t>(t)])
+      x += 0.25 * bar.mesh.nodes[static_cast<std::size_t>(n)].x();
+    if (x < 0.35) {
+      EXPECT_TRUE(isAlong) << x;
+    }
+    along += isAlong;
+  }
+  EXPECT_LT(along, static_cast<int>(all.size()));
+  for (const auto& curve : {std::vector<Vector3d>{}, std::vector<Vector3d>{start, start}}) {
+    EXPECT_EQ(fibresAlong(bar.mesh, all, curve).status().code, StatusCode::InvalidOption);
+  }
+}
+
 TEST(MaterialChanges, AYieldStrainConvertsToTheStressAtWhichABarYields) {
   // In a pulled bar of strain e the deviator's norm is sqrt(2/3) (1 + nu) e.
   const double strain = 0.01, nu = 0.3;

@@ -559,3 +559,35 @@ test("bad arguments are named, and the world stays as it was", () => {
   assert.equal(world.bodies.length, 1);
   assert.equal(world.rigidBodies.length, 1);
 });
+
+test("tets grow, contract and flow", () => {
+  const world = tetskin.createWorld({gravity: [0, 0, 0], deterministic: true});
+  const body = world.addBody(cage, mesh, {youngsModulus: 1e5, stiffnessDamping: 0.02});
+  const tets = body.plasticStrains.length, length = () => body.bounds[3] - body.bounds[0], before = length();
+  assert.equal(tets, cage.tetCount);
+  body.setGrowth(1.2);
+  steps(world, 240);
+  assert.ok(Math.abs(length() / before - 1.2) < 0.01);
+  body.setGrowth(new Float64Array(tets).fill(1));
+  steps(world, 240);
+  assert.ok(Math.abs(length() / before - 1) < 0.01);
+  const muscle = body.addMuscle(Array.from({length: tets}, (_, t) => t), [1, 0, 0], 3e4);
+  assert.equal(muscle.activation, 0);
+  muscle.activation = 0.5;
+  steps(world, 240);
+  assert.ok(length() < 0.93 * before);
+  muscle.activation = 0;
+  body.setPlasticity({yieldStress: 100, hardening: 10, largest: 0.3});
+  body.velocities = body.nodes.map((x, i) => i % 3 === 0 ? 10 * x : 0);
+  steps(world, 60);
+  assert.ok(Math.max(...body.plasticStrains) > 0.01);
+  body.resetPlasticFlow();
+  body.setPlasticity(null);
+  assert.deepEqual([...new Set(body.plasticStrains)], [0]);
+  const refused = (call, code, words) => assert.throws(call, failure(code, words));
+  refused(() => body.setGrowth(0), "InvalidOption", /0.05 to 20/);
+  refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidArgument", /no speed/);
+  refused(() => body.setPlasticity({}), "InvalidArgument", /yieldStress/);
+  refused(() => body.addMuscle([tets], [1, 0, 0]), "IndexOutOfRange", /does not exist/);
+  refused(() => { muscle.activation = 2; }, "InvalidOption", /0 to 1/);
+});

@@ -19,7 +19,7 @@ from handling import Handling, plain
 from programs import examples, options
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-NO_COMMAND_LINE = ["tetskin_hello", "tetskin_attach"]
+NO_COMMAND_LINE = ["tetskin_hello", "tetskin_attach", "tetskin_clay", "tetskin_muscle"]
 LANGUAGES = ("sh", "cpp", "cmake", "json", "text", "python", "js", "")  # by tests/python, tests/js
 COMMAND = re.compile(r"\s*(\./|build/|tetskin_|cmake |ctest )")
 DROPS = "./demos/run"  # builds tetskin_drop, and runs it with its own arguments

@@ -213,6 +213,22 @@ properties(RigidBody, {
   kinematic: [kBoolean, "rigidKinematic"],
 });
 
+/** A muscle of a body, which keeps it. */
+class Muscle {
+  #body;
+  #number;
+  constructor(body, number) {
+    this.#body = body;
+    this.#number = number;
+  }
+  get activation() {
+    return this.#body.core.activation(own(this.#body), this.#number);
+  }
+  set activation(activation) {
+    this.#body.core.setActivation(own(this.#body), this.#number, numberOf(activation, "activation"));
+  }
+}
+
 class Body extends Member {
   leave(handle) {
     for (const spring of [...this.hidden.world.hidden.springs]) {
@@ -261,6 +277,26 @@ class Body extends Member {
   reset() {
     this.core.resetBody(own(this));
   }
+  setPlasticity(plasticity) {
+    if (plasticity === null) return this.core.endPlasticity(own(this));
+    const {yieldStress, ...known} = plasticity ?? {};
+    const {hardening, flowRate, largest} = optionsOf(known, {hardening: 0, flowRate: NaN, largest: NaN});
+    const stresses = typeof yieldStress === "number" ? [yieldStress] : numbersOf(yieldStress, "yieldStress");
+    this.withMemory([doubles(stresses)], at => this.core.setPlasticity(own(this), at, hardening, flowRate, largest));
+  }
+  resetPlasticFlow() {
+    this.core.resetPlasticFlow(own(this));
+  }
+  setGrowth(growth) {
+    const numbers = typeof growth === "number" ? [growth] : numbersOf(growth, "growth");
+    this.withMemory([doubles(numbers)], at => this.core.setGrowth(own(this), at));
+  }
+  addMuscle(tets, fibres, stress = 3e5) {
+    const arrays = [indices(numbersOf(tets, "tets")), doubles(numbersOf(fibres, "fibres", 3))];
+    return new Muscle(this, this.withMemory(arrays, (...places) => {
+      return this.core.addMuscle(own(this), ...places, numberOf(stress, "stress"));
+    }));
+  }
   applyRadialImpulse(centre, radius, strength) {
     return this.core.applyRadialImpulse(own(this), vectorOf(centre, "centre"), numberOf(radius, "radius"),
       numberOf(strength, "strength"));
@@ -273,6 +309,7 @@ properties(Body, {
   bounds: [copyOf(Float64Array), "bodyBounds"],
   pinned: [copyOf(Uint8Array), "pinned"],
   visible: [kBoolean, "visible", "setVisible"],
+  plasticStrains: [copyOf(Float64Array), "plasticStrains"],
   asleep: [kBoolean, "asleep"],
   mass: [kNumber, "bodyMass"],
   youngsModulus: [kNumber, "youngsModulus", "setYoungsModulus"],

@@ -16,8 +16,8 @@ void make(ElasticModel* self, const CageModel& cage, double youngsModulus, doubl
   options.maxIterations = maxIterations;
   options.deterministic = deterministic;
   new (self) ElasticModel{std::make_shared<ElasticBody<double>>(
-      released([&] { return take(ElasticBody<double>::create(*cage.cage, options)); })),
-                         cage.cage->mesh.tetCount()};
+                              released([&] { return take(ElasticBody<double>::create(*cage.cage, options)); })),
+                          cage.cage->mesh.tetCount()};
 }
 
 void assign(PointView<double> target, const ArrayLike& array, const char* name) {

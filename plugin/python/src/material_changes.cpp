@@ -70,11 +70,12 @@ void setGrowth(Body& body, const nb::object& growth) {
     const std::vector<double> lengths = numbersOf(growth, "growth");
     return guarded(body, [&] { check(changeable(body).setGrowth(lengths)); });
   }
-  const nb::object rows = nb::module_::import_("numpy").attr("reshape")(growth, nb::make_tuple(-1, 9));
-  const bool square = dimensionsOf(growth) == 3 &&
-                      nb::cast<std::size_t>(nb::module_::import_("numpy").attr("shape")(growth)[nb::int_(1)]) == 3;
-  const Numbers<double> numbers(ArrayLike{rows}, "growth", 9);
-  if (!square) fail(StatusCode::SizeMismatch, "growth: a factor, one by tet (tets,), or matrices (tets, 3, 3)");
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  const auto shape = nb::cast<std::vector<std::size_t>>(nb::list(numpy.attr("shape")(growth)));
+  if (shape.size() != 3 || shape[1] != 3 || shape[2] != 3) {
+    fail(StatusCode::SizeMismatch, "growth: a factor, one by tet (tets,), or matrices (tets, 3, 3)");
+  }
+  const Numbers<double> numbers(ArrayLike{numpy.attr("reshape")(growth, nb::make_tuple(-1, 9))}, "growth", 9);
   std::vector<std::array<double, 9>> tensors(numbers.rows());
   for (std::size_t t = 0; t < tensors.size(); ++t) std::copy_n(numbers.data() + 9 * t, 9, tensors[t].begin());
   guarded(body, [&] { check(changeable(body).setGrowthTensors(tensors)); });
@@ -96,7 +97,8 @@ MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fib
   const ArrayLike rows{one ? nb::module_::import_("numpy").attr("reshape")(fibres.object, nb::make_tuple(1, -1))
                            : fibres.object};
   const Numbers<double> numbers(rows, "fibres", 3);
-  for (std::size_t k = 0; k < numbers.rows(); ++k) muscle.fibres.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+  for (std::size_t k = 0; k < numbers.rows(); ++k)
+    muscle.fibres.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
   return {body, guarded(body, [&] { return take(changeable(body).addMuscle(muscle)); })};
 }
 
@@ -105,9 +107,7 @@ void bindMuscle(nb::module_& module, const char* name) {
   Class<MuscleOf<Body>>(module, name, "Tets of a body that contract along their fibres. Made by add_muscle.")
       .def_prop_rw(
           "activation",
-          [](MuscleOf<Body>& m) {
-            return guarded(m.body, [&] { return changeable(m.body).activation(m.number); });
-          },
+          [](MuscleOf<Body>& m) { return guarded(m.body, [&] { return changeable(m.body).activation(m.number); }); },
           [](MuscleOf<Body>& m, double activation) {
             guarded(m.body, [&] { check(changeable(m.body).setActivation(m.number, activation)); });
           },
@@ -122,9 +122,10 @@ void bind(Class<Body>& type) {
            "is that of a pulled bar; a number, or one by tet; None: nothing flows any more. hardening: pressure units: "
            "by how much it grows per plastic strain. flow_rate: per second, at which what is beyond it flows; None: at "
            "once. largest: the largest plastic strain that may remain; None: any.")
-      .def("reset_plastic_flow", [](Body& b) { guarded(b, [&] { changeable(b).resetPlasticFlow(); }); },
-           "The body returns to its first shape; it flows again when it has been there, below its yield stress, for "
-           "half a second.")
+      .def(
+          "reset_plastic_flow", [](Body& b) { guarded(b, [&] { changeable(b).resetPlasticFlow(); }); },
+          "The body returns to its first shape; it flows again when it has been there, below its yield stress, for "
+          "half a second.")
       .def_prop_ro(
           "plastic_strains",
           [](Body& b) { return newColumn(guarded(b, [&] { return changeable(b).plasticStrains(); })); },
@@ -150,6 +151,22 @@ void bind(Class<Body>& type) {
 }  // namespace
 
 void bindMaterialChanges(nb::module_& module, Class<BodyHandle>& body, Class<ElasticModel>& elastic) {
+  const auto fibresOf = [](const CageModel& cage, const ArrayLike& tets, const ArrayLike& curve) {
+    const TetMesh& mesh = cage.cage->mesh;
+    const std::vector<int> indices = indicesOf(tets, "tets", mesh.tetCount());
+    const Numbers<double> numbers(curve, "curve", 3);
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t k = 0; k < numbers.rows(); ++k) points.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+    std::vector<double> rows;
+    for (const Eigen::Vector3d& fibre : take(fibresAlong(mesh, indices, points))) {
+      rows.insert(rows.end(), fibre.data(), fibre.data() + 3);
+    }
+    return newRows3(std::move(rows));
+  };
+  module.def(
+      "fibres_along", fibresOf, "cage"_a, "tets"_a, "curve"_a,
+      "(n, 3) float64 fibres for add_muscle: for each of n tets (a mask or indices) the direction of the nearest "
+      "piece of a curve of points (m, 3), rest space. Of two points: the axis between them. A new array.");
   bindMuscle<BodyHandle>(module, "Muscle");
   bindMuscle<ElasticModel>(module, "ElasticMuscle");
   bind(body);

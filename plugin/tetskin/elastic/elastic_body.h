@@ -102,8 +102,9 @@ class TETSKIN_ELASTIC_API ElasticBody {
 
   /// Lets the material flow where it yields; replaces what was set before. Costs a tenth of a step's forces.
   Status setPlasticity(const Plasticity& plasticity);
-  void endPlasticity();      ///< nothing flows any more; what has flowed stays
-  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a second.
+  void endPlasticity();  ///< nothing flows any more; what has flowed stays
+  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a
+  /// second.
   void resetPlasticFlow();
   /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
   /// parts have its mean.

@@ -5,9 +5,11 @@
 // (tetskin/solver) and `ElasticBody`.
 #pragma once
 
+#include <tetskin/core/mesh.h>
 #include <tetskin/core/types.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
@@ -19,8 +21,8 @@ namespace tetskin {
 /// does not depend on the step, except that the flow of a step begins in the next one.
 struct Plasticity {
   /// Pressure units, above 0: the von Mises stress at which the material yields, which is the stress of a bar that is
-  /// pulled. In a tet with a stiffness factor, its yield stress has that factor, too: all tets yield at the same strain,
-  /// yieldStress over Young's modulus.
+  /// pulled. In a tet with a stiffness factor, its yield stress has that factor, too: all tets yield at the same
+  /// strain, yieldStress over Young's modulus.
   double yieldStress = 0.0;
   /// tetCount, above 0: yield stresses by tet. Empty: all have `yieldStress`
   std::vector<double> yieldStresses;
@@ -46,9 +48,39 @@ inline double yieldStressOf(double norm, double youngsModulus, double poissonRat
 ///   w (1 + 2 nu w) = a stress / E,  nu: Poisson's ratio,  E: Young's modulus of the tet
 /// and becomes wider by sqrt(1 + 2 nu w). Between the two, tension follows elasticity.
 struct Muscle {
-  std::vector<int> tets;                 ///< of the cage, at least one, each once
-  std::vector<Eigen::Vector3d> fibres;   ///< directions, rest space, of any length above 0: one for each tet, or one for all
-  double stress = 3e5;                   ///< pressure units, above 0: the tension at activation 1; a human muscle has 3e5 Pa
+  std::vector<int> tets;  ///< of the cage, at least one, each once
+  std::vector<Eigen::Vector3d>
+      fibres;           ///< directions, rest space, of any length above 0: one for each tet, or one for all
+  double stress = 3e5;  ///< pressure units, above 0: the tension at activation 1; a human muscle has 3e5 Pa
 };
+
+/// Fibres along a curve: for each tet the direction of the nearest piece of it. Of two points: the axis between them.
+/// tets   of the cage; must exist
+/// curve  points, rest space, at least two, not all in one place
+/// Cost   O(tets x points). Error: InvalidOption
+inline Result<std::vector<Eigen::Vector3d>> fibresAlong(const TetMesh& cage, const std::vector<int>& tets,
+                                                        const std::vector<Eigen::Vector3d>& curve) {
+  std::vector<std::size_t> pieces;  // those that have a direction
+  for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
+    if ((curve[k + 1] - curve[k]).squaredNorm() > 0.0) pieces.push_back(k);
+  }
+  if (pieces.empty()) {
+    return Status{StatusCode::InvalidOption, "the curve of fibres needs two points in different places"};
+  }
+  std::vector<Eigen::Vector3d> fibres;
+  for (const int t : tets) {
+    const Tet& tet = cage.tets[static_cast<std::size_t>(t)];
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const int n : tet) centre += 0.25 * cage.nodes[static_cast<std::size_t>(n)];
+    const auto distance = [&](std::size_t k) {
+      const Eigen::Vector3d way = curve[k + 1] - curve[k], from = centre - curve[k];
+      return (from - std::min(std::max(from.dot(way) / way.squaredNorm(), 0.0), 1.0) * way).squaredNorm();
+    };
+    const std::size_t nearest = *std::min_element(
+        pieces.begin(), pieces.end(), [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+    fibres.push_back((curve[nearest + 1] - curve[nearest]).normalized());
+  }
+  return fibres;
+}
 
 }  // namespace tetskin

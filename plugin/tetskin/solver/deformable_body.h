@@ -93,13 +93,14 @@ class TETSKIN_SOLVER_API DeformableBody {
 
   // ---- What changes the state in which the body is at rest: for ForceModel::Corotated alone. Each acts from the next
   // step on, wakes the body, and is part of snapshots. Errors of a `Status`: InvalidOption, SizeMismatch or
-  // IndexOutOfRange, which say what is wrong; nothing is changed then. Tets are those of the cage. If the body is scaled,
-  // what has flowed is forgotten; if it gets other tets, all of it.
+  // IndexOutOfRange, which say what is wrong; nothing is changed then. Tets are those of the cage. If the body is
+  // scaled, what has flowed is forgotten; if it gets other tets, all of it.
 
   /// Lets the material flow where it yields; replaces what was set before.
   Status setPlasticity(const Plasticity& plasticity);
-  void endPlasticity();     ///< nothing flows any more; what has flowed stays
-  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a second.
+  void endPlasticity();  ///< nothing flows any more; what has flowed stays
+  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a
+  /// second.
   void resetPlasticFlow();
   /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
   /// parts have its mean.

@@ -442,7 +442,8 @@ double BodyDynamics<S>::keptInImpact(std::size_t component, double energy) const
   return root * root * root * root * (1.0 - flowsInImpact(component, energy, kPi / frequency));
 }
 
-/// The share of an impact's energy that flows within half a period: what is beyond the energy at which the whole yields.
+/// The share of an impact's energy that flows within half a period: what is beyond the energy at which the whole
+/// yields.
 template <class S>
 double BodyDynamics<S>::flowsInImpact(std::size_t component, double energy, double seconds) const {
   if (!tets_ || !tets_->flows()) return 0.0;

@@ -4,11 +4,11 @@
 // Internal to the kernels: rest shapes that change, at W points at a time.
 //
 // With D the deformation gradient from a tet's first rest shape to a given one (it grows, contracts), and P that of its
-// plastic flow, what is elastic of F is F (P D)^-1. The energy is that of corotation.h for it, times det D: it counts by
-// the volume to which the tet has grown. So gradients g of shape functions become (P D)^-T g.
+// plastic flow, what is elastic of F is F (P D)^-1. The energy is that of corotation.h for it, times det D: it counts
+// by the volume to which the tet has grown. So gradients g of shape functions become (P D)^-T g.
 //
-// Plastic flow is von Mises's with isotropic hardening: the deviator of E is returned to the yield surface along itself,
-// and the elastic stretch U = 1 + E keeps its volume. P becomes P times the inverse of what is left of U.
+// Plastic flow is von Mises's with isotropic hardening: the deviator of E is returned to the yield surface along
+// itself, and the elastic stretch U = 1 + E keeps its volume. P becomes P times the inverse of what is left of U.
 //
 // This work is based on:
 //   Juan C. Simo, Thomas J. R. Hughes, "Computational Inelasticity", 1998, chapter 3 (radial return)
@@ -133,8 +133,8 @@ struct WideFlow {
 
 /// part  of the deviator that flows, 0 to 1
 template <class S, int W>
-TETSKIN_INLINE WideFlow<S, W> flowBy(const Lanes<S, W>& part, const WideMatrix<S, W>& strain,
-                                     const Lanes<S, W>& volume, const WideChange<S, W>& change) {
+TETSKIN_INLINE WideFlow<S, W> flowBy(const Lanes<S, W>& part, const WideMatrix<S, W>& strain, const Lanes<S, W>& volume,
+                                     const WideChange<S, W>& change) {
   using V = Lanes<S, W>;
   const V mean = S(1) / S(3) * traceOf<S, W>(strain);
   WideMatrix<S, W> stretch = strain, left, total = change.inverse;
@@ -251,8 +251,7 @@ TETSKIN_INLINE WideMatrix<S, W> elasticGradient(const Work& work, std::size_t at
 /// What rotates the gradients of shape functions, and mu V, for the rest shapes of the matrix.
 template <class S, int W, class Work>
 TETSKIN_INLINE void changeRest(const Work& work, std::size_t at, int lane, WideMatrix<S, W>& r, Lanes<S, W>& mu) {
-  const WideChange<S, W> change =
-      changeOf<S, W>(work.assembledChanges + kChange * at + static_cast<std::size_t>(lane));
+  const WideChange<S, W> change = changeOf<S, W>(work.assembledChanges + kChange * at + static_cast<std::size_t>(lane));
   r = plusTransposedProduct<S, W>(r, change.inverse);
   mu *= change.volume;
 }
@@ -263,9 +262,8 @@ TETSKIN_INLINE void changeRest(const Work& work, std::size_t at, int lane, WideM
 /// shear, bulk  2 mu V and lambda V
 template <class S, int W, class Work>
 TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const Work& work, std::size_t pack, std::size_t at, int lane,
-                                                 WideMatrix<S, W> g, const WideFrames<S, W>& frame,
-                                                 Lanes<S, W> shear, Lanes<S, W> bulk, bool withEnergy,
-                                                 WideFindings<S, W>& findings) {
+                                                 WideMatrix<S, W> g, const WideFrames<S, W>& frame, Lanes<S, W> shear,
+                                                 Lanes<S, W> bulk, bool withEnergy, WideFindings<S, W>& findings) {
   const std::size_t rotations = 4 * kGroup * at + static_cast<std::size_t>(lane);
   WideChange<S, W> change{};
   if (work.changes) {

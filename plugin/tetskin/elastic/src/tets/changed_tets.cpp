@@ -120,6 +120,11 @@ void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet)
       S* const change = &packed.changes[kChange * at + lane];
       S* const own = &packed.given[9 * kGroup * at + lane];
       const Matrix before = isGiven_ ? narrowMatrix(own) : Matrix(Matrix::Identity());
+      // What stays has the same bits.
+      if (before == given.cast<S>().template cast<double>()) {
+        if (!isGiven_) putMatrix(given, own);
+        continue;
+      }
       const Matrix plastic = before * (Matrix::Identity() + narrowMatrix(change));  // P^-1
       putMatrix(given, own);
       putMatrix(given.inverse() * plastic - Matrix::Identity(), change);

@@ -150,7 +150,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool returns_ = false;                 ///< since `forgetFlow`
   double calmSeconds_ = 0.0;             ///< of a body that returns: since then nothing was beyond it
   bool isAsked_ = false;                 ///< within a question, which lets nothing flow
-  S flatAlpha_ = 0;  ///< of the matrix, where tets were flat; 0: no such value
+  S flatAlpha_ = 0;                      ///< of the matrix, where tets were flat; 0: no such value
   S flattest_ = 1;
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle

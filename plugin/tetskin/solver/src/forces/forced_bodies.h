@@ -7,7 +7,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
-#include <tetskin/elastic/src/tets/material_changes.h>
+#include <tetskin/elastic/src/exported/material_changes.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 
@@ -57,8 +57,8 @@ Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
 /// One body, and the data derived from it.
 struct ForcedBody {
   btSoftBody* body = nullptr;
-  std::vector<double> stiffnessScale;     ///< by tet, or empty
-  std::vector<QuadraticShape> quadratic;  ///< those whose parts are still tets of the body, see `withQuadraticTets`
+  std::vector<double> stiffnessScale;       ///< by tet, or empty
+  std::vector<QuadraticShape> quadratic;    ///< those whose parts are still tets of the body, see `withQuadraticTets`
   elastic_detail::MaterialChanges changes;  ///< what the owner has set
   std::unique_ptr<Dynamics> dynamics;
   std::size_t tetCount = 0;  ///< tets of the body when `dynamics` was created

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
-#include <tetskin/elastic/src/tets/material_changes.h>
+#include <tetskin/elastic/src/exported/material_changes.h>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -122,8 +122,9 @@ Result<int> MaterialChanges::addMuscle(const Muscle& muscle) {
   std::vector<char> used(tetCount_, 0);
   for (const int tet : muscle.tets) {
     if (tet < 0 || static_cast<std::size_t>(tet) >= tetCount_) {
-      return Status{StatusCode::IndexOutOfRange, "muscle: tet " + std::to_string(tet) + " does not exist in a cage of " +
-                                                     std::to_string(tetCount_) + " tets"};
+      return Status{
+          StatusCode::IndexOutOfRange,
+          "muscle: tet " + std::to_string(tet) + " does not exist in a cage of " + std::to_string(tetCount_) + " tets"};
     }
     if (used[static_cast<std::size_t>(tet)]++) {
       return invalidChange("muscle: tet " + std::to_string(tet) + " is listed twice");
@@ -147,8 +148,8 @@ Result<int> MaterialChanges::addMuscle(const Muscle& muscle) {
 
 Status MaterialChanges::setActivation(int muscle, double activation) {
   if (muscle < 0 || static_cast<std::size_t>(muscle) >= muscles_.size()) {
-    return {StatusCode::IndexOutOfRange, "muscle " + std::to_string(muscle) + " does not exist in a body with " +
-                                             std::to_string(muscles_.size())};
+    return {StatusCode::IndexOutOfRange,
+            "muscle " + std::to_string(muscle) + " does not exist in a body with " + std::to_string(muscles_.size())};
   }
   if (!(activation >= 0.0 && activation <= 1.0)) return invalidChange("the activation of a muscle must be from 0 to 1");
   muscles_[static_cast<std::size_t>(muscle)].activation = activation;

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Zlib
+// SPDX-FileCopyrightText: 2026 the tetskin authors
+#include "handles.h"
+
+namespace tetskin::js {
+namespace {
+
+/// stresses           one for all tets, or one for each
+/// flowRate, largest  NaN: none
+void setPlasticity(BodyHandle& body, Doubles stresses, double hardening, double flowRate, double largest) {
+  Plasticity plasticity;
+  if (stresses.count == 1) {
+    plasticity.yieldStress = *stresses.begin();
+  } else {
+    plasticity.yieldStresses.assign(stresses.begin(), stresses.end());
+  }
+  plasticity.hardening = hardening;
+  plasticity.flowRate = given(flowRate).value_or(plasticity.flowRate);
+  plasticity.largestStrain = given(largest).value_or(plasticity.largestStrain);
+  check(alive(*body.state).setPlasticity(plasticity));
+}
+void endPlasticity(BodyHandle& body) {
+  alive(*body.state).endPlasticity();
+}
+void resetPlasticFlow(BodyHandle& body) {
+  alive(*body.state).resetPlasticFlow();
+}
+View plasticStrains(BodyHandle& body) {
+  return lent(alive(*body.state).plasticStrains());
+}
+
+/// growth  a factor, one for each tet, or nine numbers for each
+void setGrowth(BodyHandle& body, Doubles growth) {
+  DeformableBody& own = alive(*body.state);
+  if (growth.count == 1) return check(own.setGrowth(*growth.begin()));
+  if (growth.count != 9 * body.state->cage->mesh.tetCount()) {
+    return check(own.setGrowth(std::vector<double>(growth.begin(), growth.end())));
+  }
+  std::vector<std::array<double, 9>> tensors(growth.count / 9);
+  for (std::size_t k = 0; k < growth.count; ++k) tensors[k / 9][k % 9] = growth.begin()[k];
+  check(own.setGrowthTensors(tensors));
+}
+
+int addMuscle(BodyHandle& body, Indices tets, Doubles fibres, double stress) {
+  Muscle muscle;
+  muscle.tets.assign(tets.begin(), tets.end());
+  for (std::size_t k = 0; k + 3 <= fibres.count; k += 3) {
+    const double* v = fibres.begin() + k;
+    muscle.fibres.emplace_back(v[0], v[1], v[2]);
+  }
+  muscle.stress = stress;
+  return take(alive(*body.state).addMuscle(muscle));
+}
+void setActivation(BodyHandle& body, int muscle, double activation) {
+  check(alive(*body.state).setActivation(muscle, activation));
+}
+double activation(BodyHandle& body, int muscle) {
+  return alive(*body.state).activation(muscle);
+}
+
+}  // namespace
+
+EMSCRIPTEN_BINDINGS(material_changes) {
+  expose<&setPlasticity>("setPlasticity");
+  expose<&endPlasticity>("endPlasticity");
+  expose<&resetPlasticFlow>("resetPlasticFlow");
+  expose<&plasticStrains>("plasticStrains");
+  expose<&setGrowth>("setGrowth");
+  expose<&addMuscle>("addMuscle");
+  expose<&setActivation>("setActivation");
+  expose<&activation>("activation");
+}
+
+}  // namespace tetskin::js
