@@ -246,6 +246,7 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
 
 #define TETSKIN_INSTANTIATE(S)                                                               \
   template void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet); \
+  template bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet);       \
   template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);               \
   template void CorotatedTets<S>::forgetFlow();                                              \
   template void CorotatedTets<S>::flowFor(double seconds);                                   \
