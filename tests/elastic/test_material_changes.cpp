@@ -523,5 +523,44 @@ TEST(MaterialChanges, AYieldStrainConvertsToTheStressAtWhichABarYields) {
   EXPECT_NEAR(yieldStressOf(std::sqrt(2.0 / 3.0) * (1.0 + nu) * strain, kYoung, nu), strain * kYoung, 1e-9 * kYoung);
 }
 
+TYPED_TEST(MaterialChangesOf, StiffnessByTetMovesTheMiddleOfAStretchedBar) {
+  constexpr double kStretch = 0.02;
+  for (const Order order : {Order::Linear, Order::Quadratic}) {
+    const Cage bar = barOf(order);
+    ElasticBody<TypeParam> body = made<TypeParam>(bar, material());
+    for (const double end : {0.0, 1.0}) {
+      for (const std::size_t n : nodesAt(bar, end)) {
+        body.setPinned(n);
+        body.positions()[n][0] += static_cast<TypeParam>(kStretch * end);
+      }
+    }
+    std::vector<double> factors;
+    for (const Tet& tet : bar.mesh.tets) {
+      Vector3d centre(0, 0, 0);
+      for (const int n : tet) centre += 0.25 * bar.mesh.nodes[static_cast<std::size_t>(n)];
+      factors.push_back(centre.x() < 0.5 ? 1.0 : 4.0);
+    }
+    const auto middle = [&] {
+      run(body, 2.0, kFrame);
+      double sum = 0.0;
+      const std::vector<std::size_t> nodes = nodesAt(bar, 0.5);
+      for (const std::size_t n : nodes) sum += static_cast<double>(body.positions()[n][0]) - 0.5;
+      return sum / static_cast<double>(nodes.size()) / kStretch;
+    };
+    EXPECT_NEAR(middle(), 0.5, 0.01);
+    ASSERT_TRUE(body.setStiffnessScale(factors).ok());
+    EXPECT_NEAR(middle(), 0.8, 0.02);
+    ASSERT_TRUE(body.setStiffnessScale(std::vector<double>(factors.size(), 1.0)).ok());
+    EXPECT_NEAR(middle(), 0.5, 0.01);
+    const double before = body.energy();
+    ASSERT_TRUE(body.setStiffnessScale(std::vector<double>(factors.size(), 4.0)).ok());
+    EXPECT_NEAR(body.energy() / before, 4.0, 1e-4);
+    EXPECT_EQ(body.setStiffnessScale({1.0}).code, StatusCode::SizeMismatch);
+    factors[3] = 0.0;
+    EXPECT_EQ(body.setStiffnessScale(factors).code, StatusCode::InvalidOption);
+    EXPECT_NEAR(body.energy() / before, 4.0, 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace tetskin::test

@@ -292,13 +292,18 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
       if (frame == 12 || frame == 13) {
         EXPECT_TRUE(body.setGrowth(1.0 + 0.01 * (frame - 8)).ok());
       }
+      if (frame == 8 || frame == 24) {
+        std::vector<double> factors(static_cast<std::size_t>(body.body().m_tetras.size()), 1.0);
+        if (frame == 8) factors[2] = 3.0;
+        EXPECT_TRUE(body.setStiffnessScale(factors).ok());
+      }
       if (frame % 4 == 0) {
         EXPECT_TRUE(body.setActivation(0, 0.02 * frame).ok());
       }
     };
     return scene;
   };
-  expectReplays(make, 45, {0, 4, 6, 12, 19, 27, 32});
+  expectReplays(make, 45, {0, 4, 6, 9, 12, 19, 25, 27, 32});
 }
 
 TEST(SnapshotsOfSoftBodies, OfBodiesUnderPressure) {

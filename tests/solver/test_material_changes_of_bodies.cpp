@@ -111,6 +111,26 @@ TEST(MaterialChangesOfBodies, ABodyThatChangesWakesAndSleepsAgain) {
   EXPECT_TRUE(cube->body().isActive());
 }
 
+TEST(MaterialChangesOfBodies, ABodySagsAsMuchMoreAsItsTetsAreSofter) {
+  TetskinWorld world;
+  const auto cube = block(world, cubeAt(0.001), 0.02);
+  step(world, 120);
+  ASSERT_FALSE(cube->body().isActive());
+  const double sag = 0.4 - heightOf(cube->body());
+  const std::vector<double> soft(static_cast<std::size_t>(cube->body().m_tetras.size()), 0.25);
+  ASSERT_TRUE(cube->setStiffnessScale(soft).ok());
+  EXPECT_TRUE(cube->body().isActive());
+  step(world, 240);
+  EXPECT_NEAR((0.4 - heightOf(cube->body())) / sag, 4.0, 0.2);
+  EXPECT_FALSE(cube->body().isActive());
+  ASSERT_TRUE(cube->setYoungsModulus(4.0 * kStiff).ok());
+  step(world, 240);
+  EXPECT_NEAR((0.4 - heightOf(cube->body())) / sag, 1.0, 0.05);
+  ASSERT_TRUE(cube->reset().ok());
+  step(world, 240);
+  EXPECT_NEAR((0.4 - heightOf(cube->body())) / sag, 1.0, 0.05) << "a reset keeps what is set";
+}
+
 TEST(MaterialChangesOfBodies, WhatIsSetSurvivesAResetAndWhatHasFlowedDoesNot) {
   TetskinWorld world;
   const auto cube = block(world, cubeAt(0.02));
@@ -174,7 +194,8 @@ TEST(MaterialChangesOfBodies, OtherForceModelsRefuseThem) {
   Muscle muscle;
   muscle.tets = {0};
   muscle.fibres = {Eigen::Vector3d(1, 0, 0)};
-  for (const Status& status : {body->setPlasticity(clay()), body->setGrowth(1.1), body->addMuscle(muscle).status()}) {
+  for (const Status& status : {body->setPlasticity(clay()), body->setGrowth(1.1), body->addMuscle(muscle).status(),
+                               body->setStiffnessScale({})}) {
     EXPECT_EQ(status.code, StatusCode::InvalidOption);
     EXPECT_NE(status.message.find("Corotated"), std::string::npos) << status.message;
   }

@@ -133,6 +133,15 @@ void bind(Class<Body>& type) {
       .def("set_growth", setGrowth<Body>, "growth"_a,
            "Makes tets grow to multiples of their first size, at which they are at rest; masses stay. growth: a factor "
            "of length, one by tet (tets,), or symmetric matrices (tets, 3, 3); 0.05 to 20, 1: none.")
+      .def(
+          "set_stiffness_scale",
+          [](Body& b, const ArrayLike& factors) {
+            const std::vector<double> byTet = numbersOf(factors.object, "factors");
+            guarded(b, [&] { check(changeable(b).setStiffnessScale(byTet)); });
+          },
+          "factors"_a,
+          "Multiplies the stiffness of each tet, as it was when the body was made: (tets,), 1e-6 to 1e6. A large "
+          "change in one step is a blow to a body under load.")
       .def("add_muscle", addMuscle<Body>, "tets"_a, "fibres"_a, "stress"_a = 3e5,
            "Adds a muscle, which is relaxed: set its activation. tets: a mask or indices. fibres: directions, rest "
            "space: one (3,), or one for each of its tets (n, 3). stress: pressure units: its tension at activation 1 "

@@ -129,6 +129,10 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// The same along axes.
   /// deformations  by tet, 3 x 3 by rows, symmetric: factors of length along three axes, rest space
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
+  /// Multiplies the stiffness of each tet, as it was when the body was made. A large change in one step is a blow to a
+  /// body under load.
+  /// factors  tetCount, 1e-6 to 1e6
+  Status setStiffnessScale(const std::vector<double>& factors);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);

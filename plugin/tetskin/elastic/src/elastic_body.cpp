@@ -165,7 +165,10 @@ struct ElasticBody<Scalar>::Impl {
     return status;
   }
   void applyChanges() {
-    if (dynamics.tets()) changes.applyTo(*dynamics.tets(), poissonRatio, youngsModulus);
+    if (!dynamics.tets()) return;
+    if (dynamics.tets()->setStiffnessScale(changes.stiffnessScale()))
+      dynamics.setMaterial(elastic_detail::lameOf(youngsModulus, poissonRatio));
+    changes.applyTo(*dynamics.tets(), poissonRatio, youngsModulus);
   }
 };
 
@@ -292,6 +295,10 @@ Status ElasticBody<Scalar>::setGrowth(const std::vector<double>& lengths) {
 template <class Scalar>
 Status ElasticBody<Scalar>::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
   return impl_ ? impl_->change(impl_->changes.setGrowthTensors(deformations)) : kNoNodes;
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::setStiffnessScale(const std::vector<double>& factors) {
+  return impl_ ? impl_->change(impl_->changes.setStiffnessScale(factors)) : kNoNodes;
 }
 template <class Scalar>
 Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {

@@ -491,6 +491,10 @@ Status DeformableBody::setGrowthTensors(const std::vector<std::array<double, 9>>
   return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowthTensors(deformations); });
 }
 
+Status DeformableBody::setStiffnessScale(const std::vector<double>& factors) {
+  return impl_->changeMaterial("stiffness by tet", [&](auto& changes) { return changes.setStiffnessScale(factors); });
+}
+
 Result<int> DeformableBody::addMuscle(const Muscle& muscle) {
   int number = 0;
   Status status = impl_->changeMaterial("a muscle", [&](auto& changes) {

@@ -18,6 +18,9 @@ using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 /// The range of factors of length: beyond it, a tet's stiffness leaves that of its neighbours far behind.
 constexpr double kLeastGrowth = 0.05, kLargestGrowth = 20.0;
 
+/// The least factor of stiffness, and the inverse of the largest.
+constexpr double kLeastStiffness = 1e-6;
+
 Status invalidChange(std::string message) {
   return {StatusCode::InvalidOption, std::move(message)};
 }
@@ -100,6 +103,20 @@ Status MaterialChanges::setGrowthTensors(const std::vector<std::array<double, 9>
   return {};
 }
 
+Status MaterialChanges::setStiffnessScale(const std::vector<double>& factors) {
+  if (factors.size() != tetCount_) return sizeMismatch("stiffnessScale", factors.size(), tetCount_);
+  const auto bad = std::find_if_not(factors.begin(), factors.end(), [](double factor) {
+    return factor >= kLeastStiffness && factor <= 1.0 / kLeastStiffness;
+  });
+  if (bad != factors.end()) {
+    return invalidChange("the stiffness scale of tet " + std::to_string(bad - factors.begin()) +
+                         " must be from 1e-6 to 1e6");
+  }
+  const bool none = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
+  stiffnessScale_ = none ? std::vector<double>() : factors;
+  return {};
+}
+
 Result<int> MaterialChanges::addMuscle(const Muscle& muscle) {
   if (muscle.tets.empty()) return invalidChange("a muscle needs at least one tet");
   std::vector<char> used(tetCount_, 0);
@@ -178,6 +195,11 @@ void MaterialChanges::serialize(StateStream& stream) {
   if (stream.restoring()) growth_.resize(count == tetCount_ ? count : 0);
   if (count != growth_.size()) return stream.fail();
   for (std::array<double, 9>& shape : growth_) stream.plain(shape.data(), shape.size());
+  stream.array(stiffnessScale_);
+  if (!stiffnessScale_.empty() && stiffnessScale_.size() != tetCount_) {
+    stiffnessScale_.clear();
+    return stream.fail();
+  }
   for (Group& group : muscles_) stream(group.activation);
   bool flows = plasticity_.has_value();
   stream(flows);

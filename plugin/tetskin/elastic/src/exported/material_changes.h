@@ -26,15 +26,18 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   Status setGrowth(double length) { return setGrowth(std::vector<double>(tetCount_, length)); }
   Status setGrowth(const std::vector<double>& lengths);
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
+  Status setStiffnessScale(const std::vector<double>& factors);
+  /// By tet of the cage; empty: 1.
+  const std::vector<double>& stiffnessScale() const { return stiffnessScale_; }
   Result<int> addMuscle(const Muscle& muscle);
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;
   std::size_t muscleCount() const { return muscles_.size(); }
 
-  /// Gives all of it to tets of this material.
+  /// Gives all of it to tets of this material, but for the stiffness: see `CorotatedTets::setStiffnessScale`.
   template <class S>
   void applyTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const;
-  /// Writes or reads what may change from step to step: growth, activations, the limits of flow.
+  /// Writes or reads what may change from step to step: growth, stiffness, activations, the limits of flow.
   void serialize(StateStream& stream);
 
  private:
@@ -48,6 +51,7 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   std::size_t tetCount_ = 0;
   std::optional<Plasticity> plasticity_;
   std::vector<std::array<double, 9>> growth_;  ///< by tet; empty: none
+  std::vector<double> stiffnessScale_;
   std::vector<Group> muscles_;
 };
 

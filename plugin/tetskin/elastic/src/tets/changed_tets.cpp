@@ -88,6 +88,26 @@ void CorotatedTets<S>::makeChanges() {
 }
 
 template <class S>
+bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet) {
+  if (byTet.empty() && madeVolumes_.empty()) return false;
+  if (madeVolumes_.empty()) {
+    madeVolumes_ = rest_.volumes;
+    for (const RestQuadraticTet& tet : rest_.quadratic) madeVolumes_.push_back(tet.volume);
+  }
+  bool changed = false;
+  const auto set = [&](double& volume, double made, const auto& cageTets) {
+    const double now = byTet.empty() ? made : made * meanOf(byTet, cageTets);
+    changed |= now != volume;
+    volume = now;
+  };
+  for (std::size_t t = 0; t < rest_.count(); ++t)
+    set(rest_.volumes[t], madeVolumes_[t], std::array<std::uint32_t, 1>{rest_.cageTets[t]});
+  for (std::size_t q = 0; q < rest_.quadratic.size(); ++q)
+    set(rest_.quadratic[q].volume, madeVolumes_[rest_.count() + q], rest_.quadratic[q].cageTets);
+  return changed;
+}
+
+template <class S>
 void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet) {
   if (byTet.empty() && !isGiven_) return;
   makeChanges();
@@ -226,6 +246,7 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
 
 #define TETSKIN_INSTANTIATE(S)                                                               \
   template void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet); \
+  template bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet);       \
   template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);               \
   template void CorotatedTets<S>::forgetFlow();                                              \
   template void CorotatedTets<S>::flowFor(double seconds);                                   \

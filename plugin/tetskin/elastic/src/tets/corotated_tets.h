@@ -63,6 +63,9 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool serialize(StateStream& stream, S alpha, bool ofMatrix);
 
   // Rest shapes that change, see kernels/rest_change.h. Tets without any have no cost by it.
+  /// Factors of the tets' stiffness beside those with which they were made, by tet of the cage; empty: 1. True if they
+  /// are other ones than before: `setMaterial` must follow. Cost O(T)
+  bool setStiffnessScale(const std::vector<double>& byTet);
   /// Shapes at which the tets are at rest beside their plastic flow: deformation gradients from the first ones, by rows
   /// and tet of the cage; empty: the first ones. Plastic strains stay. Cost O(T)
   void setGiven(const std::vector<std::array<double, 9>>& byTet);
@@ -128,6 +131,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
+  std::vector<double> madeVolumes_;  ///< of `rest_` as it was made, linear and quadratic; empty: it is as it was made
   Linear linear_;
   Quadratic quadratic_;
   AlignedVector<S> corners_;                             ///< see RestTets

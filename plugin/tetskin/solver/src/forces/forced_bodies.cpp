@@ -186,6 +186,8 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
 }
 
 void ForcedBody::applyChanges(const ElasticMaterial& material) {
+  if (dynamics->tets()->setStiffnessScale(changes.stiffnessScale()))
+    dynamics->setMaterial(elastic_detail::lameOf(material.youngsModulus, material.poissonRatio));
   changes.applyTo(*dynamics->tets(), material.poissonRatio, material.youngsModulus);
 }
 
