@@ -4,8 +4,8 @@
 
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
-#include <tetskin/elastic/material_changes.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/elastic/material_changes.h>
 
 #include <memory>
 

@@ -7,8 +7,8 @@
 #include <tetskin/core/src/base/positive_values.h>
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
-#include <tetskin/elastic/src/exported/material_changes.h>
 #include <tetskin/elastic/src/exported/body_pressure.h>
+#include <tetskin/elastic/src/exported/material_changes.h>
 
 #include <algorithm>
 #include <cassert>

@@ -221,7 +221,7 @@ bool ForcedBody::hasItsRestShapes() const {
 void ForcedBody::serialize(WorldStream& stream, const ElasticMaterial& material) {
   changes.serialize(stream);
   if (stream.restoring()) applyChanges(material);
-  constexpr std::uint8_t kCurrent = 1, kPressure = 2;
+  constexpr std::uint8_t kCurrent = 1, kPressure = 2;  // bits
   auto flags = static_cast<std::uint8_t>((hasItsRestShapes() ? kCurrent : 0) | (pressure.acts() ? kPressure : 0));
   stream(flags);
   elastic_detail::PressureLaw law = pressure.law();

@@ -7,8 +7,8 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
-#include <tetskin/elastic/src/exported/material_changes.h>
 #include <tetskin/elastic/src/exported/body_pressure.h>
+#include <tetskin/elastic/src/exported/material_changes.h>
 #include <tetskin/solver/src/base/placement.h>
 #include <tetskin/solver/src/forces/quadratic_shapes.h>
 
