@@ -18,6 +18,18 @@ namespace {
 
 const btVector3 kAside(btScalar(0.3), btScalar(0.5), btScalar(0.1));
 
+Plasticity clay(int k) {
+  Plasticity plasticity;
+  plasticity.yieldStress = 300.0 * (k + 1);
+  return plasticity;
+}
+
+std::vector<double> stiffened(const btSoftBody& body) {
+  std::vector<double> factors(static_cast<std::size_t>(body.m_tetras.size()), 1.0);
+  factors[0] = 2.0;
+  return factors;
+}
+
 TEST(RecordedCalls, OfADeformableBody) {
   expectRepeats(
       {
@@ -45,6 +57,11 @@ TEST(RecordedCalls, OfADeformableBody) {
           CALL((void)s.ball->setYoungsModulus(3 * s.ball->youngsModulus())),
           CALL((void)s.ball->setPressure(500)),
           CALL((void)s.ball->setGas(300, 1e3)),
+          CALL(EXPECT_TRUE(s.ball->setPlasticity(clay(k)).ok())),
+          CALL(EXPECT_TRUE(s.ball->endPlasticity().ok())),
+          CALL(EXPECT_TRUE(s.ball->resetPlasticFlow().ok())),
+          CALL(EXPECT_TRUE(s.ball->setGrowth(1.0 + 0.02 * (k + 1)).ok())),
+          CALL(EXPECT_TRUE(s.ball->setStiffnessScale(stiffened(s.softBall())).ok())),
           CALL((void)s.ball->setPoissonRatio(0.45)),
           CALL((void)s.ball->setStiffnessDamping(0.1)),
           {"teleport",

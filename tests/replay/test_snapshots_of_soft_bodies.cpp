@@ -288,7 +288,9 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
       if (frame == 5 || frame == 20) {
         EXPECT_TRUE(body.setPlasticity(plasticity).ok());
       }
-      if (frame == 30) body.resetPlasticFlow();
+      if (frame == 30) {
+        EXPECT_TRUE(body.resetPlasticFlow().ok());
+      }
       if (frame == 12 || frame == 13) {
         EXPECT_TRUE(body.setGrowth(1.0 + 0.01 * (frame - 8)).ok());
       }

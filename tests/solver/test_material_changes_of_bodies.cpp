@@ -107,7 +107,7 @@ TEST(MaterialChangesOfBodies, ABodyThatChangesWakesAndSleepsAgain) {
   ASSERT_TRUE(cube->setPlasticity(clay()).ok());
   EXPECT_TRUE(cube->body().isActive());
   step(world, 120);
-  cube->resetPlasticFlow();
+  ASSERT_TRUE(cube->resetPlasticFlow().ok());
   EXPECT_TRUE(cube->body().isActive());
 }
 
@@ -199,8 +199,9 @@ TEST(MaterialChangesOfBodies, OtherForceModelsRefuseThem) {
     EXPECT_EQ(status.code, StatusCode::InvalidOption);
     EXPECT_NE(status.message.find("Corotated"), std::string::npos) << status.message;
   }
-  body->endPlasticity();
-  body->resetPlasticFlow();
+  EXPECT_FALSE(body->endPlasticity().ok());
+  EXPECT_FALSE(body->resetPlasticFlow().ok());
+  EXPECT_EQ(body->activation(0), 0.0);
   for (const double strain : body->plasticStrains()) EXPECT_EQ(strain, 0.0);
 }
 

@@ -20,10 +20,10 @@ void setPlasticity(BodyHandle& body, Doubles stresses, double hardening, double 
   check(alive(*body.state).setPlasticity(plasticity));
 }
 void endPlasticity(BodyHandle& body) {
-  alive(*body.state).endPlasticity();
+  check(alive(*body.state).endPlasticity());
 }
 void resetPlasticFlow(BodyHandle& body) {
-  alive(*body.state).resetPlasticFlow();
+  check(alive(*body.state).resetPlasticFlow());
 }
 View plasticStrains(BodyHandle& body) {
   return lent(alive(*body.state).plasticStrains());

@@ -43,7 +43,7 @@ std::vector<double> numbersOf(const nb::object& given, const char* name) {
 template <class Body>
 void setPlasticity(Body& body, const std::optional<nb::object>& yieldStress, double hardening,
                    const std::optional<double>& flowRate, const std::optional<double>& largest) {
-  if (!yieldStress) return guarded(body, [&] { changeable(body).endPlasticity(); });
+  if (!yieldStress) return guarded(body, [&] { check(changeable(body).endPlasticity()); });
   Plasticity plasticity;
   const std::vector<double> stresses = numbersOf(*yieldStress, "yield_stress");
   double one = 0.0;
@@ -123,7 +123,7 @@ void bind(Class<Body>& type) {
            "by how much it grows per plastic strain. flow_rate: per second, at which what is beyond it flows; None: at "
            "once. largest: the largest plastic strain that may remain; None: any.")
       .def(
-          "reset_plastic_flow", [](Body& b) { guarded(b, [&] { changeable(b).resetPlasticFlow(); }); },
+          "reset_plastic_flow", [](Body& b) { guarded(b, [&] { check(changeable(b).resetPlasticFlow()); }); },
           "The body returns to its first shape; it flows again when it has been there, below its yield stress, for "
           "half a second.")
       .def_prop_ro(

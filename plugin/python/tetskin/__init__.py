@@ -12,13 +12,14 @@
         world.step(1/60, substeps=4)
     body.positions  # (vertices, 3) float32, a read-only view
 """
-from ._core import (AppliedForces, Body, BonePalette, Cage, Contacts, ElasticBody, Error, GlbWriter, Hit, ImpulseResult,
-                    Joint, Recorder, Replay, RigidBody, Shape, Skin, Spring, StatusCode, SurfacePoint, TriangleMesh,
-                    Weld, World, Wrench, __version__, calibrate, create_cage, load_cage, load_mesh, load_vertex_map,
-                    paint_cage, refine_quadratic, spread_map)
+from ._core import (AppliedForces, Body, BonePalette, Cage, Contacts, ElasticBody, ElasticMuscle, Error, GlbWriter, Hit,
+                    ImpulseResult, Joint, Muscle, Recorder, Replay, RigidBody, Shape, Skin, Spring, StatusCode,
+                    SurfacePoint, TriangleMesh, Weld, World, Wrench, __version__, calibrate, create_cage, fibres_along,
+                    load_cage, load_mesh, load_vertex_map, paint_cage, refine_quadratic, spread_map)
 from .page import Film
 
-__all__ = ["AppliedForces", "Body", "BonePalette", "Cage", "Contacts", "ElasticBody", "Error", "Film", "GlbWriter",
-           "Hit", "ImpulseResult", "Joint", "Recorder", "Replay", "RigidBody", "Shape", "Skin", "Spring", "StatusCode",
-           "SurfacePoint", "TriangleMesh", "Weld", "World", "Wrench", "__version__", "calibrate", "create_cage",
-           "load_cage", "load_mesh", "load_vertex_map", "paint_cage", "refine_quadratic", "spread_map"]
+__all__ = ["AppliedForces", "Body", "BonePalette", "Cage", "Contacts", "ElasticBody", "ElasticMuscle", "Error", "Film",
+           "GlbWriter", "Hit", "ImpulseResult", "Joint", "Muscle", "Recorder", "Replay", "RigidBody", "Shape", "Skin",
+           "Spring", "StatusCode", "SurfacePoint", "TriangleMesh", "Weld", "World", "Wrench", "__version__",
+           "calibrate", "create_cage", "fibres_along", "load_cage", "load_mesh", "load_vertex_map", "paint_cage",
+           "refine_quadratic", "spread_map"]

@@ -114,10 +114,10 @@ class TETSKIN_ELASTIC_API ElasticBody {
 
   /// Lets the material flow where it yields; replaces what was set before. Costs a tenth of a step's forces.
   Status setPlasticity(const Plasticity& plasticity);
-  void endPlasticity();  ///< nothing flows any more; what has flowed stays
+  Status endPlasticity();  ///< nothing flows any more; what has flowed stays
   /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a
   /// second.
-  void resetPlasticFlow();
+  Status resetPlasticFlow();
   /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
   /// parts have its mean.
   std::vector<double> plasticStrains() const;
@@ -131,12 +131,12 @@ class TETSKIN_ELASTIC_API ElasticBody {
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   /// Multiplies the stiffness of each tet, as it was when the body was made. A large change in one step is a blow to a
   /// body under load.
-  /// factors  tetCount, 1e-6 to 1e6
+  /// factors  tetCount, 1e-6 to 1e6; with the largest, the body must not be too stiff, as for `create`
   Status setStiffnessScale(const std::vector<double>& factors);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);
-  double activation(int muscle) const;  ///< that was set last. The muscle must exist
+  double activation(int muscle) const;  ///< that was set last; 0 for a muscle that does not exist
 
   /// nodeCount elastic forces at the current positions, with those of pressure, world space, pressure times area.
   std::vector<std::array<double, 3>> forces();

@@ -93,16 +93,16 @@ class TETSKIN_SOLVER_API DeformableBody {
   Status setStiffnessDamping(double seconds);
 
   // ---- What changes the state in which the body is at rest: for ForceModel::Corotated alone. Each acts from the next
-  // step on, wakes the body, and is part of snapshots. Errors of a `Status`: InvalidOption, SizeMismatch or
-  // IndexOutOfRange, which say what is wrong; nothing is changed then. Tets are those of the cage. If the body is
-  // scaled, what has flowed is forgotten; if it gets other tets, all of it.
+  // step on, wakes the body, and is part of snapshots. Errors of a `Status`: InvalidOption (also within a step),
+  // SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then. Tets are those of the cage. If
+  // the body is scaled, what has flowed is forgotten; if it gets other tets, all of it.
 
   /// Lets the material flow where it yields; replaces what was set before.
   Status setPlasticity(const Plasticity& plasticity);
-  void endPlasticity();  ///< nothing flows any more; what has flowed stays
+  Status endPlasticity();  ///< nothing flows any more; what has flowed stays
   /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a
   /// second.
-  void resetPlasticFlow();
+  Status resetPlasticFlow();
   /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
   /// parts have its mean.
   std::vector<double> plasticStrains() const;
@@ -116,12 +116,12 @@ class TETSKIN_SOLVER_API DeformableBody {
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   /// Multiplies the stiffness of each tet, as it was when the body was added. A large change in one step is a blow to a
   /// body under load.
-  /// factors  tetCount, 1e-6 to 1e6
+  /// factors  tetCount, 1e-6 to 1e6; with the largest, the body must not be too stiff, as for `setYoungsModulus`
   Status setStiffnessScale(const std::vector<double>& factors);
-  Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed. Muscles stay until the body ends
+  Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);
-  double activation(int muscle) const;  ///< that was set last. The muscle must exist
+  double activation(int muscle) const;  ///< that was set last; 0 for a muscle that does not exist
   /// Sets the pressure in the body, in pressure units above that outside, from the next step on; 0 ends it, and below 0
   /// it is suction. It follows the deformed surface: its forces are the pressure times the derivative of the volume
   /// inside, so that their sum and torque are 0. Which surface that is, the tets' boundary decides, unless

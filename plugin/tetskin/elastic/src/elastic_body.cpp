@@ -85,7 +85,8 @@ struct ElasticBody<Scalar>::Impl {
         changes(cage.tetCount()),
         tetCount(cage.tetCount()),
         youngsModulus(options.youngsModulus),
-        poissonRatio(options.poissonRatio) {
+        poissonRatio(options.poissonRatio),
+        damping(options.stiffnessDamping) {
     for (const Eigen::Vector3d& p : cage.nodes) {
       for (int k = 0; k < 3; ++k) positions.push_back(static_cast<Scalar>(p[k]));
     }
@@ -157,7 +158,7 @@ struct ElasticBody<Scalar>::Impl {
   std::vector<Scalar> positions, velocities;
   elastic_detail::MaterialChanges changes;
   std::size_t tetCount;
-  double youngsModulus, poissonRatio;
+  double youngsModulus, poissonRatio, damping;
 
   /// Gives the tets what was set, if it is valid.
   Status change(Status status) {
@@ -270,14 +271,17 @@ Status ElasticBody<Scalar>::setPlasticity(const Plasticity& plasticity) {
   return impl_ ? impl_->change(impl_->changes.setPlasticity(plasticity)) : kNoNodes;
 }
 template <class Scalar>
-void ElasticBody<Scalar>::endPlasticity() {
-  if (!impl_) return;
+Status ElasticBody<Scalar>::endPlasticity() {
+  if (!impl_) return kNoNodes;
   impl_->changes.endPlasticity();
   impl_->applyChanges();
+  return {};
 }
 template <class Scalar>
-void ElasticBody<Scalar>::resetPlasticFlow() {
-  if (impl_ && impl_->dynamics.tets()) impl_->dynamics.tets()->forgetFlow();
+Status ElasticBody<Scalar>::resetPlasticFlow() {
+  if (!impl_) return kNoNodes;
+  if (impl_->dynamics.tets()) impl_->dynamics.tets()->forgetFlow();
+  return {};
 }
 template <class Scalar>
 std::vector<double> ElasticBody<Scalar>::plasticStrains() const {
@@ -298,7 +302,13 @@ Status ElasticBody<Scalar>::setGrowthTensors(const std::vector<std::array<double
 }
 template <class Scalar>
 Status ElasticBody<Scalar>::setStiffnessScale(const std::vector<double>& factors) {
-  return impl_ ? impl_->change(impl_->changes.setStiffnessScale(factors)) : kNoNodes;
+  if (!impl_) return kNoNodes;
+  const double largest = factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
+  const double mass = std::accumulate(impl_->masses.begin(), impl_->masses.end(), 0.0);
+  Status status = elastic_detail::checkStiffness<Scalar>(std::max(largest, 1.0) * impl_->youngsModulus, impl_->damping,
+                                                         mass, impl_->volume);
+  if (!status.ok()) return status;
+  return impl_->change(impl_->changes.setStiffnessScale(factors));
 }
 template <class Scalar>
 Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {
@@ -312,8 +322,7 @@ Status ElasticBody<Scalar>::setActivation(int muscle, double activation) {
 
 template <class Scalar>
 double ElasticBody<Scalar>::activation(int muscle) const {
-  assert(impl_);
-  return impl_->changes.activation(muscle);
+  return impl_ ? impl_->changes.activation(muscle) : 0.0;
 }
 
 template <class Scalar>

@@ -119,6 +119,12 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
   return refusal("ForceModel::Corotated", changes);
 }
 
+/// The material of the stiffest tet.
+ElasticMaterial stiffest(ElasticMaterial material, double largestScale) {
+  material.youngsModulus *= std::max(largestScale, 1.0);
+  return material;
+}
+
 /// Rejects gravity that moves bodies farther in a step than numbers of this precision can represent.
 Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   constexpr double kMaxBodyLengths = 1e6;
@@ -201,7 +207,8 @@ struct DeformableBody::Impl final : BodyOwner {
   }
   Status set(const ElasticMaterial& now) {
     Status status = checkMaterial(now);
-    if (status.ok()) status = checkStiffness(*body, now);
+    if (status.ok())
+      status = checkStiffness(*body, stiffest(now, corotated() ? corotated()->body().changes.largestScale() : 1.0));
     if (status.ok()) apply(now);
     return status;
   }
@@ -212,11 +219,30 @@ struct DeformableBody::Impl final : BodyOwner {
     if (!elastic) {
       return {StatusCode::InvalidOption, std::string(what) + " needs ForceModel::Corotated"};
     }
-    Status status = change(elastic->body().changes);
-    if (!status.ok()) return status;
-    elastic->applyChanges();
-    body->activate();
+    if (hasOwnSolver && solverLives() && isWithinStep(static_cast<const DeformableSolver&>(*solver))) {
+      return invalid(std::string(what) + ": within a step; call it between two steps");
+    }
+    Status status = change(*elastic);
+    if (status.ok()) body->activate();
     return status;
+  }
+  /// The same, and gives what the owner has set to the tets.
+  template <class Change>
+  Status changeSettings(const char* what, Change&& change) {
+    return changeMaterial(what, [&](ElasticForce& elastic) {
+      Status status = change(elastic.body().changes);
+      if (status.ok()) elastic.applyChanges();
+      return status;
+    });
+  }
+  /// The same for the shapes at rest alone.
+  template <class Change>
+  Status changeShapes(const char* what, Change&& change) {
+    return changeMaterial(what, [&](ElasticForce& elastic) {
+      Status status = change(elastic.body().changes);
+      if (status.ok()) elastic.applyShapes();
+      return status;
+    });
   }
   void enter();
   void moveTo(btDeformableMultiBodyDynamicsWorld& to);
@@ -456,21 +482,21 @@ Status DeformableBody::setStiffnessDamping(double seconds) {
 }
 
 Status DeformableBody::setPlasticity(const Plasticity& plasticity) {
-  return impl_->changeMaterial("plasticity", [&](auto& changes) { return changes.setPlasticity(plasticity); });
+  return impl_->changeSettings("plasticity", [&](auto& changes) { return changes.setPlasticity(plasticity); });
 }
 
-void DeformableBody::endPlasticity() {
-  (void)impl_->changeMaterial("plasticity", [](auto& changes) {
+Status DeformableBody::endPlasticity() {
+  return impl_->changeSettings("plasticity", [](auto& changes) {
     changes.endPlasticity();
     return Status();
   });
 }
 
-void DeformableBody::resetPlasticFlow() {
-  ElasticForce* elastic = impl_->corotated();
-  if (!elastic) return;
-  elastic->body().dynamics->tets()->forgetFlow();
-  body().activate();
+Status DeformableBody::resetPlasticFlow() {
+  return impl_->changeMaterial("plasticity", [](ElasticForce& elastic) {
+    elastic.body().dynamics->tets()->forgetFlow();
+    return Status();
+  });
 }
 
 std::vector<double> DeformableBody::plasticStrains() const {
@@ -480,24 +506,28 @@ std::vector<double> DeformableBody::plasticStrains() const {
 }
 
 Status DeformableBody::setGrowth(double length) {
-  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(length); });
+  return impl_->changeShapes("growth", [&](auto& changes) { return changes.setGrowth(length); });
 }
 
 Status DeformableBody::setGrowth(const std::vector<double>& lengths) {
-  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowth(lengths); });
+  return impl_->changeShapes("growth", [&](auto& changes) { return changes.setGrowth(lengths); });
 }
 
 Status DeformableBody::setGrowthTensors(const std::vector<std::array<double, 9>>& deformations) {
-  return impl_->changeMaterial("growth", [&](auto& changes) { return changes.setGrowthTensors(deformations); });
+  return impl_->changeShapes("growth", [&](auto& changes) { return changes.setGrowthTensors(deformations); });
 }
 
 Status DeformableBody::setStiffnessScale(const std::vector<double>& factors) {
-  return impl_->changeMaterial("stiffness by tet", [&](auto& changes) { return changes.setStiffnessScale(factors); });
+  return impl_->changeSettings("stiffness by tet", [&](auto& changes) {
+    const double largest = factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
+    Status status = checkStiffness(body(), stiffest(impl_->material, largest));
+    return status.ok() ? changes.setStiffnessScale(factors) : status;
+  });
 }
 
 Result<int> DeformableBody::addMuscle(const Muscle& muscle) {
   int number = 0;
-  Status status = impl_->changeMaterial("a muscle", [&](auto& changes) {
+  Status status = impl_->changeShapes("a muscle", [&](auto& changes) {
     const Result<int> added = changes.addMuscle(muscle);
     if (added.ok()) number = added.value();
     return added.ok() ? Status() : added.status();
@@ -507,11 +537,13 @@ Result<int> DeformableBody::addMuscle(const Muscle& muscle) {
 }
 
 Status DeformableBody::setActivation(int muscle, double activation) {
-  return impl_->changeMaterial("a muscle", [&](auto& changes) { return changes.setActivation(muscle, activation); });
+  if (activation > 0.0 && this->activation(muscle) == activation) return {};
+  return impl_->changeShapes("a muscle", [&](auto& changes) { return changes.setActivation(muscle, activation); });
 }
 
 double DeformableBody::activation(int muscle) const {
-  return impl_->corotated()->body().changes.activation(muscle);
+  ElasticForce* elastic = impl_->corotated();
+  return elastic ? elastic->body().changes.activation(muscle) : 0.0;
 }
 
 Status DeformableBody::setGravity(const btVector3& gravity) {

@@ -230,7 +230,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   }
   components_.find(nodes(), pinned_ > 0, seconds);
   if (changed_) stiffnessOverInertia_ = components_.stiffnessOverInertia();
-  stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessOverInertia_;
+  stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessPerInertia();
   stiff_ = stiffnessNumber_ > kStiff;
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
   tets_->flowFor(seconds);
@@ -305,7 +305,7 @@ void BodyDynamics<S>::chooseScheme() {
 template <class S>
 double BodyDynamics<S>::carriedShare() const {
   constexpr double kLasting = 0.5, kLeastInImpact = 0.8;
-  const double number = lastSeconds_ * lastSeconds_ * std::max(stiffnessOverInertia_, gasFrequency_);
+  const double number = lastSeconds_ * lastSeconds_ * std::max(stiffnessPerInertia(), gasFrequency_);
   if (lasts()) return kLasting * std::min(1.0, kResolvable / number);
   return std::max(std::min(1.0, kResolvableImpact / number), kLeastInImpact);
 }
@@ -624,7 +624,7 @@ void BodyDynamics<S>::removeMomentum(const NodeImpulse& impulse, const std::vect
 template <class S>
 void BodyDynamics<S>::bendTurns() {
   assert(stage_ == Stage::Solvable || stage_ == Stage::Remembered);
-  if (!tets_ || lastSeconds_ * lastSeconds_ * stiffnessOverInertia_ < kFeelsTurns) return;
+  if (!tets_ || lastSeconds_ * lastSeconds_ * stiffnessPerInertia() < kFeelsTurns) return;
   components_.bendTurns(nodes(), lastSeconds_, matrix_.solution());
 }
 

@@ -270,6 +270,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
 
   NodeStates<S> nodes() const { return {matrix_, places_, velocities_}; }
   LoneSystem<S> system() { return {matrix_, *tets_, places_, rightSide_, alpha_, spread_}; }
+  /// Of the present rest shapes.
+  double stiffnessPerInertia() const { return stiffnessOverInertia_ * (tets_ ? tets_->stiffening() : 1.0); }
   double flowsInImpact(std::size_t component, double energy, double seconds) const;
   void findPressure(ParallelFor* threads);
   void setGasStiffness();

@@ -26,8 +26,8 @@ Status invalidChange(std::string message) {
 }
 
 Status sizeMismatch(const char* what, std::size_t given, std::size_t wanted) {
-  return {StatusCode::SizeMismatch, std::string(what) + ": " + std::to_string(given) + " values for " +
-                                        std::to_string(wanted) + " tets; give one for all, or one for each"};
+  return {StatusCode::SizeMismatch,
+          std::string(what) + ": " + std::to_string(given) + " values for " + std::to_string(wanted) + " tets"};
 }
 
 bool isGrowth(double factor) {
@@ -49,7 +49,8 @@ bool isGrowth(const RowMatrix& deformation) {
 /// The shape at which a muscle's tet is at rest.
 /// tension  over Young's modulus
 RowMatrix contracted(const Eigen::Vector3d& fibre, double tension, double poissonRatio) {
-  const double w = 2.0 * tension / (1.0 + std::sqrt(1.0 + 8.0 * poissonRatio * tension));
+  const double most = 1.0 / kLeastGrowth - 1.0;
+  const double w = std::min(2.0 * tension / (1.0 + std::sqrt(1.0 + 8.0 * poissonRatio * tension)), most);
   const double along = 1.0 / (1.0 + w), across = std::sqrt(1.0 + 2.0 * poissonRatio * w);
   const Eigen::Vector3d unit = fibre / std::sqrt(fibre.squaredNorm());
   return across * RowMatrix::Identity() + (along - across) * unit * unit.transpose();
@@ -157,8 +158,8 @@ Status MaterialChanges::setActivation(int muscle, double activation) {
 }
 
 double MaterialChanges::activation(int muscle) const {
-  assert(muscle >= 0 && static_cast<std::size_t>(muscle) < muscles_.size());
-  return muscles_[static_cast<std::size_t>(muscle)].activation;
+  const bool exists = muscle >= 0 && static_cast<std::size_t>(muscle) < muscles_.size();
+  return exists ? muscles_[static_cast<std::size_t>(muscle)].activation : 0.0;
 }
 
 bool MaterialChanges::givesShapes() const {
@@ -183,9 +184,18 @@ std::vector<std::array<double, 9>> MaterialChanges::givenShapes(double poissonRa
   return given;
 }
 
+double MaterialChanges::largestScale() const {
+  return stiffnessScale_.empty() ? 1.0 : *std::max_element(stiffnessScale_.begin(), stiffnessScale_.end());
+}
+
+template <class S>
+void MaterialChanges::applyShapesTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const {
+  tets.setGiven(givenShapes(poissonRatio, youngsModulus));
+}
+
 template <class S>
 void MaterialChanges::applyTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const {
-  tets.setGiven(givenShapes(poissonRatio, youngsModulus));
+  applyShapesTo(tets, poissonRatio, youngsModulus);
   tets.setPlasticity(plasticity_ ? &*plasticity_ : nullptr);
 }
 
@@ -200,7 +210,10 @@ void MaterialChanges::serialize(StateStream& stream) {
     stiffnessScale_.clear();
     return stream.fail();
   }
-  for (Group& group : muscles_) stream(group.activation);
+  for (Group& group : muscles_) {
+    stream(group.activation);
+    if (!(group.activation >= 0.0 && group.activation <= 1.0)) stream.fail();
+  }
   bool flows = plasticity_.has_value();
   stream(flows);
   if (!flows) return plasticity_.reset();
@@ -214,7 +227,8 @@ void MaterialChanges::serialize(StateStream& stream) {
   if (stream.restoring()) plasticity_ = now;
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) \
+#define TETSKIN_INSTANTIATE(Scalar)                                                                   \
+  template void MaterialChanges::applyShapesTo<Scalar>(CorotatedTets<Scalar>&, double, double) const; \
   template void MaterialChanges::applyTo<Scalar>(CorotatedTets<Scalar>&, double, double) const;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE

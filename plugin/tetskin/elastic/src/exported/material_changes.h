@@ -31,9 +31,14 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   const std::vector<double>& stiffnessScale() const { return stiffnessScale_; }
   Result<int> addMuscle(const Muscle& muscle);
   Status setActivation(int muscle, double activation);
-  double activation(int muscle) const;
+  double activation(int muscle) const;  ///< 0 for one that does not exist
   std::size_t muscleCount() const { return muscles_.size(); }
 
+  /// The largest factor of the stiffness; 1 without any.
+  double largestScale() const;
+  /// Gives the shapes at which they are at rest to tets of this material: growth and muscles.
+  template <class S>
+  void applyShapesTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const;
   /// Gives all of it to tets of this material, but for the stiffness: see `CorotatedTets::setStiffnessScale`.
   template <class S>
   void applyTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const;

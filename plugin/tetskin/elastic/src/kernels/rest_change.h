@@ -53,7 +53,7 @@ TETSKIN_INLINE WideMatrix<S, W> adjugateOf(const WideMatrix<S, W>& matrix) {
            a[0] * a[4] - a[1] * a[3]}};
 }
 
-/// Of x from 0.01 to 1, to the last digits (Halley's steps).
+/// Of x from 0.01 to 1 to the last digits, of 0.001 to a hundredth (Halley's steps).
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> cubeRoots(const Lanes<S, W>& x) {
   Lanes<S, W> root = S(1) / S(3) * x + S(2) / S(3);
@@ -145,8 +145,10 @@ TETSKIN_INLINE WideFlow<S, W> flowBy(const Lanes<S, W>& part, const WideMatrix<S
     left.at[k] = stretch.at[k] - part * (strain.at[k] - one * mean);
   }
   // The volume is kept; that of P, which rounding changes in many steps, is led back to 1.
-  const V drift = change.volume * determinantOf<S, W>(total) - S(1);
-  const V scale = cubeRoots<S, W>(volume / determinantOf<S, W>(left)) * (S(1) - S(1) / S(3) * drift);
+  const V drift =
+      smaller(larger(change.volume * determinantOf<S, W>(total) - S(1), all<S, W>(S(-0.5))), all<S, W>(S(0.5)));
+  const V scale =
+      cubeRoots<S, W>(larger(volume / determinantOf<S, W>(left), all<S, W>(S(1e-3)))) * (S(1) - S(1) / S(3) * drift);
   WideFlow<S, W> flow;
   for (int k = 0; k < 9; ++k) {
     left.at[k] *= scale;
@@ -245,7 +247,7 @@ TETSKIN_INLINE bool flowWhereYielding(const Work& work, std::size_t pack, std::s
   const V yield = wide<S, W>(yields), hardening = wide<S, W>(yields + kGroup);
   const V flowed = wide<S, W>(work.flowed + kGroup * at + static_cast<std::size_t>(lane));
   const V limit = yield + hardening * flowed;
-  squared = lost > S(0) ? V{} : squared;
+  squared = ((lost > S(0)) | !(shear > S(0))) ? V{} : squared;  // nor do those that repeat the last tet
   if (!anyAbove<S, W>(squared - limit * limit, S(0))) return false;
   findings.yields = true;
   if (work.flowShare == S(0)) return false;

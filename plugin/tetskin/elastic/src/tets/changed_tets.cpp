@@ -112,26 +112,34 @@ void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet)
   if (byTet.empty() && !isGiven_) return;
   makeChanges();
   forBoth([&](auto& packed) { packed.given.resize(9 * packed.flowed.size(), S(0)); });
+  double whole = 0.0, stiffer = 0.0;
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
     using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
-    const Matrix given = byTet.empty() ? Matrix(Matrix::Identity()) : meanOf(byTet, cageTets);
+    // Rounded as it is stored: what has flowed is found again exactly.
+    const Matrix given = byTet.empty() ? Matrix(Matrix::Identity())
+                                       : Matrix(meanOf(byTet, cageTets).template cast<S>().template cast<double>());
+    const double volume = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
+    whole += volume;
+    stiffer += volume * given.determinant() * given.inverse().squaredNorm() / 3.0;
     for (std::size_t point = 0; point < Pack::kPoints; ++point) {
       const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
       S* const change = &packed.changes[kChange * at + lane];
       S* const own = &packed.given[9 * kGroup * at + lane];
       const Matrix before = isGiven_ ? narrowMatrix(own) : Matrix(Matrix::Identity());
       // What stays has the same bits.
-      if (before == given.cast<S>().template cast<double>()) {
+      if (before == given) {
         if (!isGiven_) putMatrix(given, own);
         continue;
       }
-      const Matrix plastic = before * (Matrix::Identity() + narrowMatrix(change));  // P^-1
+      Matrix plastic = Matrix::Identity();  // P^-1
+      if (everFlowed_) plastic = before * (plastic + narrowMatrix(change));
       putMatrix(given, own);
       putMatrix(given.inverse() * plastic - Matrix::Identity(), change);
       change[9 * kGroup] = static_cast<S>(given.determinant());
     }
   });
   isGiven_ = !byTet.empty();
+  stiffening_ = isGiven_ ? stiffer / whole : 1.0;
 }
 
 template <class S>
@@ -141,8 +149,12 @@ void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity) {
     return;
   }
   makeChanges();
+  everFlowed_ = true;
   flowRate_ = plasticity->flowRate;
-  largestStrain_ = std::isfinite(plasticity->largestStrain) ? static_cast<S>(plasticity->largestStrain) : S(0);
+  largestStrain_ = S(0);
+  if (std::isfinite(plasticity->largestStrain)) {
+    largestStrain_ = std::max(static_cast<S>(plasticity->largestStrain), std::numeric_limits<S>::min());
+  }
   const double perStress = 1.0 / (std::sqrt(6.0) * mu_);
   forBoth([&](auto& packed) { packed.yields.assign(2 * kGroup * packed.packs.size(), S(0)); });
   yieldEnergy_ = 0.0;
@@ -201,7 +213,8 @@ std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets) {
     for (std::size_t point = 0; point < Pack::kPoints; ++point) {
       sum += static_cast<double>(packed.flowed[kGroup * (Pack::kPoints * (tet / kGroup) + point) + tet % kGroup]);
     }
-    for (const auto t : own) strains[t] = sum / static_cast<double>(Pack::kPoints);
+    // What repeats the last tet has not flowed.
+    for (const auto t : own) strains[t] = std::max(strains[t], sum / static_cast<double>(Pack::kPoints));
   });
   return strains;
 }
@@ -220,12 +233,14 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
       packed.given.clear();
       packed.yields.clear();
     });
-    isGiven_ = returns_ = yields_ = false;
+    isGiven_ = everFlowed_ = returns_ = yields_ = false;
+    stiffening_ = 1.0;
     return changed;
   }
   bool changed = false;
   makeChanges();
   stream(isGiven_);
+  stream(everFlowed_);
   stream(returns_);
   stream(yields_);
   stream(calmSeconds_);

@@ -203,9 +203,15 @@ void CorotatedTets<S>::ask(Query&& query) {
   const S flattest = flattest_, maxTurned = maxTurned_;
   const double turned = turned_;
   const S* const points = points_;
-  isAsked_ = true;
-  query();
-  isAsked_ = false;
+  struct Asking {
+    explicit Asking(bool& is) : is_(is) { is_ = true; }
+    ~Asking() { is_ = false; }
+    bool& is_;
+  };
+  {
+    const Asking asking(isAsked_);
+    query();
+  }
   linear_.rotations = linear;
   quadratic_.rotations = quadratic;
   flattest_ = flattest;

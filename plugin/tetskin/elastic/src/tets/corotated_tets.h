@@ -69,6 +69,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// Shapes at which the tets are at rest beside their plastic flow: deformation gradients from the first ones, by rows
   /// and tet of the cage; empty: the first ones. Plastic strains stay. Cost O(T)
   void setGiven(const std::vector<std::array<double, 9>>& byTet);
+  /// The stiffness of the given shapes over that of the first ones, in the mean.
+  double stiffening() const { return stiffening_; }
   /// plasticity  checked; null: nothing flows any more, and what has flowed stays. For this material: call it again
   ///             after `setMaterial`
   void setPlasticity(const Plasticity* plasticity);
@@ -76,7 +78,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   void forgetFlow();
   /// The seconds in which the next `forces` lets tets flow.
   void flowFor(double seconds);
-  bool flows() const { return !linear_.yields.empty() || !quadratic_.yields.empty(); }
+  bool flows() const { return !returns_ && (!linear_.yields.empty() || !quadratic_.yields.empty()); }
   /// The share of what is beyond the yield stress that flows in some seconds.
   double flowShare(double seconds) const;
   /// The energy of all tets if each is pulled until it yields for the first time.
@@ -145,12 +147,14 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double mu_ = 0.0;
   double youngsModulus_ = 0.0, flowRate_ = 0.0, yieldEnergy_ = 0.0;
   S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
-  bool isGiven_ = false;                 ///< shapes other than the first ones
-  bool yields_ = false;                  ///< some tet was beyond its yield surface in the last `forces`
-  bool returns_ = false;                 ///< since `forgetFlow`
-  double calmSeconds_ = 0.0;             ///< of a body that returns: since then nothing was beyond it
-  bool isAsked_ = false;                 ///< within a question, which lets nothing flow
-  S flatAlpha_ = 0;                      ///< of the matrix, where tets were flat; 0: no such value
+  double stiffening_ = 1.0;
+  bool isGiven_ = false;      ///< shapes other than the first ones
+  bool everFlowed_ = false;   ///< it may have
+  bool yields_ = false;       ///< some tet was beyond its yield surface in the last `forces`
+  bool returns_ = false;      ///< since `forgetFlow`
+  double calmSeconds_ = 0.0;  ///< of a body that returns: since then nothing was beyond it
+  bool isAsked_ = false;      ///< within a question, which lets nothing flow
+  S flatAlpha_ = 0;           ///< of the matrix, where tets were flat; 0: no such value
   S flattest_ = 1;
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle

@@ -25,7 +25,7 @@ namespace {
 using World = btDeformableMultiBodyDynamicsWorld;
 
 constexpr std::uint64_t kMagic = 0x544F485350414E54u;  // "TNAPSHOT"
-constexpr std::uint32_t kByteLayout = 6;               ///< increases with every change of the format
+constexpr std::uint32_t kByteLayout = 7;               ///< increases with every change of the format
 
 using VisitPart = void (*)(WorldStream&, DeformableSolver&);
 /// In the order of their dependences.

@@ -28,6 +28,8 @@ class ElasticForce : public InactiveForce {
   void setMaterial(const ElasticMaterial& material);
   /// Gives the tets what the owner has set in `body().changes`.
   void applyChanges() { body_.applyChanges(material_); }
+  /// The same of growth and muscles alone.
+  void applyShapes() { body_.applyShapes(material_); }
   /// Forgets all steps. The body must still have the tets and rest shapes with which it was created.
   void reset();
   /// The world that its body is about to enter.

@@ -185,6 +185,10 @@ void ForcedBody::setMaterial(const ElasticMaterial& material) {
   applyChanges(material);
 }
 
+void ForcedBody::applyShapes(const ElasticMaterial& material) {
+  changes.applyShapesTo(*dynamics->tets(), material.poissonRatio, material.youngsModulus);
+}
+
 void ForcedBody::applyChanges(const ElasticMaterial& material) {
   if (dynamics->tets()->setStiffnessScale(changes.stiffnessScale()))
     dynamics->setMaterial(elastic_detail::lameOf(material.youngsModulus, material.poissonRatio));

@@ -78,6 +78,8 @@ struct ForcedBody {
   void setMaterial(const ElasticMaterial& material);
   /// Gives the tets `changes`.
   void applyChanges(const ElasticMaterial& material);
+  /// Gives them growth and muscles alone.
+  void applyShapes(const ElasticMaterial& material);
   /// Forgets all steps, as if the body had just been built.
   void reset(const ElasticMaterial& material);
   /// True if the body still has the nodes, tets and rest shapes from which the data was derived.
