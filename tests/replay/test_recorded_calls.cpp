@@ -58,8 +58,6 @@ TEST(RecordedCalls, OfADeformableBody) {
           CALL((void)s.ball->setPressure(500)),
           CALL((void)s.ball->setGas(300, 1e3)),
           CALL(EXPECT_TRUE(s.ball->setPlasticity(clay(k)).ok())),
-          CALL(EXPECT_TRUE(s.ball->endPlasticity().ok())),
-          CALL(EXPECT_TRUE(s.ball->resetPlasticFlow().ok())),
           CALL(EXPECT_TRUE(s.ball->setGrowth(1.0 + 0.02 * (k + 1)).ok())),
           CALL(EXPECT_TRUE(s.ball->setStiffnessScale(stiffened(s.softBall())).ok())),
           CALL((void)s.ball->setPoissonRatio(0.45)),
