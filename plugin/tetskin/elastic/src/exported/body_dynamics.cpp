@@ -276,8 +276,8 @@ void BodyDynamics<S>::findPressure(ParallelFor* threads) {
 /// Within a tenth.
 template <class S>
 bool BodyDynamics<S>::isSpread() const {
-  constexpr double kNear = 0.1;
-  return std::abs(stretched_ - spread_) <= kNear * (std::max(stretched_, spread_) - 1.0);
+  constexpr double kShare = 0.1;
+  return std::abs(stretched_ - spread_) <= kShare * (std::max(stretched_, spread_) - 1.0);
 }
 
 template <class S>
