@@ -9,6 +9,7 @@
 
 namespace tetskin {
 
+/// ln(2).
 constexpr double kLog2 = 0.693147180559945309;
 
 /// ln(x) for x > 0, to 1e-14: with x = m 2^k, 2 artanh((m - 1) / (m + 1)) + k ln(2).
