@@ -37,7 +37,7 @@ void refineFractions(const Cage& coarse, Cage& cage) {
   }
 }
 
-/// By the weights of its centroid, the mass of each cell's material goes to the nodes of its tet: that keeps the centre of mass.
+/// By the weights of its centroid, each cell's mass goes to the nodes of its tet: that keeps the centre of mass.
 std::vector<double> massesOf(const Cage& coarse, const Cage& cage) {
   std::vector<double> masses(cage.mesh.nodeCount(), 0.0);
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {

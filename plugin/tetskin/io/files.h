@@ -63,7 +63,8 @@ TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileRe
 ///
 /// name    of a property of the vertices of a `.ply` file, or of an attribute `_NAME` of one number of a `.gltf`,
 ///         `.glb` or `.vrm` file, case as there; or `red`, `green`, `blue` or `alpha`, of the vertex colours of these
-///         (COLOR_0) and of an `.obj` file (`v x y z r g b`): from 0 to 1, also if the file has integers
+///         (COLOR_0) and of an `.obj` file (`v x y z r g b`): from 0 to 1, also if the file has integers;
+///         negative integers stay negative
 /// Cost    that of `loadMesh`
 /// Errors  those of `loadMesh`; InvalidOption if the file has no such map (the message names those that it has), or
 ///         for only some of its vertices, or two for some; UnsupportedFormat for other formats

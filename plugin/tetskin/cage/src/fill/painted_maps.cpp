@@ -51,7 +51,7 @@ Status checkMap(const TriangleMesh& mesh, const std::vector<double>& values, boo
   return {};
 }
 
-/// The values, with that of some used vertex at all that no triangle uses.
+/// The values; vertices that no triangle uses get that of one that is used.
 std::vector<double> ofUsed(const TriangleMesh& mesh, std::vector<double> values) {
   const std::vector<char> used = usedVertices(mesh);
   const double some = values[static_cast<std::size_t>(mesh.triangles[0][0])];
@@ -151,8 +151,8 @@ double sumOf(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Volume of each tet that is filled.
-/// least  fraction of it that is always
+/// The filled part of each tet's volume.
+/// least  fraction that counts as filled in any tet
 std::vector<double> filledVolumes(const Cage& cage, double least) {
   std::vector<double> volumes;
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
