@@ -532,6 +532,12 @@ export interface Body extends Thing {
    */
   setGrowth(growth: number | Numbers): void;
   /**
+   * Multiplies the stiffness of each tet, as it was when the body was made. A large change in one step is a blow to a
+   * body under load.
+   * @param factors  one for each tet, 1e-6 to 1e6
+   */
+  setStiffnessScale(factors: Numbers): void;
+  /**
    * Adds a muscle, which is relaxed.
    * @param tets    of the cage
    * @param fibres  directions, rest space: one, or one for each of these tets, three numbers each

@@ -205,6 +205,44 @@ TEST(PaintedMaps, BecomeThoseOfQuadraticTets) {
     EXPECT_EQ(quadratic.value().paintedStiffness[t], filled.paintedStiffness[t / kSubTets]);
 }
 
+TEST(PaintedMaps, GiveEveryNodeOfACageWithoutMassesOne) {
+  const TriangleMesh bar = barSurface(4);
+  Cage cage(makeBox({8, 2, 2}, {4, 1, 1}));
+  cage.mesh.nodes.emplace_back(9, 9, 9);  // that no tet uses
+  const PaintedMaps maps{{}, halves(bar, 4, 2.5)};
+  for (const double filled : {1.0, 0.0}) {
+    cage.volumeFraction.assign(cage.mesh.tetCount(), 0.0);  // those around the last nodes stay empty
+    for (std::size_t t = 0; t < cage.mesh.tetCount() / 2; ++t) cage.volumeFraction[t] = filled;
+    Cage painted = cage;
+    ASSERT_TRUE(paintCage(painted, bar, maps).ok());
+    EXPECT_TRUE(validate(painted).ok()) << validate(painted).message;
+    double integral = 0.0;
+    for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
+      const double share = filled > 0.0 ? cage.volumeFraction[t] : 1.0;  // all empty counts as full
+      integral += share * painted.paintedDensity[t] * std::abs(signedVolume(cornersOf(cage.mesh, cage.mesh.tets[t])));
+    }
+    EXPECT_NEAR(massOf(painted), integral, 1e-12);
+  }
+}
+
+TEST(PaintedMaps, DoNotDependOnVerticesThatNoTriangleUses) {
+  const TriangleMesh bar = barSurface(4);
+  const Cage plain = paintedCage(bar, {}, {}, 300);
+  TriangleMesh more = bar;
+  more.positions.emplace_back(2.0, 0.5, 0.5);
+  const auto with = [](std::vector<double> values, double last) {
+    values.push_back(last);
+    return values;
+  };
+  const std::vector<double> ones(bar.vertexCount(), 1.0), painted = halves(bar, 4, 2.5);
+  Cage cage = plain, same = plain;
+  ASSERT_TRUE(paintCage(cage, more, {with(ones, -3.0), with(ones, 7.0)}).ok());
+  EXPECT_TRUE(sameCage(cage, plain));
+  ASSERT_TRUE(paintCage(cage, more, {with(painted, -3.0), with(painted, 1e9)}).ok());
+  ASSERT_TRUE(paintCage(same, bar, {painted, painted}).ok());
+  EXPECT_TRUE(sameCage(cage, same));
+}
+
 TEST(PaintedMaps, ReplaceThoseBefore) {
   const TriangleMesh bar = barSurface(8);
   const Cage plain = paintedCage(bar, {}, {});
@@ -249,6 +287,7 @@ TEST(PaintedMaps, BadOnesAreRefusedAndNothingChanges) {
   refuse({{}, values}, StatusCode::InvalidOption, "the density map");
   values[7] = std::numeric_limits<double>::quiet_NaN();
   refuse({values, {}}, StatusCode::NonFinite, "at vertex 7");
+  refuse({{}, std::vector<double>(ball.vertexCount(), 5e-324)}, StatusCode::InvalidOption, "a mass that double");
   refuse({{1.0, 2.0}, {}}, StatusCode::SizeMismatch, "the stiffness map has 2 values, but the mesh has");
   EXPECT_EQ(spreadMap(plain, ball, values).status().code, StatusCode::NonFinite);
   values[7] = -1.0;

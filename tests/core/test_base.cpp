@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
+#include <tetskin/core/src/base/arithmetic/logarithms.h>
 #include <tetskin/core/src/base/hash.h>
 #include <tetskin/core/src/base/lists.h>
 #include <tetskin/core/src/base/median.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -51,6 +53,16 @@ TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
   EXPECT_EQ(median({7.0}), 7.0);
   EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(median({4.0, 1.0, 3.0, 2.0}), 3.0);
+}
+
+TEST(Logarithms, AgreeWithThoseOfTheLibrary) {
+  for (const double x : {1e-320, 1e-300, 1e-9, 0.3, 0.7, 1.0, 1.4, 2.0, 1e5, 1e300}) {
+    const double exact = std::log(x);
+    EXPECT_NEAR(portableLog(x), exact, 1e-14 * (1 + std::abs(exact)));
+    EXPECT_NEAR(portableExp(exact), std::exp(exact), 1e-14 * (1 + std::abs(exact)) * std::exp(exact)) << x;
+  }
+  EXPECT_EQ(portableLog(1.0), 0.0);
+  EXPECT_EQ(portableExp(0.0), 1.0);
 }
 
 }  // namespace

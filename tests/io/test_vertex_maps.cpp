@@ -43,6 +43,10 @@ TEST(VertexMaps, OfAPlyFileAreItsProperties) {
   expectMap(mapOf("m.ply", kPly, "stiff"), {1, 4, 0.5});
   expectMap(mapOf("m.ply", kPly, "red"), {1, 0, 0.2});
   expectMap(mapOf("m.ply", kPly, "blue"), {0.5, 0.25, 1});
+  std::string text = kPly;
+  text.replace(text.find("uchar red"), 9, "short red");
+  text.replace(text.find("255"), 3, "32767");
+  expectMap(mapOf("m.ply", text, "red"), {1, 0, 51 / 32767.0});
 }
 
 TEST(VertexMaps, OfAnObjFileAreItsColours) {
@@ -95,6 +99,13 @@ TEST(VertexMaps, OfAGltfFileAreItsAttributes) {
   const int few = document.accessor(raw<float>({1, 4}), kFloat, 2, "SCALAR");
   expectRefused(mapOf("m.gltf", text(few), "_STIFF"), StatusCode::Malformed, {"'_STIFF'", "positions"});
   expectRefused(mapOf("m.gltf", text(99), "_STIFF"), StatusCode::IndexOutOfRange, {"accessor 99"});
+  const auto two = [&](int first, int second) {
+    const auto one = [](int map) { return R"({"attributes":{"POSITION":0,"_STIFF":)" + std::to_string(map) + "}}"; };
+    return document.json(meshOf(one(first) + "," + one(second)));
+  };
+  expectMap(mapOf("m.gltf", two(stiff, stiff), "_STIFF"), {1, 4, 0.5});
+  const int other = document.accessor(raw<float>({2, 4, 0.5}), kFloat, 3, "SCALAR");
+  expectRefused(mapOf("m.gltf", two(stiff, other), "_STIFF"), StatusCode::InvalidOption, {"two maps '_STIFF'"});
 }
 #endif
 

@@ -591,6 +591,12 @@ test("tets grow, contract and flow", () => {
   body.setPlasticity(null);
   assert.deepEqual([...new Set(body.plasticStrains)], [0]);
   const refused = (call, code, words) => assert.throws(call, failure(code, words));
+  const snapshot = world.save();
+  body.setStiffnessScale(new Float64Array(tets).fill(4));
+  assert.notDeepEqual(world.save(), snapshot);
+  refused(() => body.setStiffnessScale([1]), "SizeMismatch", /stiffnessScale/);
+  refused(() => body.setStiffnessScale(new Float64Array(tets)), "InvalidOption", /1e-6 to 1e6/);
+  refused(() => body.setStiffnessScale(4), "InvalidArgument", /factors/);
   refused(() => body.setGrowth(0), "InvalidOption", /0.05 to 20/);
   refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidArgument", /no speed/);
   refused(() => body.setPlasticity({}), "InvalidArgument", /yieldStress/);

@@ -49,6 +49,20 @@ TEST(BodiesOfCages, HaveItsMassesTimesTheDensity) {
   for (std::size_t n = 0; n < masses.size(); ++n) EXPECT_NEAR(masses[n] / (kDensity * cage.masses[n]), 1.0, 1e-6);
 }
 
+TEST(BodiesOfCages, AreByDefaultAsStiffAsTheirPaintedDensityIsHigh) {
+  const Cage plain = plates();
+  TetskinWorld world;
+  const auto stiffness = [&](const Cage& cage) { return addedCage(world, cage, dense())->youngsModulus(); };
+  const auto painted = [&](Cage cage, double density) {
+    cage.paintedDensity.assign(cage.mesh.tetCount(), density);
+    for (double& mass : cage.masses) mass *= density;
+    return cage;
+  };
+  const double unit = stiffness(painted(plain, 1.001));  // by the tets' volume fractions
+  EXPECT_NEAR(unit / stiffness(plain), 1.0, 0.01);
+  EXPECT_NEAR(stiffness(painted(plain, 4.004)) / unit, 4.0, 1e-4);
+}
+
 TEST(BodiesOfCages, DistributeAGivenMassAsItsMasses) {
   const Cage cage = plates();
   SoftBodyOptions options;

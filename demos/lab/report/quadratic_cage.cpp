@@ -37,17 +37,18 @@ void refineFractions(const Cage& coarse, Cage& cage) {
   }
 }
 
-/// By the weights of its centroid, each cell's material goes to the nodes of its tet: that keeps the centre of mass.
+/// By the weights of its centroid, each cell's mass goes to the nodes of its tet: that keeps the centre of mass.
 std::vector<double> massesOf(const Cage& coarse, const Cage& cage) {
   std::vector<double> masses(cage.mesh.nodeCount(), 0.0);
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
     const TetCorners corners = cornersOf(cage.mesh, cage.mesh.tets[t]);
     const BarycentricMap weightsOf(corners);
     const double volume = std::abs(signedVolume(corners)) / kCells;
+    const double density = coarse.paintedDensity.empty() ? 1.0 : coarse.paintedDensity[t / kSubTets];
     std::size_t cell = 0;
     for (const TetCorners& small : refinedTet(corners)) {
       const Eigen::Vector4d weights = weightsOf(0.25 * (small[0] + small[1] + small[2] + small[3]));
-      const double mass = volume * fractionOf(coarse, t, cell++);
+      const double mass = density * volume * fractionOf(coarse, t, cell++);
       for (int k = 0; k < 4; ++k) masses[cage.mesh.tets[t][k]] += mass * weights[k];
     }
   }
@@ -86,6 +87,8 @@ Cage quadraticCage(const Cage& coarse, const TriangleMesh& mesh) {
     for (int k = 0; k < static_cast<int>(kSubTets); ++k) {
       if (!coarse.component.empty()) cage.component.push_back(coarse.component[t]);
       if (!coarse.sourceTet.empty()) cage.sourceTet.push_back(static_cast<int>(kSubTets) * coarse.sourceTet[t] + k);
+      if (!coarse.paintedStiffness.empty()) cage.paintedStiffness.push_back(coarse.paintedStiffness[t]);
+      if (!coarse.paintedDensity.empty()) cage.paintedDensity.push_back(coarse.paintedDensity[t]);
       if (!coarse.stiffnessFactor.empty()) cage.stiffnessFactor.push_back(coarse.stiffnessFactor[t]);
     }
   }

@@ -294,6 +294,9 @@ class Body extends Member {
     const numbers = typeof growth === "number" ? [growth] : numbersOf(growth, "growth");
     this.withMemory([doubles(numbers)], at => this.core.setGrowth(own(this), at));
   }
+  setStiffnessScale(factors) {
+    this.withMemory([doubles(numbersOf(factors, "factors"))], at => this.core.setStiffnessScale(own(this), at));
+  }
   addMuscle(tets, fibres, stress = 3e5) {
     const arrays = [indices(numbersOf(tets, "tets")), doubles(numbersOf(fibres, "fibres", 3))];
     return new Muscle(this, this.withMemory(arrays, (...places) => {

@@ -41,6 +41,10 @@ void setGrowth(BodyHandle& body, Doubles growth) {
   check(own.setGrowthTensors(tensors));
 }
 
+void setStiffnessScale(BodyHandle& body, Doubles factors) {
+  check(alive(*body.state).setStiffnessScale(std::vector<double>(factors.begin(), factors.end())));
+}
+
 int addMuscle(BodyHandle& body, Indices tets, Doubles fibres, double stress) {
   Muscle muscle;
   muscle.tets.assign(tets.begin(), tets.end());
@@ -66,6 +70,7 @@ EMSCRIPTEN_BINDINGS(material_changes) {
   expose<&resetPlasticFlow>("resetPlasticFlow");
   expose<&plasticStrains>("plasticStrains");
   expose<&setGrowth>("setGrowth");
+  expose<&setStiffnessScale>("setStiffnessScale");
   expose<&addMuscle>("addMuscle");
   expose<&setActivation>("setActivation");
   expose<&activation>("activation");

@@ -132,8 +132,7 @@ void bindMeshes(nb::module_& module) {
       },
       "path"_a, "name"_a,
       "Reads a map painted on the mesh of load_mesh: (vertices,) float64. name: a property of a .ply file's vertices; "
-      "an "
-      "attribute, such as _STIFFNESS, of a glTF file; or red, green, blue or alpha, of vertex colours of these and "
+      "an attribute, such as _STIFFNESS, of a glTF file; or red, green, blue or alpha, of vertex colours of these and "
       ".obj, from 0 to 1.");
   module.def(
       "load_mesh", loaded, "path"_a,

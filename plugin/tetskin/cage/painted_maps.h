@@ -28,8 +28,8 @@ struct SpreadMap {
 /// averaged over the parts of each tet that the cage's volume fractions count as material. Where surfaces of two
 /// regions are near to each other, a point in one of them has a value of its own surface.
 ///
-/// Vertices at one position, as at texture seams, get their mean first; vertices that no triangle uses do not count.
-/// If all values are equal, the results are exactly this value.
+/// Vertices at one position, as at texture seams, get their mean first; vertices that no triangle uses do not count,
+/// but their values must be finite. If all values are equal, the results are exactly this value.
 ///
 /// To fix what is painted, use the nodes of at least 0.5 of a mask of 0 and 1.
 ///
@@ -51,13 +51,14 @@ struct PaintedMaps {
 
 /// Spreads maps (see `spreadMap`) into a cage's `paintedStiffness`, `paintedDensity` and `masses`. Each replaces the
 /// one that was painted before; a map of 1 removes it, an empty one leaves it. Masses become those of the painted
-/// density: their sum is its integral over the tets' material. A cage without masses gets them, in proportion to the
-/// tets' material. Stiffness factors stay as they are, so call `calibrate` after this. `createCage` does this with the
-/// maps in its options.
+/// density: their sum is its integral over the tets' material. A cage without masses gets them, by the tets' material;
+/// nodes around which there is none get a little. Stiffness factors stay as they are, so call `calibrate` after this.
+/// `createCage` does this with the maps in its options.
 ///
 /// cage    as for `spreadMap`; unchanged on an error
 /// Cost    that of `spreadMap` for each map
-/// Errors  those of `spreadMap`; messages name the map
+/// Errors  those of `spreadMap`, and InvalidOption for a density that makes a mass 0 or infinite; messages name the
+///         map
 TETSKIN_CAGE_API Status paintCage(Cage& cage, const TriangleMesh& mesh, const PaintedMaps& maps);
 
 }  // namespace tetskin

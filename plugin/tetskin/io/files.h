@@ -62,13 +62,12 @@ TETSKIN_IO_API Result<TriangleMesh> loadMesh(const std::string& path, MeshFileRe
 /// Reads a map painted on a mesh: one number per vertex, in the order of `loadMesh`, for `paintCage` and others.
 ///
 /// name    of a property of the vertices of a `.ply` file, or of an attribute `_NAME` of one number of a `.gltf`,
-/// `.glb`
-///         or `.vrm` file, case as there; or `red`, `green`, `blue` or `alpha`, of the vertex colours of these
-///         (COLOR_0) and of an `.obj` file (`v x y z r g b`): from 0 to 1, also if the file has integers
+///         `.glb` or `.vrm` file, case as there; or `red`, `green`, `blue` or `alpha`, of the vertex colours of these
+///         (COLOR_0) and of an `.obj` file (`v x y z r g b`): from 0 to 1, also if the file has integers;
+///         negative integers stay negative
 /// Cost    that of `loadMesh`
-/// Errors  those of `loadMesh`; InvalidOption if the file has no such map, or only for some of its vertices: the
-/// message
-///         names those that it has; UnsupportedFormat for other formats
+/// Errors  those of `loadMesh`; InvalidOption if the file has no such map (the message names those that it has), or
+///         for only some of its vertices, or two for some; UnsupportedFormat for other formats
 TETSKIN_IO_API Result<std::vector<double>> loadVertexMap(const std::string& path, const std::string& name);
 
 /// The parts of a tet file that were not read as they are. Also written if reading fails, up to the point of failure.

@@ -17,7 +17,7 @@
 //   splitLattice     duplicates joined where they are connected        split_lattice
 //   fitCage          pull the boundary towards the surface             cage_fit
 //   fillOf           volume fraction of each tet, and masses           cage_fill
-//   paintCage        maps of the vertices, spread inside                     painted_maps
+//   paintCage        maps of the vertices, spread inside                    painted_maps
 //   embed            vertices that no triangle uses, in what was built for the others
 #include <tetskin/cage/create_cage.h>
 #include <tetskin/cage/src/fill/cage_fill.h>

@@ -54,12 +54,20 @@ double medianSquaredFrequency(const TetMesh& cage, const SoftBodyOptions& option
   return median(std::move(stiffness));
 }
 
+/// Volume of the material. A cage's masses are those of a density of 1, unless a density is painted.
+double materialVolume(const Cage& cage) {
+  if (cage.paintedDensity.empty() && !cage.masses.empty())
+    return std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
+  double filled = 0.0;
+  for (std::size_t t = 0; t < cage.volumeFraction.size(); ++t)
+    filled += cage.volumeFraction[t] * std::abs(signedVolume(cornersOf(cage.mesh, cage.mesh.tets[t])));
+  return !cage.masses.empty() && filled > 0.0 ? filled : totalVolume(cage.mesh);
+}
+
 /// Density times gravity times size: the unit of relative stiffness.
 double weightPressure(const Cage& cage, const std::vector<double>& masses, double gravity) {
   assert(masses.size() == cage.mesh.nodeCount());
-  const double volume =
-      cage.masses.empty() ? totalVolume(cage.mesh) : std::accumulate(cage.masses.begin(), cage.masses.end(), 0.0);
-  const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / volume;
+  const double density = std::accumulate(masses.begin(), masses.end(), 0.0) / materialVolume(cage);
   // Without gravity nothing sags; the earth's gravity then sets the scale.
   constexpr double kEarth = 9.81;
   return density * (gravity > 0.0 ? gravity : kEarth) * boundingBox(cage.mesh.nodes).sizes().maxCoeff();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/cage/src/fill/painted_maps.h>
+#include <tetskin/core/src/base/arithmetic/logarithms.h>
 #include <tetskin/core/src/base/mesh/tet_geometry.h>
 #include <tetskin/core/src/base/mesh/triangle_bvh.h>
 #include <tetskin/core/src/base/mesh/uniform_refinement.h>
+#include <tetskin/core/src/base/mesh/used_vertices.h>
 #include <tetskin/core/src/base/mesh/weld.h>
 #include <tetskin/core/src/base/progress.h>
 
@@ -19,10 +21,10 @@ namespace {
 
 /// Where means are arithmetic.
 double scaled(double value, MapMean mean) {
-  return mean == MapMean::Geometric ? std::log(value) : value;
+  return mean == MapMean::Geometric ? portableLog(value) : value;
 }
 double unscaled(double value, MapMean mean) {
-  return mean == MapMean::Geometric ? std::exp(value) : value;
+  return mean == MapMean::Geometric ? portableExp(value) : value;
 }
 
 std::string counted(std::size_t count, const char* what) {
@@ -38,21 +40,30 @@ Status checkMap(const TriangleMesh& mesh, const std::vector<double>& values, boo
                                           std::to_string(mesh.vertexCount()) +
                                           " vertices; pass one value for each, copies at seams included"};
   }
-  const auto bad = std::find_if(values.begin(), values.end(),
-                                [&](double value) { return !std::isfinite(value) || (positive && !(value > 0.0)); });
-  if (bad == values.end()) return {};
-  const std::string named = name + " is " + std::to_string(*bad) + " at vertex " + std::to_string(bad - values.begin());
-  if (!std::isfinite(*bad)) return {StatusCode::NonFinite, named + "; pass finite values"};
-  return {StatusCode::InvalidOption,
-          named + ", but must be above 0; pass a small value, such as 0.01, where there is hardly any"};
+  const std::vector<char> used = usedVertices(mesh);
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (std::isfinite(values[v]) && !(positive && used[v] && !(values[v] > 0.0))) continue;
+    const std::string named = name + " is " + std::to_string(values[v]) + " at vertex " + std::to_string(v);
+    if (!std::isfinite(values[v])) return {StatusCode::NonFinite, named + "; pass finite values"};
+    return {StatusCode::InvalidOption,
+            named + ", but must be above 0; pass a small value, such as 0.01, where there is hardly any"};
+  }
+  return {};
+}
+
+/// The values; vertices that no triangle uses get that of one that is used.
+std::vector<double> ofUsed(const TriangleMesh& mesh, std::vector<double> values) {
+  const std::vector<char> used = usedVertices(mesh);
+  const double some = values[static_cast<std::size_t>(mesh.triangles[0][0])];
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (!used[v]) values[v] = some;
+  }
+  return values;
 }
 
 /// The values, with the mean of all vertices at one position in each of these; for the given mean of values.
 std::vector<double> welded(const TriangleMesh& mesh, const std::vector<double>& values, MapMean mean) {
-  std::vector<char> isUsed(values.size(), 0);
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    for (const int v : triangle) isUsed[static_cast<std::size_t>(v)] = 1;
-  }
+  const std::vector<char> isUsed = usedVertices(mesh);
   const std::vector<std::uint32_t> first = weldCoincident(viewOf(mesh.positions));
   std::vector<double> sums(values.size(), 0.0), counts(values.size(), 0.0);
   for (std::size_t v = 0; v < values.size(); ++v) {
@@ -136,14 +147,25 @@ class MapInside {
   NearestPoint nearest_;
 };
 
-/// Volume of the material by tet.
-std::vector<double> materialOf(const Cage& cage) {
+double sumOf(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// The filled part of each tet's volume.
+/// least  fraction that counts as filled in any tet
+std::vector<double> filledVolumes(const Cage& cage, double least) {
   std::vector<double> volumes;
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
-    const double fraction = cage.volumeFraction.empty() ? 1.0 : cage.volumeFraction[t];
+    const double fraction = cage.volumeFraction.empty() ? 1.0 : std::max(cage.volumeFraction[t], least);
     volumes.push_back(fraction * std::abs(signedVolume(cornersOf(cage.mesh, cage.mesh.tets[t]))));
   }
   return volumes;
+}
+
+/// Volume of the material by tet; a cage in which all tets are empty counts as full.
+std::vector<double> materialOf(const Cage& cage) {
+  std::vector<double> material = filledVolumes(cage, 0.0);
+  return sumOf(material) > 0.0 ? material : filledVolumes(cage, 1.0);
 }
 
 /// Means of tets around each node, by their material; of all tets for a node without any.
@@ -164,8 +186,9 @@ std::vector<double> nodeMeans(const Cage& cage, const std::vector<double>& ofTet
   return sums;
 }
 
-/// values  checked
-SpreadMap spread(const Cage& cage, const TriangleMesh& mesh, const std::vector<double>& values, MapMean mean) {
+/// ofAll  values of all vertices, checked
+SpreadMap spread(const Cage& cage, const TriangleMesh& mesh, const std::vector<double>& ofAll, MapMean mean) {
+  const std::vector<double> values = ofUsed(mesh, ofAll);
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   SpreadMap map;
   if (!(*least < *greatest)) {
@@ -190,35 +213,44 @@ SpreadMap spread(const Cage& cage, const TriangleMesh& mesh, const std::vector<d
 /// The values by tet; none for a map of 1.
 std::vector<double> factorsOf(const Cage& cage, const TriangleMesh& mesh, const std::vector<double>& values,
                               MapMean mean) {
-  if (std::all_of(values.begin(), values.end(), [](double value) { return value == 1.0; })) return {};
-  return spread(cage, mesh, values, mean).tets;
+  std::vector<double> factors = spread(cage, mesh, values, mean).tets;
+  const bool none = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
+  return none ? std::vector<double>() : factors;
+}
+
+/// Masses of a cage that has none, for a density of 1: an empty tet gets a share that holds its nodes, a node that no
+/// tet uses the least of all. Their sum is the volume of the material.
+std::vector<double> massesByVolume(const Cage& cage) {
+  const std::vector<double> volumes = filledVolumes(cage, Limits::kMinVolumeFraction);
+  std::vector<double> masses(cage.mesh.nodeCount(), 0.0);
+  for (std::size_t t = 0; t < volumes.size(); ++t) {
+    for (const int n : cage.mesh.tets[t]) masses[static_cast<std::size_t>(n)] += 0.25 * volumes[t];
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const double mass : masses) least = mass > 0.0 ? std::min(least, mass) : least;
+  for (double& mass : masses) mass = std::max(mass, least);
+  const double factor = sumOf(materialOf(cage)) / sumOf(masses);
+  for (double& mass : masses) mass *= factor;
+  return masses;
 }
 
 /// Scales masses for a density of 1 to a painted one, or back; their sum becomes the integral of the density exactly.
 std::vector<double> massesFor(const Cage& cage, const std::vector<double>& before, const std::vector<double>& density) {
-  std::vector<double> masses = cage.masses;
+  std::vector<double> masses = cage.masses.empty() ? massesByVolume(cage) : cage.masses;
   const std::vector<double> material = materialOf(cage);
   const auto integral = [&](const std::vector<double>& ofTets) {
     double sum = 0.0;
     for (std::size_t t = 0; t < material.size(); ++t) sum += material[t] * (ofTets.empty() ? 1.0 : ofTets[t]);
     return sum;
   };
-  const auto sumOf = [&] { return std::accumulate(masses.begin(), masses.end(), 0.0); };
-  if (masses.empty()) {
-    masses.assign(cage.mesh.nodeCount(), 0.0);
-    for (std::size_t t = 0; t < material.size(); ++t) {
-      for (const int n : cage.mesh.tets[t]) masses[static_cast<std::size_t>(n)] += 0.25 * material[t];
-    }
-  }
-  if (!(integral({}) > 0.0)) return masses;
-  const double wanted = sumOf() * integral(density) / integral(before);
+  const double wanted = sumOf(masses) * integral(density) / integral(before);
   const std::vector<double> oldOnes = before.empty() ? before : nodeMeans(cage, before);
   const std::vector<double> newOnes = density.empty() ? density : nodeMeans(cage, density);
   for (std::size_t n = 0; n < masses.size(); ++n) {
     if (!oldOnes.empty()) masses[n] /= oldOnes[n];
     if (!newOnes.empty()) masses[n] *= newOnes[n];
   }
-  const double factor = wanted / sumOf();
+  const double factor = wanted / sumOf(masses);
   for (double& mass : masses) mass *= factor;
   return masses;
 }
@@ -247,12 +279,18 @@ Result<SpreadMap> spreadMap(const Cage& cage, const TriangleMesh& mesh, const st
 Status paintCage(Cage& cage, const TriangleMesh& mesh, const PaintedMaps& maps) {
   if (Status status = check(cage, mesh); !status.ok()) return status;
   if (Status status = cage_detail::checkMaps(mesh, maps); !status.ok()) return status;
-  if (!maps.stiffness.empty()) cage.paintedStiffness = factorsOf(cage, mesh, maps.stiffness, MapMean::Geometric);
-  if (maps.density.empty()) return {};
-  std::vector<double> density = factorsOf(cage, mesh, maps.density, MapMean::Arithmetic);
-  if (density.empty() && cage.paintedDensity.empty()) return {};
-  cage.masses = massesFor(cage, cage.paintedDensity, density);
+  std::vector<double> stiffness = cage.paintedStiffness, density = cage.paintedDensity, masses = cage.masses;
+  if (!maps.stiffness.empty()) stiffness = factorsOf(cage, mesh, maps.stiffness, MapMean::Geometric);
+  if (!maps.density.empty()) density = factorsOf(cage, mesh, maps.density, MapMean::Arithmetic);
+  if (!maps.density.empty() && !(density.empty() && cage.paintedDensity.empty()))
+    masses = massesFor(cage, cage.paintedDensity, density);
+  if (!std::all_of(masses.begin(), masses.end(), [](double mass) { return mass > 0.0 && std::isfinite(mass); })) {
+    return {StatusCode::InvalidOption,
+            "the density map gives a node a mass that double cannot hold; pass densities relative to that of the body"};
+  }
+  cage.paintedStiffness = std::move(stiffness);
   cage.paintedDensity = std::move(density);
+  cage.masses = std::move(masses);
   return {};
 }
 

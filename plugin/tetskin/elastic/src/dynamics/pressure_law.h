@@ -6,27 +6,13 @@
 // stiffness.
 #pragma once
 
+#include <tetskin/core/src/base/arithmetic/logarithms.h>
 #include <tetskin/core/src/base/state/state_stream.h>
 
 #include <cmath>
 #include <cstdint>
 
 namespace tetskin::elastic_detail {
-
-/// ln(x) for x > 0, the same on every processor, to 1e-14: with x = m 2^k, 2 artanh((m - 1) / (m + 1)) + k ln(2).
-inline double portableLog(double x) {
-  constexpr double kLog2 = 0.693147180559945309;
-  int exponent = 0;
-  double m = std::frexp(x, &exponent);
-  if (m < 0.70710678) {
-    m *= 2.0;
-    --exponent;
-  }
-  const double z = (m - 1.0) / (m + 1.0), square = z * z;
-  double sum = 0.0;
-  for (int k = 17; k >= 1; k -= 2) sum = sum * square + 1.0 / k;
-  return 2.0 * z * sum + exponent * kLog2;
-}
 
 struct PressureLaw {
   enum class Kind : std::uint8_t { None, Constant, Gas };

@@ -49,6 +49,11 @@ class GltfReader {
  private:
   /// The accessors of a primitive's vertices, -1 for none; primitives with the same accessors share vertices.
   using Vertices = std::array<int, 3>;
+  /// The wanted map of a part's vertices.
+  struct PartMap {
+    int accessor = -1;  ///< -1: it has none
+    std::vector<double> values;
+  };
   struct Visit {
     int node = 0;
     Eigen::Affine3d toParent = Eigen::Affine3d::Identity();  ///< from the parent's space to the scene's
@@ -60,7 +65,7 @@ class GltfReader {
   Status addMesh(int mesh, const std::string& nodeName, bool skinned, const Eigen::Affine3d& toScene);
   Status addVertices(const Vertices& vertices, const Eigen::Affine3d& toScene, ScenePart& part);
   Status addTriangles(const tinygltf::Primitive& primitive, bool mirrored, ScenePart& part);
-  Status addMap(const tinygltf::Primitive& primitive, std::size_t vertices, std::vector<double>& values);
+  Status addMap(const tinygltf::Primitive& primitive, std::size_t vertices, PartMap& map);
   std::string materialOf(const tinygltf::Primitive& primitive) const;
 
   const std::string& path_;
@@ -70,7 +75,7 @@ class GltfReader {
   std::vector<Visit> stack_;
   std::vector<bool> visited_;  ///< by node
   std::vector<ScenePart> parts_;
-  std::vector<std::vector<double>> maps_;  ///< by part; empty: it has none
+  std::vector<PartMap> maps_;  ///< by part
 };
 
 /// The root nodes of the displayed scene, which is the first one by default; without any scene, all nodes that are not
@@ -102,8 +107,7 @@ Result<TriangleMesh> GltfReader::read() {
     if (Status status = visit(next); !status.ok()) return status;
   }
   if (map_) {
-    for (const std::vector<double>& values : maps_)
-      map_->values.insert(map_->values.end(), values.begin(), values.end());
+    for (const PartMap& map : maps_) map_->values.insert(map_->values.end(), map.values.begin(), map.values.end());
   }
   return joinParts(path_, parts_);
 }
@@ -174,7 +178,7 @@ Status GltfReader::addMesh(int m, const std::string& nodeName, bool skinned, con
       if (!status.ok()) return status;
       maps_.emplace_back();
     }
-    if (map_ && maps_[at->second].empty()) {
+    if (map_) {
       Status status = addMap(primitive, parts_[at->second].positions.size(), maps_[at->second]);
       if (!status.ok()) return status;
     }
@@ -236,7 +240,7 @@ Status GltfReader::addVertices(const Vertices& vertices, const Eigen::Affine3d& 
 }
 
 /// Reads the wanted map of a primitive's vertices, if it has it, and notes which there are.
-Status GltfReader::addMap(const tinygltf::Primitive& primitive, std::size_t vertices, std::vector<double>& values) {
+Status GltfReader::addMap(const tinygltf::Primitive& primitive, std::size_t vertices, PartMap& map) {
   constexpr std::array<const char*, 4> kChannels = {"red", "green", "blue", "alpha"};
   const int channel = colourChannel(map_->name);
   for (const auto& [name, index] : primitive.attributes) {
@@ -248,6 +252,14 @@ Status GltfReader::addMap(const tinygltf::Primitive& primitive, std::size_t vert
     if (!isColour && type == TINYGLTF_TYPE_SCALAR) map_->present.insert(name);
     if (isColour) map_->present.insert(kChannels.begin(), kChannels.begin() + arity);
     if (isColour ? channel < 0 || channel >= arity : name != map_->name || type != TINYGLTF_TYPE_SCALAR) continue;
+    if (index == map.accessor) continue;
+    if (map.accessor >= 0) {
+      return fileError(StatusCode::InvalidOption, path_, 0,
+                       "has two maps " + excerpt(map_->name) +
+                           " on the same vertices, for two of a mesh's primitives; "
+                           "save it with one");
+    }
+    map.accessor = index;
     std::vector<double> numbers;
     if (Status status = accessors_.read(index, arity, numbers); !status.ok()) return status;
     if (numbers.size() != static_cast<std::size_t>(arity) * vertices) {
@@ -255,7 +267,8 @@ Status GltfReader::addMap(const tinygltf::Primitive& primitive, std::size_t vert
                               "has another number of values in " + excerpt(name) + " than of positions");
     }
     for (std::size_t v = 0; v < vertices; ++v)
-      values.push_back(numbers[static_cast<std::size_t>(arity) * v + static_cast<std::size_t>(std::max(channel, 0))]);
+      map.values.push_back(
+          numbers[static_cast<std::size_t>(arity) * v + static_cast<std::size_t>(std::max(channel, 0))]);
   }
   return {};
 }

@@ -148,8 +148,9 @@ void PlyReader::findMap(const PlyElement& element) {
   for (const PlyProperty& property : element.properties) {
     if (property.isList) continue;
     map_->present.emplace(property.name);
-    const bool whole = property.name == map_->name && colourChannel(property.name) >= 0 && !property.type.real;
-    if (whole) mapScale_ = 1.0 / (std::ldexp(1.0, static_cast<int>(8 * property.type.bytes)) - 1.0);
+    const NumberType& type = property.type;
+    const bool whole = property.name == map_->name && colourChannel(property.name) >= 0 && !type.real;
+    if (whole) mapScale_ = 1.0 / (std::ldexp(1.0, static_cast<int>(8 * type.bytes) - (type.sign ? 1 : 0)) - 1.0);
   }
   for (const char* place : {"x", "y", "z"}) map_->present.erase(place);
 }
