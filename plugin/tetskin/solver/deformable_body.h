@@ -133,12 +133,12 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// ForceModel::Corotated. The body wakes.
   ///
   /// A thin sphere of radius R and wall t has no equilibrium above p = t E / (2 R (1 - nu)), where it is twice as large
-  /// as at rest: its wall gives way faster than it tightens. It bursts to 64 times its volume at rest (of its surface
-  /// now, scaled with the body, without what `setGrowth` adds), above which the pressure falls, to 0 at 125 times.
-  /// Suction falls to 0 below a tenth of the volume. The energy that a pressure supplies is the application's: blow a
-  /// body up in a second, not in a step. Cost    per step: O(faces), about as much as an iteration of the solve; the
-  /// first call: O(T log T) Errors  NonFinite; InvalidOption: one of Bullet's force models; too large for the body's
-  /// mass and size, as a
+  /// as at rest: its wall gives way faster than it tightens. It bursts to 64 times its volume at rest (of its surface,
+  /// scaled with the body, without what `setGrowth` adds), above which the pressure falls, to 0 at 125 times. Suction
+  /// falls to 0 below a tenth of the volume. The energy that a pressure supplies is the application's: blow a body up
+  /// in a second, not in a step.
+  /// Cost    per step: O(faces), about as much as an iteration of the solve; the first call: as `volume`
+  /// Errors  NonFinite; InvalidOption: one of Bullet's force models; too large for the body's mass and size, as a
   ///         Young's modulus; tets that enclose nothing; within a step. Nothing is changed on an error
   Status setPressure(double pressure);
   /// Fills the body with a gas of this pressure, above that outside: in place of a constant pressure, its amount stays.
@@ -156,11 +156,12 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// nor is `pressure`. Cost O(faces), the first time O(T log T), and the hollows times the faces
   double volume() const;
   /// Sets the surface on which pressure acts, and whose volume counts: a mesh in the body, such as the visible one. Its
-  /// hollows decide, as those of the tets do. A gas keeps its present pressure; if the body gets other tets, the
-  /// surface is theirs again, and pressure ends if they have none. mesh       at rest, closed; vertices at the same
-  /// place count as one (texture seams); not kept embedding  of it in the body's cage; an empty one, with an empty
-  /// mesh: the tets' boundary again; not kept Cost       O(triangles log triangles) Errors     SizeMismatch: mesh,
-  /// embedding and body do not belong together; InvalidOption: the mesh is not closed,
+  /// hollows decide, as those of the tets do. A gas keeps its present pressure. If the body gets other tets, the
+  /// surface is theirs again; pressure ends if they have none.
+  /// mesh       at rest, closed; vertices at the same place count as one (texture seams); not kept
+  /// embedding  of it in the body's cage; an empty one, with an empty mesh: the tets' boundary again; not kept
+  /// Cost       O(triangles log triangles), and the hollows times the triangles
+  /// Errors     SizeMismatch: mesh, embedding and body do not belong together; InvalidOption: the mesh is not closed,
   ///            encloses nothing, or joins parts of the cage that are not connected; those of `setPressure`. Nothing is
   ///            changed on an error
   Status setPressureSurface(const TriangleMesh& mesh, const Embedding& embedding);

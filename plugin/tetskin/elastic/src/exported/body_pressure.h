@@ -142,7 +142,8 @@ class BodyPressure {
     return {};
   }
   Status findSurface(BodyDynamics<Scalar>& of) {
-    if (surface_ || !fault_.ok()) return fault_;
+    if (surface_) return {};
+    if (!fault_.ok()) return fault_;
     if (!of.tets()) return {StatusCode::InvalidOption, "pressure needs a body of elastic tets"};
     Result<PressureSurface> made = make_ && !given_ ? make_() : Status{StatusCode::Empty, ""};
     if (!made.ok()) made = PressureSurface::ofTets(of.tets()->rest());
