@@ -110,10 +110,13 @@ int main() try {
   }
   auto files = tetskin::ObjSequenceWriter::create("out/inflate", tetskin::ObjLayout::create(seen)).value();
 
+  const auto height = [&] { return static_cast<double>(crate.getWorldTransform().getOrigin().y()); };
+  double limp = 0.0;
   const btScalar dt = btScalar(1) / 60;
   for (int frame = 0; frame <= 300; ++frame) {
     // A pump that fills it in two seconds: each call sets the amount of gas that has this pressure at present.
     const double filled = std::min((frame - 60) / 120.0, 1.0);
+    if (frame == 60) limp = height();
     if (filled > 0.0 && frame <= 180) {
       if (const tetskin::Status set = body->setGas(1500 * filled); !set.ok()) throw std::runtime_error(set.message);
     }
@@ -129,14 +132,16 @@ int main() try {
           files.write(frame, tetskin::PointView<const float>(points.data(), points.size() / 3));
       if (!written.ok()) throw std::runtime_error(written.message);
       std::printf("%s: %.0f Pa in %.1f litres, the crate at %.3f\n", files.framePath(frame).c_str(), body->pressure(),
-                  1000 * body->volume(), static_cast<double>(crate.getWorldTransform().getOrigin().y()));
+                  1000 * body->volume(), height());
     }
     world.stepSimulation(dt, 4, dt / 4);
     if (skin.update() == tetskin::StatusCode::NonFinite) throw std::runtime_error("the ring has exploded");
   }
+  const bool lifted = height() > limp + 0.1;
+  std::printf("the gas lifts the crate from %.3f to %.3f: %s\n", limp, height(), lifted ? "yes" : "no");
   world.removeRigidBody(&crate);
   world.removeRigidBody(&floor);
-  return 0;
+  return lifted ? 0 : 1;
 } catch (const std::exception& fault) {  // value() of a failed result: what, where, and the cure
   return std::puts(fault.what()), 2;
 }

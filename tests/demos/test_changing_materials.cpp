@@ -21,5 +21,13 @@ TEST(MuscleOfAnArm, ObeysTheLawOfTheLever) {
   EXPECT_TRUE(folder.exists("out/muscle/frame_0720.obj"));
 }
 
+TEST(Inflate, GasLiftsACrate) {
+  const CommandFolder folder;
+  const CommandResult result = folder.run(TETSKIN_INFLATE, {});
+  EXPECT_EQ(result.status, 0) << result.out;
+  EXPECT_NE(result.out.find(": yes"), std::string::npos) << result.out;
+  EXPECT_TRUE(folder.exists("out/inflate/frame_0300.obj"));
+}
+
 }  // namespace
 }  // namespace tetskin::test

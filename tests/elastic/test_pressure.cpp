@@ -4,6 +4,7 @@
 // Pressure and gas in an ElasticBody, against exact solutions.
 #include <tetskin/elastic/elastic_body.h>
 #include <tetskin/elastic/src/dynamics/pressure_law.h>
+#include <tetskin/elastic/src/dynamics/pressure_surface.h>
 
 #include <cmath>
 
@@ -149,16 +150,77 @@ TEST(Pressure, TheLawOfEnergyHoldsAtAllVolumes) {
         PressureLaw{PressureLaw::Kind::Gas, -1.0, 5.0, 2.0}}) {
     EXPECT_NEAR(law.energy(2.0), 0.0, 1e-12);
     EXPECT_EQ(law.at(2.0), law.pressure);
-    for (const double volume : {0.001, 0.03, 0.05, 0.15, 0.3, 1.0, 2.0, 20.0, 120.0, 140.0, 240.0, 260.0}) {
+    for (const double volume :
+         {-260.0, -240.0, -140.0, -2.0, 0.001, 0.03, 0.05, 0.15, 0.3, 1.0, 2.0, 20.0, 120.0, 140.0, 240.0, 260.0}) {
       constexpr double kStep = 1e-6;
       const auto slope = [&](auto&& f) { return (f(volume + kStep) - f(volume - kStep)) / (2 * kStep); };
       EXPECT_NEAR(law.at(volume), -slope([&](double v) { return law.energy(v); }),
                   1e-5 * (1 + std::abs(law.at(volume))));
-      EXPECT_NEAR(law.slope(volume), -slope([&](double v) { return law.at(v); }), 1e-5 * (1 + law.slope(volume)));
+      // The matrix takes no slope below 0, as that of a body that is far inside out.
+      const double exact = std::max(-slope([&](double v) { return law.at(v); }), 0.0);
+      EXPECT_NEAR(law.slope(volume), exact, 1e-5 * (1 + law.slope(volume)));
       EXPECT_GE(law.slope(volume), 0.0);
     }
     for (const double volume : {-1e6, -1.0, 0.0, 1e-9, 1e9}) EXPECT_TRUE(std::isfinite(law.at(volume)));
   }
+}
+
+/// Half of a flat bipyramid over a regular octagon of radius 1, whose wall faces inwards.
+void appendLens(TriangleMesh& to, int firstOfRim, int sideOf) {
+  const int up = static_cast<int>(to.vertexCount());
+  to.positions.insert(to.positions.end(),
+                      {Vector3d(0, 0.5 * sideOf, 0.2), Vector3d(0, 0.5 * sideOf, -0.2), Vector3d(0, 0.1 * sideOf, 0)});
+  for (int k = 0; k < 6; ++k) {
+    const auto rim = [&](int at) { return at % 6 == 5 ? up + 2 : (firstOfRim + at % 6) % 8; };
+    to.triangles.push_back({up, rim(k + 1), rim(k)});
+    to.triangles.push_back({up + 1, rim(k), rim(k + 1)});
+  }
+}
+
+TEST(Pressure, HollowsThatTouchTheOutsideAreHollows) {
+  // Each edge of the rim is one of two hollows and of both halves of the outside.
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) {
+    const double angle = 0.25 * k * static_cast<double>(EIGEN_PI);
+    mesh.positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+  }
+  appendLens(mesh, 0, 1);
+  appendLens(mesh, 4, -1);
+  const int top = static_cast<int>(mesh.vertexCount());
+  mesh.positions.insert(mesh.positions.end(), {Vector3d(0, 0, 1), Vector3d(0, 0, -1)});
+  for (int k = 0; k < 8; ++k) {
+    mesh.triangles.push_back({top, k, (k + 1) % 8});
+    mesh.triangles.push_back({top + 1, (k + 1) % 8, k});
+  }
+  std::vector<std::array<double, 3>> positions;
+  std::vector<elastic_detail::SurfaceVertex> vertices;
+  for (const Vector3d& x : mesh.positions) {
+    vertices.push_back({{{static_cast<int>(positions.size()), 1.0}, {0, 0.0}, {0, 0.0}, {0, 0.0}}});
+    positions.push_back({x[0], x[1], x[2]});
+  }
+  const auto surface = elastic_detail::PressureSurface::ofMesh(positions, mesh.triangles, vertices);
+  ASSERT_TRUE(surface.ok()) << surface.status().message;
+  EXPECT_TRUE(surface.value().isHollow());
+  const double half = std::sqrt(2.0) - 0.1;  // the area of a lens
+  EXPECT_NEAR(surface.value().restVolume(), 2 * half * 0.4 / 3, 1e-9);
+}
+
+TEST(Pressure, AStiffnessScaleCountsWheneverItIsSet) {
+  const Cage cage = hollowSphere(0.45, 0.5, 1, 1);
+  const auto after = [&](bool first) {
+    ElasticBody<double> body = made<double>(cage, rubber());
+    const std::vector<double> factors(cage.mesh.tetCount(), 0.05);
+    if (first) {
+      EXPECT_TRUE(body.setStiffnessScale(factors).ok());
+    }
+    EXPECT_TRUE(body.setPressure(1e3).ok());
+    if (!first) {
+      EXPECT_TRUE(body.setStiffnessScale(factors).ok());
+    }
+    for (int k = 0; k < 5; ++k) body.step(1.0 / 60.0);
+    return pointsOf(body.positions());
+  };
+  EXPECT_EQ(after(true), after(false));
 }
 
 TYPED_TEST(PressureOf, AGasKeepsPressureTimesVolume) {
@@ -300,6 +362,7 @@ TEST(Pressure, WhatCannotBeIsRefused) {
   refuses(body.setGas(-2e5, 1e5), StatusCode::InvalidOption, "above 0");
   refuses(body.setGas(10.0, -1.0), StatusCode::InvalidOption, "outside");
   refuses(body.setGas(10.0, none), StatusCode::NonFinite, "not finite");
+  refuses(body.setGas(-1e30, 1.0000001e30), StatusCode::InvalidOption, "too large");
   Points points = cage.mesh.nodes;
   for (Vector3d& x : points) x.y() = 0;
   fill(body.positions(), points);

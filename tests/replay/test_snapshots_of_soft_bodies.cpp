@@ -324,6 +324,12 @@ TEST(SnapshotsOfSoftBodies, OfBodiesUnderPressure) {
       if (frame == 8) {
         EXPECT_TRUE(scene->bodies[1]->setPressure(2e3).ok());
       }
+      if (frame == 10) {
+        for (const auto& body : scene->bodies) {
+          const std::vector<double> factors(static_cast<std::size_t>(body->body().m_tetras.size()), 0.5);
+          EXPECT_TRUE(body->setStiffnessScale(factors).ok());
+        }
+      }
       if (frame == 20) {
         EXPECT_TRUE(scene->bodies[0]->setPressure(0).ok());
       }

@@ -139,7 +139,7 @@ TEST(PressedBodies, AFreeBodyKeepsItsMomentumAndItsPlace) {
   EXPECT_LT((spin() - angular).length(), 2e-3 * angular.length());
 }
 
-/// A ball falls by 1 m: with pressure, it comes back from an impact with no more energy than it had.
+/// A ball falls by 1 m: it comes back from an impact, with pressure, too, and with no more energy than it had.
 TEST(PressedBodies, ABallReboundsNoHigherThanItFell) {
   for (const double pressure : {0.0, 5e3, 3e4}) {
     for (const int substeps : {1, 4, 16}) {
@@ -159,6 +159,7 @@ TEST(PressedBodies, ABallReboundsNoHigherThanItFell) {
       }
       ASSERT_TRUE(landed);
       EXPECT_LT(highest, start) << pressure << " " << substeps;
+      EXPECT_GT(highest, kRadius + 0.2) << pressure << " " << substeps;
     }
   }
 }
@@ -227,6 +228,45 @@ TEST(PressedBodies, AVisibleMeshIsWherePressureActs) {
   EXPECT_GT(body->volume(), 4.0);
 }
 
+TEST(PressedBodies, AnotherSurfaceKeepsTheGasPressureAndTheBoundsOfAConstantOne) {
+  TetskinWorld world;
+  const TetMesh cage = lifted(latticeCage(4, 4, 4, 0.5), 3);
+  TriangleMesh mesh = sphereOf(2);
+  for (Eigen::Vector3d& x : mesh.positions) x = 0.2 * x + Eigen::Vector3d(1, 4, 1);
+  const Embedding embedding = embed(Cage(cage), mesh).value();
+  const auto body = added(world, cage, latex());
+  ASSERT_TRUE(body->setGas(100, 1000).ok());
+  ASSERT_TRUE(body->setPressureSurface(mesh, embedding).ok());
+  EXPECT_NEAR(body->pressure(), 100, 1e-3);
+  EXPECT_LT(body->volume(), 0.04);
+  ASSERT_TRUE(body->setPressure(100).ok());
+  ASSERT_TRUE(body->setPressureSurface(TriangleMesh(), Embedding()).ok());
+  EXPECT_GT(body->volume(), 7.9);
+  EXPECT_EQ(body->pressure(), 100) << "it has not burst";
+}
+
+TEST(PressedBodies, ABodyThatIsScaledHasTheBoundsOfItsSize) {
+  const TetMesh cage = lifted(latticeCage(3, 3, 3, 0.2), 50);
+  TriangleMesh mesh = sphereOf(1);
+  for (Eigen::Vector3d& x : mesh.positions) x = 0.25 * x + Eigen::Vector3d(0.3, 50.3, 0.3);
+  const Embedding embedding = embed(Cage(cage), mesh).value();
+  for (const int surface : {0, 1, 2}) {  // the tets', one that was set, and one that was prepared
+    TetskinWorld world;
+    const auto body = added(world, cage, latex());
+    if (surface == 1) {
+      ASSERT_TRUE(body->setPressureSurface(mesh, embedding).ok());
+    }
+    if (surface == 2) body->preparePressureSurface(std::make_shared<const TriangleMesh>(mesh), embedding);
+    ASSERT_TRUE(body->setPressure(10).ok());
+    frames(world, 2, 1);
+    const double volume = body->volume();
+    body->body().scale(btVector3(5, 5, 5));
+    frames(world, 2, 1);
+    EXPECT_NEAR(body->volume() / volume, 125, 1);
+    EXPECT_EQ(body->pressure(), 10) << surface;
+  }
+}
+
 TEST(PressedBodies, WhatCannotBeIsRefused) {
   TetskinWorld world;
   const auto body = added(world, balloonAt(3, 1), latex());
@@ -247,6 +287,7 @@ TEST(PressedBodies, WhatCannotBeIsRefused) {
   wrong.positions.pop_back();
   wrong.triangles.resize(3);
   refuses(body->setPressureSurface(wrong, embedding), StatusCode::SizeMismatch, "belong together");
+  refuses(body->setPressureSurface(open, Embedding()), StatusCode::SizeMismatch, "belong together");
   open.triangles.pop_back();
   refuses(body->setPressureSurface(open, embedding), StatusCode::InvalidOption, "not closed");
   open.triangles.clear();

@@ -122,6 +122,9 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;  ///< that was set last; 0 for a muscle that does not exist
+
+  // ---- Pressure, for ForceModel::Corotated alone; see the page "Pressure and gas".
+
   /// Sets the pressure in the body, in pressure units above that outside, from the next step on; 0 ends it, and below 0
   /// it is suction. It follows the deformed surface: its forces are the pressure times the derivative of the volume
   /// inside, so that their sum and torque are 0. Which surface that is, the tets' boundary decides, unless
@@ -130,10 +133,11 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// ForceModel::Corotated. The body wakes.
   ///
   /// A thin sphere of radius R and wall t has no equilibrium above p = t E / (2 R (1 - nu)), where it is twice as large
-  /// as at rest: its wall gives way faster than it tightens. It bursts to 64 times its volume at rest, above which the
-  /// pressure falls, to 0 at 125 times. Suction falls to 0 below a tenth of the volume. The energy that a pressure
-  /// supplies is the application's: blow a body up in a second, not in a step.
-  /// Cost    per step: O(faces), about as much as an iteration of the solve; the first call: O(T log T)
+  /// as at rest: its wall gives way faster than it tightens. It bursts to 64 times its volume at rest (of its surface,
+  /// scaled with the body, without what `setGrowth` adds), above which the pressure falls, to 0 at 125 times. Suction
+  /// falls to 0 below a tenth of the volume. The energy that a pressure supplies is the application's: blow a body up
+  /// in a second, not in a step.
+  /// Cost    per step: O(faces), about as much as an iteration of the solve; the first call: as `volume`
   /// Errors  NonFinite; InvalidOption: one of Bullet's force models; too large for the body's mass and size, as a
   ///         Young's modulus; tets that enclose nothing; within a step. Nothing is changed on an error
   Status setPressure(double pressure);
@@ -148,13 +152,15 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// The pressure inside now, above that outside; 0: none. That of a gas belongs to its present volume.
   double pressure() const;
   /// The volume inside now: of the hollows, or of the body without any; of the surface that `setPressure` acts on. 0 if
-  /// there is none, or with one of Bullet's force models. Cost O(faces), the first time O(T log T)
+  /// there is none, or with one of Bullet's force models. It works in memory of the body: not for two threads at once,
+  /// nor is `pressure`. Cost O(faces), the first time O(T log T), and the hollows times the faces
   double volume() const;
   /// Sets the surface on which pressure acts, and whose volume counts: a mesh in the body, such as the visible one. Its
-  /// hollows decide, as those of the tets do.
+  /// hollows decide, as those of the tets do. A gas keeps its present pressure. If the body gets other tets, the
+  /// surface is theirs again; pressure ends if they have none.
   /// mesh       at rest, closed; vertices at the same place count as one (texture seams); not kept
   /// embedding  of it in the body's cage; an empty one, with an empty mesh: the tets' boundary again; not kept
-  /// Cost       O(triangles log triangles)
+  /// Cost       O(triangles log triangles), and the hollows times the triangles
   /// Errors     SizeMismatch: mesh, embedding and body do not belong together; InvalidOption: the mesh is not closed,
   ///            encloses nothing, or joins parts of the cage that are not connected; those of `setPressure`. Nothing is
   ///            changed on an error

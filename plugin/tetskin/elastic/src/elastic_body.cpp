@@ -145,9 +145,7 @@ struct ElasticBody<Scalar>::Impl {
     }
   }
 
-  Status checkPressure(double pressure) const {
-    return elastic_detail::checkPressure<Scalar>(pressure, std::accumulate(masses.begin(), masses.end(), 0.0), volume);
-  }
+  double mass() const { return std::accumulate(masses.begin(), masses.end(), 0.0); }
 
   BodyDynamics<Scalar> dynamics;
   elastic_detail::BodyPressure<Scalar> inside;
@@ -219,14 +217,14 @@ void ElasticBody<Scalar>::setPinned(std::size_t node, bool pinned) {
 template <class Scalar>
 Status ElasticBody<Scalar>::setPressure(double pressure) {
   if (!impl_) return {StatusCode::Empty, "the body is empty"};
-  Status status = impl_->checkPressure(pressure);
+  Status status = elastic_detail::checkPressure<Scalar>(pressure, impl_->mass(), impl_->volume);
   return status.ok() ? impl_->inside.setConstant(pressure, impl_->dynamics) : status;
 }
 
 template <class Scalar>
 Status ElasticBody<Scalar>::setGas(double pressure, double outside) {
   if (!impl_) return {StatusCode::Empty, "the body is empty"};
-  Status status = impl_->checkPressure(pressure + outside);
+  Status status = elastic_detail::checkGas<Scalar>(pressure, outside, impl_->mass(), impl_->volume);
   return status.ok() ? impl_->inside.setGas(pressure, outside, impl_->probe(), impl_->dynamics) : status;
 }
 

@@ -674,7 +674,7 @@ Status DeformableBody::setPressure(double pressure) {
 
 Status DeformableBody::setGas(double pressure, double outside) {
   if (Status status = impl_->checkPressed("setGas"); !status.ok()) return status;
-  if (Status status = checkPressure(body(), pressure + outside); !status.ok()) return status;
+  if (Status status = checkGas(body(), pressure, outside); !status.ok()) return status;
   ForcedBody& forced = impl_->corotated()->body();
   if (Status status = forced.pressure.setGas(pressure, outside, forced.probe(), *forced.dynamics); !status.ok())
     return status;
@@ -727,12 +727,13 @@ Status DeformableBody::setPressureSurface(const TriangleMesh& mesh, const Embedd
   if (Status status = impl_->checkPressed("setPressureSurface"); !status.ok()) return status;
   ForcedBody& forced = impl_->corotated()->body();
   std::shared_ptr<elastic_detail::PressureSurface> surface;
-  if (!embedding.empty()) {
+  if (!embedding.empty() || mesh.vertexCount() > 0 || !mesh.triangles.empty()) {
     Result<elastic_detail::PressureSurface> made = embeddedSurface(mesh, embedding, *forced.dynamics);
     if (!made.ok()) return {made.status().code, "setPressureSurface: " + made.status().message};
     surface = std::make_shared<elastic_detail::PressureSurface>(std::move(made).value());
   }
-  if (Status status = forced.pressure.setSurface(std::move(surface), *forced.dynamics); !status.ok()) return status;
+  if (Status status = forced.pressure.setSurface(std::move(surface), forced.probe(), *forced.dynamics); !status.ok())
+    return status;
   body().activate();
   return {};
 }

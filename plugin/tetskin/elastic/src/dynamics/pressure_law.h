@@ -20,7 +20,7 @@ struct PressureLaw {
   Kind kind = Kind::None;
   double pressure = 0.0;   ///< beside that outside: the constant one, or that of the gas at the volume `reference`
   double outside = 0.0;    ///< of the gas: the absolute pressure outside
-  double reference = 1.0;  ///< volume, above 0: of the gas when it was set; of the surface at rest
+  double reference = 1.0;  ///< volume, above 0: of the gas when it was set; of the surface at rest, before any growth
 
   bool operator==(const PressureLaw& other) const {
     return kind == other.kind && pressure == other.pressure && outside == other.outside && reference == other.reference;
@@ -70,7 +70,10 @@ struct PressureLaw {
   void serialize(StateStream& stream) {
     stream(kind);
     if (kind > Kind::Gas) stream.fail(), kind = Kind::None;
-    if (kind != Kind::None) stream(pressure, outside, reference);
+    if (kind == Kind::None) return;
+    stream(pressure, outside, reference);
+    const bool finite = std::isfinite(pressure) && std::isfinite(outside) && std::isfinite(reference);
+    if (!(finite && outside >= 0.0 && reference > 0.0)) stream.fail(), *this = {};
   }
 
  private:
@@ -85,9 +88,10 @@ struct PressureLaw {
   /// The integral of `share` from 1 on.
   double sharedVolume(double v) const {
     if (pressure > 0.0) {
-      if (v < kFull) return v - 1.0;
-      const double left = (v < kBurst ? kBurst - v : 0.0), width = kBurst - kFull;
-      return kFull - 1.0 + 0.5 * (width - left * left / width);
+      const double size = std::abs(v);
+      if (size < kFull) return v - 1.0;
+      const double left = (size < kBurst ? kBurst - size : 0.0), width = kBurst - kFull;
+      return std::copysign(kFull + 0.5 * (width - left * left / width), v) - 1.0;
     }
     if (v > kDrawn) return v - 1.0;
     return kDrawn - 1.0 - 0.5 * (kDrawn - (v > 0.0 ? v * v / kDrawn : 0.0));

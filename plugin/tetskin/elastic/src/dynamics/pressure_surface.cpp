@@ -92,10 +92,12 @@ std::vector<int> closedParts(const std::vector<Corners>& faces, std::size_t& ope
         sum += edges[e].direction;
       }
       open += sum != 0;
-      for (std::size_t e = k + 1; e < next; ++e) {
-        const bool closed = crossings && balance[parts.find(static_cast<int>(edges[e].face))] == 0;
-        if (!closed) parts.unite(static_cast<int>(edges[k].face), static_cast<int>(edges[e].face));
+      std::vector<int> joined;
+      for (std::size_t e = k; e < next; ++e) {
+        const int face = static_cast<int>(edges[e].face);
+        if (!crossings || balance[parts.find(face)] != 0) joined.push_back(face);
       }
+      for (const int face : joined) parts.unite(joined[0], face);
     }
   }
   return parts.numbers();
@@ -128,6 +130,32 @@ Status invalid(const std::string& message) {
 
 /// Triangles of a tet's faces, outwards; and of a quadratic tet's: nodes of each face, corners first.
 constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+/// A ray from the origin, in no direction that meshes often have.
+constexpr double kRay[3] = {0.3819660112501051, 0.2360679774997897, 1.0};
+
+/// Seen along the ray: twice the area that the origin spans with an edge. Opposite for the opposite edge, to the bit,
+/// so that a ray between two faces meets one of them.
+double besideRay(const Vector3d& a, const Vector3d& b, bool ascending) {
+  if (!ascending) return -besideRay(b, a, true);
+  const double ax = a[0] - kRay[0] * a[2], ay = a[1] - kRay[1] * a[2];
+  const double bx = b[0] - kRay[0] * b[2], by = b[1] - kRay[1] * b[2];
+  return ax * by - ay * bx;
+}
+
+/// 1 if the ray leaves a solid through this face, -1 if it enters it, and 0 if it does not meet the face. The sum over
+/// a closed surface is how often it encloses the origin.
+int crossing(const Vector3d (&x)[3], const Corners& corners) {
+  double sides[3];  // by the corner opposite
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+    sides[k] = besideRay(x[a], x[b], corners[a] < corners[b]);
+    if (std::signbit(sides[k]) != std::signbit(sides[0])) return 0;
+  }
+  const double area = sides[0] + sides[1] + sides[2];
+  const double ahead = sides[0] * x[0][2] + sides[1] * x[1][2] + sides[2] * x[2][2];  // times the area
+  return area > 0.0 ? ahead > 0.0 : ahead < 0.0 ? -1 : 0;
+}
+
 /// By two corners: the number of the node between.
 constexpr int kMiddles[4][4] = {{-1, 4, 5, 6}, {4, -1, 7, 8}, {5, 7, -1, 9}, {6, 8, 9, -1}};
 
@@ -201,13 +229,6 @@ Result<PressureSurface> PressureSurface::ofMesh(const std::vector<std::array<dou
   return surface;
 }
 
-/// The solid angle of a triangle, seen from the origin, over that of a sphere.
-double windingOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double cosine = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return std::atan2(a.dot(b.cross(c)), cosine) / (2.0 * EIGEN_PI);
-}
-
 /// Hollows have walls that face into them: seen as solids, their volume is below 0, and they lie in others. What lies
 /// outside was only wound the other way.
 Status PressureSurface::choose(const std::string& name) {
@@ -238,13 +259,15 @@ Status PressureSurface::choose(const std::string& name) {
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto part = static_cast<std::size_t>(parts[f]);
     if (std::exchange(seen[part], char(1)) || !(volumes[part] < -kNothing * size)) continue;
-    const Vector3d from = at(points_, static_cast<std::size_t>(faces[f][0]));
-    double winding = 0.0;
+    // The middle of a face: its corners may be those of other parts.
+    Vector3d from = Vector3d::Zero();
+    for (const int corner : faces[f]) from += at(points_, static_cast<std::size_t>(corner)) / 3.0;
+    int winding = 0;
     for (std::size_t g = 0; g < faces.size(); ++g) {
       const auto x = [&](std::size_t k) { return Vector3d(at(points_, static_cast<std::size_t>(faces[g][k])) - from); };
-      if (volumes[static_cast<std::size_t>(parts[g])] > 0.0) winding += windingOf(x(0), x(1), x(2));
+      if (volumes[static_cast<std::size_t>(parts[g])] > 0.0) winding += crossing({x(0), x(1), x(2)}, faces[g]);
     }
-    hollows[part] = winding > 0.5;
+    hollows[part] = winding > 0;
   }
   const bool hollow = std::find(hollows.begin(), hollows.end(), 1) != hollows.end();
   hollow_ = hollow;
@@ -259,7 +282,8 @@ Status PressureSurface::choose(const std::string& name) {
       auto face = list[k];
       if (volumes[static_cast<std::size_t>(parts[firstFace + k])] < 0.0) {
         std::swap(face[1], face[2]);
-        if constexpr (std::tuple_size_v < std::decay_t < decltype(face) >>> 3) std::swap(face[3], face[5]);
+        constexpr std::size_t nodes = std::tuple_size_v<std::decay_t<decltype(face)>>;
+        if constexpr (nodes > 3) std::swap(face[3], face[5]);
       }
       list[kept++] = face;
     }
@@ -366,6 +390,11 @@ double PressureSurface::evaluate(bool derivative, ParallelFor* threads) {
   gather(cornersOf_, corners_, ownNodes ? derivative_ : vectors_, threads);
   if (!ownNodes) gather(verticesOf_, vectors_, derivative_, threads);
   return volume;
+}
+
+void PressureSurface::takeAsRest() {
+  const double volume = evaluate(false, nullptr);
+  if (volume > 0.0) restVolume_ = volume;
 }
 
 double PressureSurface::sumOfFaces(ParallelFor* threads) {

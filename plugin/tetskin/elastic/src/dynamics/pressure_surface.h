@@ -25,7 +25,7 @@ class TETSKIN_ELASTIC_API PressureSurface {
  public:
   /// Of the boundary of the tets. If parts of it enclose hollows, the pressure is in these, and acts on their walls;
   /// otherwise it is in the body, and acts on its whole surface.
-  /// Cost   O(T log T)
+  /// Cost   O(T log T), and the hollows times the faces
   /// Error  InvalidOption: it encloses nothing, or the nodes at rest are unknown
   static Result<PressureSurface> ofTets(const RestTets& rest);
   /// Of a mesh in the body, by the same rule. Vertices that coincide at rest count as one.
@@ -44,6 +44,8 @@ class TETSKIN_ELASTIC_API PressureSurface {
 
   /// Three numbers for each of `nodes`, for the caller to fill.
   double* positions() { return positions_.data(); }
+  /// The volume at rest becomes that at these positions, if it is above 0: the body may have been scaled.
+  void takeAsRest();
   /// Computes the volume at these positions, and its derivative if asked. The same bits with any number of threads.
   double evaluate(bool derivative, ParallelFor* threads);
   /// Three numbers for each of `nodes`.

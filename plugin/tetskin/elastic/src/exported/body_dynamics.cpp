@@ -88,7 +88,15 @@ void BodyDynamics<S>::setMaterial(const Lame& lame) {
   tets_->setMaterial(lame);
   shearModulus_ = lame.mu;
   components_.setStiffness(tets_->rest(), lame, matrix_);
+  findMaterialVolume();
   changed_ = true;
+}
+
+template <class S>
+void BodyDynamics<S>::findMaterialVolume() {
+  const RestTets& rest = tets_->rest();
+  materialVolume_ = std::accumulate(rest.volumes.begin(), rest.volumes.end(), 0.0);
+  for (const RestQuadraticTet& tet : rest.quadratic) materialVolume_ += tet.volume;
 }
 
 template <class S>
@@ -112,11 +120,6 @@ void BodyDynamics<S>::setPressure(const PressureLaw& law, std::shared_ptr<Pressu
   }
   pressureSurface_ = std::move(surface);
   changed_ |= !pressureSurface_ && spread_ != 1.0;
-  materialVolume_ = 0.0;
-  if (!pressureSurface_) return;
-  const RestTets& rest = tets_->rest();
-  materialVolume_ = std::accumulate(rest.volumes.begin(), rest.volumes.end(), 0.0);
-  for (const RestQuadraticTet& tet : rest.quadratic) materialVolume_ += tet.volume;
 }
 
 template <class S>

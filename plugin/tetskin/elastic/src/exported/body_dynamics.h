@@ -275,6 +275,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double flowsInImpact(std::size_t component, double energy, double seconds) const;
   void findPressure(ParallelFor* threads);
   void setGasStiffness();
+  void findMaterialVolume();
   bool isSpread() const;
   void chooseScheme();
   /// A contact that neither stops it nor throws it back.

@@ -7,6 +7,7 @@
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 #include <tetskin/elastic/src/tets/material.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -28,6 +29,15 @@ Status checkPressure(double pressure, double mass, double volume) {
                 "a pressure of %.3g is too large for a mass of %.3g in a volume of %.3g: at most %.3g", pressure, mass,
                 volume, maximum);
   return {StatusCode::InvalidOption, text};
+}
+
+/// The same for a gas. Each number has the bound: that of their sum would let huge ones of opposite signs pass.
+template <class Scalar>
+Status checkGas(double pressure, double outside, double mass, double volume) {
+  for (const double p : {pressure, outside, pressure + outside}) {
+    if (Status status = checkPressure<Scalar>(p, mass, volume); !status.ok()) return status;
+  }
+  return {};
 }
 
 template <class Scalar>
@@ -63,16 +73,21 @@ class BodyPressure {
     of.setPressure(law_, surface_);
     return {};
   }
-  /// The pressure is to act on this surface from now on; null: on the boundary of the tets.
-  Status setSurface(std::shared_ptr<PressureSurface> surface, BodyDynamics<Scalar>& of) {
+  /// The pressure is to act on this surface from now on; null: on the boundary of the tets. A gas keeps its present
+  /// pressure, and the bounds of a constant one become those of the new surface.
+  /// now  the nodes' positions
+  Status setSurface(std::shared_ptr<PressureSurface> surface, const BodyProbe<Scalar>& now, BodyDynamics<Scalar>& of) {
     std::shared_ptr<PressureSurface> before = std::exchange(surface_, std::move(surface));
     const bool given = std::exchange(given_, surface_ != nullptr);
+    fault_ = {};
+    if (given_) findRest(of);
     if (!acts()) return {};
     if (Status status = findSurface(of); !status.ok()) {
       surface_ = std::move(before);
       given_ = given;
       return status;
     }
+    law_.reference = referenceAfter(*before, now, of);
     of.setPressure(law_, surface_);
     return {};
   }
@@ -80,6 +95,7 @@ class BodyPressure {
   void offerSurface(std::function<Result<PressureSurface>()> make) {
     if (given_ || acts()) return;
     surface_.reset();
+    fault_ = {};
     make_ = std::move(make);
   }
   /// The volume of the surface, and the pressure in it; 0 without a surface.
@@ -98,13 +114,19 @@ class BodyPressure {
     of.setPressure(law_, surface_);
     return {};
   }
-  /// The body has new dynamics.
-  void moveTo(BodyDynamics<Scalar>& of) {
-    given_ = given_ && surface_->nodes().back() < of.nodeCount();
+  /// The body has new dynamics, and may have been scaled: the amount of a gas stays. With other tets, surfaces that
+  /// were set or prepared are forgotten; where those of now have no boundary that serves, pressure ends.
+  void moveTo(BodyDynamics<Scalar>& of, bool sameTets) {
+    given_ = given_ && sameTets && surface_->nodes().back() < of.nodeCount();
     if (!given_) surface_.reset();
-    if (nodes_ > 0 && nodes_ != of.nodeCount()) make_ = nullptr;
+    if (!sameTets || nodes_ != of.nodeCount()) make_ = nullptr;
     nodes_ = of.nodeCount();
-    if (acts() && !restore(law_, of).ok()) (void)end(of);
+    fault_ = {};
+    if (given_) findRest(of);
+    if (!acts()) return;
+    if (!findSurface(of).ok()) return (void)end(of);
+    if (law_.kind == PressureLaw::Kind::Constant) law_.reference = surface_->restVolume();
+    of.setPressure(law_, surface_);
   }
   /// Number of faces of the surface that `setSurface` has set; 0: none.
   std::size_t givenFaces() const { return given_ ? surface_->faceCount() : 0; }
@@ -121,17 +143,33 @@ class BodyPressure {
   }
   Status findSurface(BodyDynamics<Scalar>& of) {
     if (surface_) return {};
+    if (!fault_.ok()) return fault_;
     if (!of.tets()) return {StatusCode::InvalidOption, "pressure needs a body of elastic tets"};
     Result<PressureSurface> made = make_ && !given_ ? make_() : Status{StatusCode::Empty, ""};
     if (!made.ok()) made = PressureSurface::ofTets(of.tets()->rest());
-    if (!made.ok()) return made.status();
+    if (!made.ok()) return fault_ = made.status();
     surface_ = std::make_shared<PressureSurface>(std::move(made).value());
+    findRest(of);
     return {};
+  }
+  /// A mesh does not know that the body was scaled.
+  void findRest(BodyDynamics<Scalar>& of) {
+    if (!of.tets() || of.tets()->rest().nodes.empty()) return;
+    double* to = surface_->positions();
+    for (const std::uint32_t n : surface_->nodes()) to = std::copy_n(of.tets()->rest().nodes[n].data(), 3, to);
+    surface_->takeAsRest();
+  }
+  double referenceAfter(PressureSurface& before, const BodyProbe<Scalar>& now, BodyDynamics<Scalar>& of) {
+    if (law_.kind == PressureLaw::Kind::Constant) return surface_->restVolume();
+    const double from = of.volumeIn(before, now), to = of.volumeIn(*surface_, now);
+    const bool crushed = !(from > kLeastVolume * before.restVolume() && to > kLeastVolume * surface_->restVolume());
+    return law_.reference * (crushed ? surface_->restVolume() / before.restVolume() : to / from);
   }
 
   PressureLaw law_;
   std::shared_ptr<PressureSurface> surface_;  ///< null: of the tets, not made yet
   bool given_ = false;                        ///< by `setSurface`
+  Status fault_;                              ///< why there is no surface; Ok: unknown
   std::function<Result<PressureSurface>()> make_;
 };
 

@@ -158,11 +158,17 @@ Status checkPressure(const btSoftBody& body, double pressure) {
   return elastic_detail::checkPressure<btScalar>(pressure, matter.mass, matter.volume);
 }
 
+Status checkGas(const btSoftBody& body, double pressure, double outside) {
+  const Matter matter = matterOf(body);
+  return elastic_detail::checkGas<btScalar>(pressure, outside, matter.mass, matter.volume);
+}
+
 void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMaterial& material) {
   assert(body && linear.count() == static_cast<std::size_t>(body->m_tetras.size()));
   if (stiffnessScale.size() != linear.count()) stiffnessScale.clear();
-  if (dynamics && tetCount != linear.count()) quadratic.clear();
-  if (!dynamics || tetCount != linear.count()) changes = elastic_detail::MaterialChanges(linear.count());
+  const bool sameTets = dynamics && tetCount == linear.count();
+  if (dynamics && !sameTets) quadratic.clear();
+  if (!sameTets) changes = elastic_detail::MaterialChanges(linear.count());
   tetCount = linear.count();
   const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
   const auto nodes = static_cast<std::size_t>(body->m_nodes.size());
@@ -175,7 +181,7 @@ void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMate
   dynamics->setLastSeconds(lastSeconds);
   restMeasure = restMeasureOf(*body);
   setMaterial(material);
-  pressure.moveTo(*dynamics);
+  pressure.moveTo(*dynamics, sameTets);
 }
 
 void ForcedBody::setMaterial(const ElasticMaterial& material) {

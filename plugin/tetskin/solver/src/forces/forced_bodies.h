@@ -56,6 +56,7 @@ Status checkMaterial(const ElasticMaterial& material);
 Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
 /// Ok unless it is not finite, or too large for the body's mass and size: see elastic_detail::checkPressure.
 Status checkPressure(const btSoftBody& body, double pressure);
+Status checkGas(const btSoftBody& body, double pressure, double outside);
 
 /// One body, and the data derived from it.
 struct ForcedBody {
