@@ -105,6 +105,7 @@ MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fib
 template <class Body>
 void bindMuscle(nb::module_& module, const char* name) {
   Class<MuscleOf<Body>>(module, name, "Tets of a body that contract along their fibres. Made by add_muscle.")
+      .words([](const MuscleOf<Body>& m) { return "number " + std::to_string(m.number); })
       .def_prop_rw(
           "activation",
           [](MuscleOf<Body>& m) { return guarded(m.body, [&] { return changeable(m.body).activation(m.number); }); },
