@@ -425,14 +425,16 @@ TYPED_TEST(MaterialChangesOf, ForcesOfChangedShapesAreInBalance) {
 TYPED_TEST(MaterialChangesOf, ExtremesStayFiniteAndComeBack) {
   const Cage bar = barOf(Order::Linear);
   for (const double growth : {0.05, 20.0}) {
-    ElasticBody<TypeParam> body = made<TypeParam>(bar, material());
+    ElasticOptions options = material();
+    options.stiffnessDamping = 0.1;
+    ElasticBody<TypeParam> body = made<TypeParam>(bar, options);
     ASSERT_TRUE(body.setPlasticity(yielding(1e-6)).ok());
     ASSERT_TRUE(body.setGrowth(growth).ok());
     run(body, 1.0, kFrame);
     EXPECT_LT(fastest(body), kInfinity);
     ASSERT_TRUE(body.setGrowth(1.0).ok());
-    ASSERT_TRUE(body.resetPlasticFlow().ok());
-    run(body, 4.0, kFrame);
+    ASSERT_TRUE(body.endPlasticity().ok() && body.resetPlasticFlow().ok());
+    run(body, 8.0, kFrame);
     EXPECT_GT(smallestVolume(bar.mesh, pointsOf(body.positions())), 0.5) << growth;
   }
   ElasticBody<TypeParam> crushed = made<TypeParam>(bar, material());
