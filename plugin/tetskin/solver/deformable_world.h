@@ -186,7 +186,7 @@ class TETSKIN_SOLVER_API DeformableWorld : private DeformableWorldObjects, publi
 
   /// As in Bullet, but some steps are divided, into at most 64 parts: those in which gravity moves a soft body by more
   /// than 6 % of its size, after a hitch or with a body of some millimetres; and those of a call in which a body that
-  /// keeps a quarter of its energy in an impact, by its damping, hits something or may do so, if they are too long for
+  /// keeps a fifth of its energy in an impact, by its damping, hits something or may do so, if they are too long for
   /// its rebound (nine should fall within an impact; see `DeformableWorldOptions::impactParts`). All of the world takes
   /// the shorter steps, so such a call costs up to that many times as much. Tick callbacks are called for each part,
   /// with its length. Joint limits that are impulses per step (hinges' motors, multibodies' joints, breaking

@@ -21,8 +21,8 @@ namespace {
 
 /// Parts in an impact. Where there would be less than the other number, it stays unresolved: they would be no better.
 constexpr double kResolved = 9.0, kFewest = 3.6;
-/// The share of its energy that an impact must leave a body.
-constexpr double kBounces = 0.25;
+/// The share of its energy that damping must leave a body by estimate, which is a third of what it does leave.
+constexpr double kBounces = 0.06;
 
 struct Box {
   btVector3 low{BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT}, high = -low;
