@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
-// Impacts that steps do not resolve. An undamped body bounces as in fine steps if its impact takes some nine of them.
+// Which steps are divided.
+//
+// Those in which gravity moves a soft body by more than a share of its size: contacts are searched at the position
+// without them, and a body that is deeper in the ground there trembles, or falls through.
+//
+// Those that do not resolve an impact. An undamped body bounces as in fine steps if its impact takes some nine of them.
 // Shorter impacts lose or gain up to 40 % of the rebound, so steps are divided while one goes on or is about to begin,
 // by boxes around what moves: a box too many costs time, a missed one is as inexact as without. What damping or flow
 // keeps from bouncing has no such steps.
@@ -19,10 +24,27 @@
 namespace tetskin {
 namespace {
 
+constexpr double kMostParts = 64.0;
+/// Of a body's size, by which gravity may move it in a step.
+constexpr btScalar kMostFall = btScalar(0.06);
+
 /// Parts in an impact. Where there would be less than the other number, it stays unresolved: they would be no better.
 constexpr double kResolved = 9.0, kFewest = 3.6;
 /// The share of its energy that damping must leave a body by estimate, which is a third of what it does leave.
 constexpr double kBounces = 0.06;
+
+/// The longest side of the box around the nodes; stops early once it is at least `enough`.
+btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
+  assert(body.m_nodes.size() > 0);
+  btVector3 low = body.m_nodes[0].m_x, high = low;
+  btScalar size = 0;
+  for (int n = 1; n < body.m_nodes.size() && size < enough; ++n) {
+    low.setMin(body.m_nodes[n].m_x);
+    high.setMax(body.m_nodes[n].m_x);
+    size = (high - low)[(high - low).maxAxis()];
+  }
+  return size;
+}
 
 struct Box {
   btVector3 low{BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT}, high = -low;
@@ -165,10 +187,33 @@ bool mayHit(const btCollisionObject& other, Way way, btScalar ahead) {
 
 }  // namespace
 
-int DeformableSolver::Impl::partsForImpacts(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds,
-                                            btScalar ahead, int most) {
-  assert(!inStep() && seconds > 0 && ahead >= seconds && most >= 1);
-  if (most == 1) return 1;
+int DeformableSolver::Impl::partsOfSteps(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds,
+                                         btScalar ahead, int forImpacts) {
+  if (!(seconds > 0 && seconds < BT_LARGE_FLOAT)) return 1;
+  const double fall = partsForGravity(seconds), most = std::min(static_cast<double>(forImpacts), kMostParts / fall);
+  return static_cast<int>(fall *
+                          partsForImpacts(world, seconds / static_cast<btScalar>(fall), ahead, std::floor(most)));
+}
+
+double DeformableSolver::Impl::partsForGravity(btScalar seconds) {
+  btScalar most = 1;  // squared
+  for (int i = 0; i < forces().size(); ++i) {
+    const btDeformableGravityForce* force = gravityForce(forces()[i]);
+    for (int b = 0; force && b < force->m_softBodies.size(); ++b) {
+      const btSoftBody& body = *force->m_softBodies[b];
+      const btScalar fall = (body.m_gravityFactor * force->m_gravity).length() * seconds * seconds / kMostFall;
+      if (!body.isActive() || body.m_nodes.size() < 2 || !(fall < BT_LARGE_FLOAT)) continue;
+      const btScalar size = sizeUpTo(body, fall);
+      if (size > 0) most = std::max(most, fall / size);
+    }
+  }
+  return std::min(std::ceil(std::sqrt(static_cast<double>(most))), kMostParts);
+}
+
+double DeformableSolver::Impl::partsForImpacts(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds,
+                                               btScalar ahead, double most) {
+  assert(!inStep() && seconds > 0 && ahead >= seconds && most >= 1.0);
+  if (!(most > 1.0)) return 1.0;
   double parts = 1.0;
   for (int i = 0; i < forces().size(); ++i) {
     auto* elastic = dynamic_cast<ElasticForce*>(inactiveForce(forces()[i]));
@@ -177,8 +222,7 @@ int DeformableSolver::Impl::partsForImpacts(const btDeformableMultiBodyDynamicsW
     if (!body.isActive()) continue;
     const Cloud cloud(body);
     const double takes = elastic->body().dynamics->bounceSeconds(cloud.mass, cloud.radius, kBounces),
-                 steps = takes / static_cast<double>(seconds),
-                 wanted = std::min(std::ceil(kResolved / steps), static_cast<double>(most));
+                 steps = takes / static_cast<double>(seconds), wanted = std::min(std::ceil(kResolved / steps), most);
     if (!(steps * most >= kFewest && wanted > parts)) continue;
     Way way = wayOf(body, world.getGravity(), ahead);
     way.velocity = cloud.velocity;
@@ -193,7 +237,7 @@ int DeformableSolver::Impl::partsForImpacts(const btDeformableMultiBodyDynamicsW
     for (int k = 0; k < inWorld.size() && !divides; ++k) divides = meets(*inWorld[k]);
     if (divides) parts = wanted;
   }
-  return static_cast<int>(parts);
+  return parts;
 }
 
 }  // namespace tetskin
