@@ -14,6 +14,7 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <LinearMath/btAabbUtil2.h>
+#include <tetskin/solver/src/base/body_forces.h>
 #include <tetskin/solver/src/base/contact_filter.h>
 #include <tetskin/solver/src/step/step.h>
 
@@ -199,9 +200,11 @@ double DeformableSolver::Impl::partsForGravity(btScalar seconds) {
   btScalar most = 1;  // squared
   for (int i = 0; i < forces().size(); ++i) {
     const btDeformableGravityForce* force = gravityForce(forces()[i]);
+    const auto* own = asOwn<BodyGravity>(OwnObject::Kind::BodyGravity, forces()[i]);
     for (int b = 0; force && b < force->m_softBodies.size(); ++b) {
       const btSoftBody& body = *force->m_softBodies[b];
-      const btScalar fall = (body.m_gravityFactor * force->m_gravity).length() * seconds * seconds / kMostFall;
+      const btScalar fall =
+          (body.m_gravityFactor * (own ? own->next() : force->m_gravity)).length() * seconds * seconds / kMostFall;
       if (!body.isActive() || body.m_nodes.size() < 2 || !(fall < BT_LARGE_FLOAT)) continue;
       const btScalar size = sizeUpTo(body, fall);
       if (size > 0) most = std::max(most, fall / size);
