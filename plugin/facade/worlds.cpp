@@ -11,13 +11,16 @@ btVector3 toBullet(const Vec3& vector, const char* name) {
   return {static_cast<btScalar>(vector[0]), static_cast<btScalar>(vector[1]), static_cast<btScalar>(vector[2])};
 }
 
-WorldOptions worldOptions(const Vec3& gravity, bool deterministic, bool recordForces, double sleepAfter) {
+WorldOptions worldOptions(const Vec3& gravity, bool deterministic, bool recordForces, double sleepAfter,
+                          int impactParts) {
   WorldOptions options;
   options.gravity = toBullet(gravity, "gravity");
   options.deterministic = deterministic;
   options.recordForces = recordForces;
   options.sleepAfter = static_cast<btScalar>(sleepAfter);
   check(DeformableSolver().setSleepAfter(options.sleepAfter));
+  if (impactParts < 1 || impactParts > 64) fail(StatusCode::InvalidOption, "impactParts: must be 1 to 64");
+  options.impactParts = impactParts;
   return options;
 }
 

@@ -18,8 +18,9 @@ namespace tetskin::facade {
 btVector3 toBullet(const Vec3& vector, const char* name);
 btTransform toBullet(const Vec3& position, const Quaternion& rotation);
 
-/// The options of a world, as languages give them; throws for a `sleepAfter` that the library refuses.
-WorldOptions worldOptions(const Vec3& gravity, bool deterministic, bool recordForces, double sleepAfter);
+/// The options of a world, as languages give them; throws for numbers that the library refuses.
+WorldOptions worldOptions(const Vec3& gravity, bool deterministic, bool recordForces, double sleepAfter,
+                          int impactParts);
 
 /// A collision shape, with the data that it refers to. Shared by bodies.
 struct ShapeModel {

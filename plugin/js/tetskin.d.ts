@@ -225,6 +225,8 @@ export interface WorldOptions {
   recordForces?: boolean;
   /** Seconds at rest until soft bodies, and what they lie on or carry, fall asleep: at least 0; Infinity: never; 0.5 */
   sleepAfter?: number;
+  /** Into how many parts steps may be divided while a body with little damping hits something: 1 to 64; 4 */
+  impactParts?: number;
 }
 
 /** A force, and its torque about the centre of mass of the object that it acts on; world space. */

@@ -97,6 +97,7 @@ CALLS = {
     "a negative number of tets": (lambda t: ts.create_cage(t.m, target_tets=-1), TypeError),
     "too many threads": (lambda t: ts.World(threads=10**6), ValueError),
     "sleep before rest": (lambda t: ts.World(sleep_after=-1), error("INVALID_OPTION")),
+    "no part of a step": (lambda t: ts.World(impact_parts=0), error("INVALID_OPTION")),
     # indices
     "a triangle of another vertex": (lambda t: ts.TriangleMesh(CORNERS, [[0, 1, 4]]), error("INDEX_OUT_OF_RANGE")),
     "a tet of another node": (lambda t: ts.Cage(CORNERS, [[0, 1, 2, -1]]), error("INDEX_OUT_OF_RANGE")),

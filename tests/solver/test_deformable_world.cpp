@@ -176,6 +176,18 @@ TEST(DeformableWorld, StepsAreDividedWhereABodyIsTooSmallForThemAlone) {
   }
 }
 
+TEST(DeformableWorld, ABodysOwnGravityDividesSteps) {
+  tetskin::DeformableWorld world(DeformableWorldOptions{btVector3(0, btScalar(-1e4), 0), nullptr});
+  const auto body = DeformableBody::add(world, smallCageAbove(1)).value();
+  const auto stepsWith = [&](btScalar gravity) {
+    EXPECT_TRUE(body->setGravity(btVector3(0, gravity, 0)).ok());
+    return world.stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  };
+  EXPECT_EQ(stepsWith(-10), 4);
+  EXPECT_EQ(stepsWith(btScalar(-1e4)), 8);
+  EXPECT_EQ(stepsWith(0), 4);
+}
+
 TEST(DeformableWorld, IsNotHarmedByTimesThatAreNone) {
   constexpr btScalar kNaN = std::numeric_limits<btScalar>::quiet_NaN();
   constexpr btScalar kInfinite = std::numeric_limits<btScalar>::infinity();

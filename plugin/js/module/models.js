@@ -80,7 +80,9 @@ const kCageOptions = {
   targetTets: 3000, duplicateElements: true, fit: true, stiffness: [], density: [], progress: undefined,
 };
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
-const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false, sleepAfter: 0.5};
+const kWorldOptions = {
+  gravity: [0, -9.81, 0], deterministic: false, recordForces: false, sleepAfter: 0.5, impactParts: 4,
+};
 const kPaletteOptions = {interpolation: "linear", gradients: false, layout: "rows"};
 
 /** The result of `load`. */
@@ -162,9 +164,10 @@ class Tetskin {
       layout === "columns"));
   }
   createWorld(options) {
-    const {gravity, deterministic, recordForces, sleepAfter} = optionsOf(options, kWorldOptions);
+    const {gravity, deterministic, recordForces, sleepAfter, impactParts} = optionsOf(options, kWorldOptions);
     return new World(
-      this.hidden.instance, this.core.createWorld(gravity, deterministic, recordForces, sleepAfter));
+      this.hidden.instance,
+      this.core.createWorld(gravity, deterministic, recordForces, sleepAfter, impactParts));
   }
 
   handle(thing, Type, name) {

@@ -20,8 +20,8 @@ void* allocated(std::size_t bytes) {
   return memory;
 }
 
-WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces, double sleepAfter) {
-  const WorldOptions options = worldOptions(gravity, deterministic, recordForces, sleepAfter);
+WorldHandle* createWorld(Vec3 gravity, bool deterministic, bool recordForces, double sleepAfter, int impactParts) {
+  const WorldOptions options = worldOptions(gravity, deterministic, recordForces, sleepAfter, impactParts);
   return new WorldHandle{std::make_shared<World>(options), {}, {}};
 }
 

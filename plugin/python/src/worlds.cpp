@@ -74,16 +74,19 @@ Class<World> bindWorlds(nb::module_& module) {
       })
       .def(
           "__init__",
-          [](World* self, const Vec3& gravity, int threads, bool deterministic, bool recordForces, double sleepAfter) {
-            const WorldOptions options = worldOptions(gravity, deterministic, recordForces, sleepAfter);
+          [](World* self, const Vec3& gravity, int threads, bool deterministic, bool recordForces, double sleepAfter,
+             int impactParts) {
+            const WorldOptions options = worldOptions(gravity, deterministic, recordForces, sleepAfter, impactParts);
             new (self) World(poolOf(threads), options);
           },
           nb::kw_only(), "gravity"_a = Vec3{0, -9.81, 0}, "threads"_a = 1, "deterministic"_a = false,
-          "record_forces"_a = true, "sleep_after"_a = 0.5,
+          "record_forces"_a = true, "sleep_after"_a = 0.5, "impact_parts"_a = 4,
           "gravity: world length / s^2. threads: number that work on a step; any number gives the same results to the "
           "bit. deterministic: the same bits on other processors, at a cost of some percent. record_forces: for "
           "forces_on. sleep_after: seconds at rest until soft bodies, and what they lie on or carry, fall asleep: at "
-          "least 0; inf: never.")
+          "least 0; inf: never. impact_parts: into how many parts steps may be divided while a body with little "
+          "damping "
+          "hits something, 1 to 64; 1: never.")
       .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
            "Advances by dt seconds in `substeps` steps of Bullet, and updates all surfaces; returns the number of "
            "steps made: 0 for 0 seconds. The GIL is released. An Error with the code NON_FINITE is raised after the "

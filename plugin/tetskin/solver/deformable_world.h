@@ -143,6 +143,9 @@ struct DeformableWorldOptions {
   bool deterministic = false;      ///< see `DeformableSolver::setDeterministic`; rigid bodies then turn so, too
   RigidForceModel rigidForces = RigidForceModel::PlainWorld;  ///< choose the other for scenes tuned in Bullet's world
   btScalar sleepAfter = btScalar(0.5);  ///< seconds, see `DeformableSolver::setSleepAfter`; 0.5 if that refuses it
+  /// Into how many parts `stepSimulation` may divide steps while an elastic body hits something, 1 to 64; others count
+  /// as the nearest of these. 1: never.
+  int impactParts = 4;
 };
 
 /// Internal to DeformableWorld: the objects that a world needs, in a base class so that they outlive it.
@@ -181,12 +184,14 @@ class TETSKIN_SOLVER_API DeformableWorld : private DeformableWorldObjects, publi
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
 
-  /// As in Bullet, but steps in which gravity moves a soft body by more than 6 % of its size are divided, into at most
-  /// 64 parts: after a hitch, or with a body of some millimetres. Tick callbacks are called for each part, with its
-  /// length. Joint limits that are impulses per step (hinges' motors, multibodies' joints, breaking thresholds) are
-  /// divided as well. The world can be neither saved nor restored during the call. A time that is negative or not
-  /// finite, or a fixedTimeStep of 0, changes nothing.
-  /// Returns  the number of steps, counting each part
+  /// As in Bullet, but some steps are divided, into at most 64 parts: those in which gravity moves a soft body by more
+  /// than 6 % of its size, after a hitch or with a body of some millimetres; and those of a call in which a body that
+  /// keeps a fifth of its energy in an impact, by its damping, hits something or may do so, if they are too long for
+  /// its rebound (nine should fall within an impact; see `DeformableWorldOptions::impactParts`). All of the world takes
+  /// the shorter steps, so such a call costs up to that many times as much. Tick callbacks are called for each part,
+  /// with its length. Joint limits that are impulses per step (hinges' motors, multibodies' joints, breaking
+  /// thresholds) are divided as well. The world can be neither saved nor restored during the call. A time that is
+  /// negative or not finite, or a fixedTimeStep of 0, changes nothing. Returns  the number of steps, counting each part
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
 

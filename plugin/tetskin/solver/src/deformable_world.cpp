@@ -19,36 +19,6 @@ using namespace bullet_detail;
 
 namespace {
 
-/// The longest side of the box around the nodes; stops early once it is at least `enough`.
-btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
-  assert(body.m_nodes.size() > 0);
-  btVector3 low = body.m_nodes[0].m_x, high = low;
-  btScalar size = 0;
-  for (int n = 1; n < body.m_nodes.size() && size < enough; ++n) {
-    low.setMin(body.m_nodes[n].m_x);
-    high.setMax(body.m_nodes[n].m_x);
-    size = (high - low)[(high - low).maxAxis()];
-  }
-  return size;
-}
-
-/// The number of parts into which a step of this length is divided, so that gravity moves no awake soft body by more
-/// than a share of its size in each. Contacts are searched at the position without them: a body that is deeper in the
-/// ground there trembles, or falls through.
-int partsOf(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds) {
-  constexpr btScalar kMostFall = btScalar(0.06), kMostParts = 64;
-  const btScalar enough = world.getGravity().length() * seconds * seconds / kMostFall;
-  if (!(enough < BT_LARGE_FLOAT)) return 1;  // not a valid length of a step
-  btScalar smallest = enough;
-  const auto& bodies = world.getSoftBodyArray();
-  for (int b = 0; b < bodies.size(); ++b) {
-    if (!bodies[b]->isActive() || bodies[b]->m_nodes.size() < 2) continue;
-    smallest = std::min(smallest, sizeUpTo(*bodies[b], enough));
-  }
-  if (!(smallest > 0)) return 1;
-  return static_cast<int>(std::min(std::ceil(btSqrt(enough / smallest)), kMostParts));
-}
-
 /// While this exists, the world is within `stepSimulation`; an exception that leaves it ends the step, too.
 template <class SolverImpl>
 class Simulation {
@@ -82,6 +52,7 @@ struct DeformableWorldObjects::Impl {
   DeformableSolver deformableSolver;
   btDeformableMultiBodyConstraintSolver constraintSolver;
   RigidTurns turns;
+  int impactParts = 1;
   std::unique_ptr<RigidForces> forces;  ///< null: Bullet's own treatment
 };
 
@@ -97,6 +68,7 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
   impl_->deformableSolver.setThreads(options.threads);
   impl_->deformableSolver.setDeterministic(options.deterministic);
   (void)impl_->deformableSolver.setSleepAfter(options.sleepAfter);
+  impl_->impactParts = std::max(options.impactParts, 1);
   if (options.rigidForces == RigidForceModel::PlainWorld) {
     impl_->forces = std::make_unique<RigidForces>(m_nonStaticRigidBodies);
     Access<DeformableSolver>::impl(impl_->deformableSolver).rigidForces = impl_->forces.get();
@@ -115,7 +87,9 @@ int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar
     return 0;
   }
   const btScalar seconds = maxSubSteps > 0 ? fixedTimeStep : timeStep;
-  const int parts = partsOf(*this, seconds);
+  const btScalar more = maxSubSteps > 0 ? std::min(timeStep, static_cast<btScalar>(maxSubSteps - 1) * seconds) : 0;
+  const int parts = Access<DeformableSolver>::impl(impl_->deformableSolver)
+                        .partsOfSteps(*this, seconds, seconds + more, impl_->impactParts);
   if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
   const DividedLimits limits(*this, parts);
   // A time of exactly one step must include its last part, although rounding may have made the parts a little too long.

@@ -11,6 +11,9 @@
 namespace tetskin::elastic_detail {
 namespace {
 
+/// The way of a pressure wave through what hits something, in radii of gyration: a ball has 2.6, a bar 3.5.
+constexpr double kImpactLength = 3.0;
+
 using kernels::kGroup;
 
 /// The component of each slot.
@@ -181,11 +184,18 @@ double BodyComponents<S>::largestRadius() const {
 
 template <class S>
 double BodyComponents<S>::impactFrequency(std::size_t component) const {
-  constexpr double kPi = 3.14159265358979324, kLength = 3.0;  // in radii of gyration: a ball has 2.6, a bar 3.5
+  constexpr double kPi = 3.14159265358979324;
   const ComponentMotion& motion = motions_[component];
-  const double length = kLength * motion.radius();
+  const double length = kImpactLength * motion.radius();
   if (!(length > 0.0)) return 0.0;
   return kPi * std::sqrt(stiffness_[component] / motion.mass()) / (2.0 * length);
+}
+
+template <class S>
+double BodyComponents<S>::impactSeconds(double mass, double radius) const {
+  double stiffness = 0.0;
+  for (const double one : stiffness_) stiffness += one;
+  return stiffness > 0.0 ? 2.0 * kImpactLength * radius * std::sqrt(mass / stiffness) : 0.0;
 }
 
 template <class S>

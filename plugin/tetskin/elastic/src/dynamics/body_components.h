@@ -66,6 +66,8 @@ class BodyComponents {
   /// Circular frequency of a component that hits something: half a period is what a pressure wave takes through it and
   /// back. 0 without mass.
   double impactFrequency(std::size_t component) const;
+  /// The same half a period in seconds, of all of it together; 0 without stiffness.
+  double impactSeconds(double mass, double radius) const;
   /// By component: rotations of the step, stored by rows.
   std::vector<std::array<double, 9>> turns() const;
   double mass(std::size_t component) const { return motions_[component].mass(); }

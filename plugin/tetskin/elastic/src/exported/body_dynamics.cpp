@@ -64,6 +64,17 @@ void toPoints(const S* wide, AlignedVector<S>& points) {
   });
 }
 
+/// The share of its energy that damping leaves a vibration in half a period.
+/// damping  in seconds: the damping ratio is half of this times the circular frequency
+double keptInHalfPeriod(double damping, double frequency) {
+  constexpr double kQuarter = 1.57079632679489662;
+  const double ratio = 0.5 * damping * frequency;
+  if (!(ratio < 1.0)) return 0.0;
+  // exp(-4 x), to a few per cent: its bits are the same everywhere.
+  const double x = kQuarter * ratio / std::sqrt(1.0 - ratio * ratio), root = 1.0 / (1.0 + x + 0.5 * x * x);
+  return root * root * root * root;
+}
+
 }  // namespace
 
 template <class S>
@@ -521,12 +532,15 @@ double BodyDynamics<S>::rigidCompliance(std::size_t component, const std::array<
 template <class S>
 double BodyDynamics<S>::keptInImpact(std::size_t component, double energy) const {
   constexpr double kPi = 3.14159265358979324;  // half a period is a phase of it
-  const double frequency = components_.impactFrequency(component), ratio = 0.5 * damping_ * frequency;
-  if (!(ratio < 1.0)) return 0.0;
-  // exp(-x), to a few per cent: its bits are the same everywhere.
-  const double quarter = 0.5 * kPi * ratio / std::sqrt(1.0 - ratio * ratio),
-               root = 1.0 / (1.0 + quarter + 0.5 * quarter * quarter);
-  return root * root * root * root * (1.0 - flowsInImpact(component, energy, kPi / frequency));
+  const double frequency = components_.impactFrequency(component), kept = keptInHalfPeriod(damping_, frequency);
+  return kept > 0.0 ? kept * (1.0 - flowsInImpact(component, energy, kPi / frequency)) : 0.0;
+}
+
+template <class S>
+double BodyDynamics<S>::bounceSeconds(double mass, double radius, double leastKept) const {
+  constexpr double kPi = 3.14159265358979324;
+  const double seconds = tets_ && !tets_->flows() ? components_.impactSeconds(mass, radius) : 0.0;
+  return seconds > 0.0 && keptInHalfPeriod(damping_, kPi / seconds) >= leastKept ? seconds : 0.0;
 }
 
 /// The share of an impact's energy that flows within half a period: what is beyond the energy at which the whole

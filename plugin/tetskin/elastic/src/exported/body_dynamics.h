@@ -193,6 +193,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// that does not flow.
   /// energy  with which it comes
   double keptInImpact(std::size_t component, double energy) const;
+  /// Seconds that an impact of the whole body takes, what a pressure wave takes through it and back; 0 if unknown, or
+  /// if the body leaves less than this share of its energy in one. Between steps, too.
+  /// radius  of gyration
+  double bounceSeconds(double mass, double radius, double leastKept) const;
   /// Its centre of mass at the beginning of the step, or the centroid of its pinned nodes.
   std::array<double, 3> centreOf(std::size_t component) const;
   /// Its velocity as a rigid body of its momentum: at the beginning of the step, with what acts on it beside

@@ -83,7 +83,7 @@ void BodyGravity::reinitialize(bool) {
   removed_ = nullptr;
   inCallback_ = !removal;
   const btVector3 before = m_gravity;
-  m_gravity = own_.value_or(world_->getGravity());
+  m_gravity = next();
   for (int i = 0; i < m_softBodies.size(); ++i) {
     updateConstants(*m_softBodies[i]);
     if (m_gravity != before) m_softBodies[i]->activate();

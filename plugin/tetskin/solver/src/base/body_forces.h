@@ -113,6 +113,8 @@ class BodyGravity : public OwnForce<btDeformableGravityForce> {
 
   /// gravity  world units per second squared; empty: the world's
   void set(const std::optional<btVector3>& gravity) { own_ = gravity; }
+  /// That of the next substep.
+  btVector3 next() const { return own_.value_or(world_->getGravity()); }
 
   /// Writes or reads the gravity, and its owner's other data of the body.
   void serialize(WorldStream& stream);

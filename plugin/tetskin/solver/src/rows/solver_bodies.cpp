@@ -14,13 +14,6 @@ namespace {
 
 const SolverSettings kBulletsBodies;
 
-/// Gravity has no derivative by positions, so that it couples nothing.
-bool isGravity(const btDeformableLagrangianForce& force) {
-  static const btDeformableGravityForce bullets(btVector3(0, 0, 0));
-  return OwnObject::is(OwnObject::Kind::BodyGravity, &force) ||
-         isOfSameClass<btDeformableLagrangianForce>(force, bullets);
-}
-
 /// A body that has been moved to another world since has none.
 void addWorld(const ForcedBody& elastic, std::vector<btDiscreteDynamicsWorld*>& worlds) {
   if (elastic.body->getWorldInfo() != elastic.worldInfo) return;
@@ -28,6 +21,13 @@ void addWorld(const ForcedBody& elastic, std::vector<btDiscreteDynamicsWorld*>& 
 }
 
 }  // namespace
+
+const btDeformableGravityForce* gravityForce(const btDeformableLagrangianForce* force) {
+  static const btDeformableGravityForce bullets(btVector3(0, 0, 0));
+  const bool isGravity =
+      OwnObject::is(OwnObject::Kind::BodyGravity, force) || isOfSameClass<btDeformableLagrangianForce>(*force, bullets);
+  return isGravity ? static_cast<const btDeformableGravityForce*>(force) : nullptr;
+}
 
 bool SolverBodies::collect(const btAlignedObjectArray<btSoftBody*>& all, bool everyone,
                            btAlignedObjectArray<btSoftBody*>& awake) {
@@ -195,12 +195,11 @@ void SolverBodies::takeElastic(const ForceList& forces) {
 
 void SolverBodies::takeGravity(const ForceList& forces) {
   for (int i = 0; i < forces.size(); ++i) {
-    if (!isGravity(*forces[i])) continue;
-    const auto& gravity = static_cast<const btDeformableGravityForce&>(*forces[i]);
-    for (int b = 0; b < gravity.m_softBodies.size(); ++b) {
-      const btSoftBody* body = gravity.m_softBodies[b];
+    const btDeformableGravityForce* gravity = gravityForce(forces[i]);
+    for (int b = 0; gravity && b < gravity->m_softBodies.size(); ++b) {
+      const btSoftBody* body = gravity->m_softBodies[b];
       SolvedBody* solved = find(body);
-      if (solved && solved->elastic) solved->gravity += body->m_gravityFactor * gravity.m_gravity;
+      if (solved && solved->elastic) solved->gravity += body->m_gravityFactor * gravity->m_gravity;
     }
   }
 }
@@ -226,7 +225,7 @@ void SolverBodies::attachMemories() {
 
 std::vector<std::size_t> SolverBodies::actedOnBy(const btDeformableLagrangianForce& force) const {
   std::vector<std::size_t> indices;
-  if (isGravity(force) || isSilent(force)) return indices;
+  if (gravityForce(&force) || isSilent(force)) return indices;  // gravity has no derivative: it couples nothing
   const auto add = [&](const btSoftBody* body) {
     if (const std::size_t k = indexOf(body); k < bodies_.size()) indices.push_back(k);
   };

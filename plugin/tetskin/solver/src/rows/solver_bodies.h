@@ -96,6 +96,9 @@ struct SolvedBody {
   }
 };
 
+/// The force as one of gravity, Bullet's or of a body's own; null if it is another.
+const btDeformableGravityForce* gravityForce(const btDeformableLagrangianForce* force);
+
 /// Bodies that forces couple, and these forces; most systems have one body.
 struct SolvedSystem {
   std::vector<std::size_t> bodies;

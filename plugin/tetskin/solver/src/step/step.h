@@ -79,6 +79,13 @@ struct DeformableSolver::Impl {
   /// Writes or reads the settings of Bullet's world that the last step was solved with.
   void serializeFlags(WorldStream& stream);
 
+  // Into how many parts steps of this length are divided, at most 64; implemented in step_parts.cpp.
+  /// ahead  seconds in which impacts may begin;  forImpacts  parts for these at most
+  int partsOfSteps(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds, btScalar ahead, int forImpacts);
+  double partsForGravity(btScalar seconds);
+  double partsForImpacts(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds, btScalar ahead,
+                         double most);
+
   // What the application moves between steps.
   /// Forgets a body's contacts and its sleep history; implemented in step_placed.cpp.
   void forgetTouches(btSoftBody& body);
