@@ -301,8 +301,8 @@ class Live {
   }
 
   showSettings() {
-    const {stiffness, damping, gravity, yield: stress, activation, pressure, tets, elements, skin, forces} = this.settings;
-    const texts = {
+    const {stiffness, damping, gravity, yield: stress, activation, pressure} = this.settings;
+    const {tets, elements, skin, forces} = this.settings, texts = {
       stiffness: [Math.log10(stiffness), stiffness.toFixed(0)], damping: [Math.log10(damping), damping.toPrecision(1)],
       gravity: [gravity, gravity.toFixed(1)], yield: [Math.log10(stress), stress.toPrecision(2)],
       activation: [activation, activation.toFixed(2)], pressure: [pressure, pressure.toFixed(0)],

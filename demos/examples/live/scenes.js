@@ -161,10 +161,10 @@ function addClay(builder) {
     {position: [0, CLAY.half[1] + 0.005, 0], mass: 8, friction: 1, damping: 0.1, yields: true}, '#b06a45');
   const thumb = builder.addSphere(CLAY.thumb, {kinematic: true, position: [0, CLAY.above + CLAY.thumb, 0]}, 'pole');
   builder.beforeFrame(frame => {
-    const seconds = Math.min(frame * FRAME, places.length * period), k = Math.floor(seconds / period), t = seconds - k * period;
-    const from = places[Math.max(0, k - 1)], to = places[Math.min(k, places.length - 1)], way = eased(0, 0.4, t);
-    const down = eased(0.4, 0.9, t) - eased(1.0, 1.5, t), bottom = CLAY.above + (top - CLAY.deep - CLAY.above) * down;
-    thumb.position = [from[0] + (to[0] - from[0]) * way, bottom + CLAY.thumb, from[1] + (to[1] - from[1]) * way];
+    const k = Math.min(Math.floor(frame * FRAME / period), places.length - 1), t = frame * FRAME - k * period;
+    const way = eased(0, 0.4, t), down = eased(0.4, 0.9, t) - eased(1.0, 1.5, t);
+    const [x, z] = places[k].map((to, axis) => to + (1 - way) * ((places[k - 1] || [0, 0])[axis] - to));
+    thumb.position = [x, CLAY.above + (top - CLAY.deep - CLAY.above) * down + CLAY.thumb, z];
   });
 }
 
@@ -177,8 +177,8 @@ const ARM = {
       rod([0.08, 0.7, 0], [1, 0.7, 0], 0.075, 0.055)]},
     cube: {stiffness: 1, density: 1, rods: [rod([0, 0.8, 0], [0.06, 0.71, 0], 0.07, 0.07)]},
     muscle: {stiffness: 1, density: 1, rods: [rod(...ARM.muscle, 0.045, 0.045, 0.06)]},
-    heavy_ball: {stiffness: 200, density: 8, rods: [
-      rod([1, 0.7, -0.2], [1, 0.7, 0.2], 0.05, 0.05), ...[-1, 1].map(s => rod([1, 0.7, 0.2 * s], [1, 0.7, 0.24 * s], 0.13, 0.13))]},
+    heavy_ball: {stiffness: 200, density: 8, rods: [rod([1, 0.7, -0.2], [1, 0.7, 0.2], 0.05, 0.05),
+      ...[-1, 1].map(side => rod([1, 0.7, 0.2 * side], [1, 0.7, 0.24 * side], 0.13, 0.13))]},
   }),
 };
 

@@ -81,7 +81,7 @@ function fieldMesh(distance, low, high, step) {
   const placeOf = n => counts.map((count, k) => low[k] + step * (Math.floor(n / strides[k]) % count));
   const values = Float64Array.from({length: strides[2] * counts[2]}, (_, n) => distance(placeOf(n)));
   const positions = [], triangles = [], vertices = new Map();
-  const offsets = Array.from({length: 8}, (_, c) => strides.reduce((sum, stride, k) => sum + (c >> k & 1) * stride, 0));
+  const offsets = Array.from({length: 8}, (_, c) => (c & 1) * strides[0] + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2]);
   const vertexOf = cell => {  // of the cell above this corner
     if (!vertices.has(cell)) {
       const sum = [0, 0, 0, 0];
@@ -122,7 +122,8 @@ function rod([a, b, c], to, atFrom, atTo, bulge = 0) {
 /** parts: by name of their material, {rods, stiffness, density}, blended where they meet. Each vertex is painted as the
     part that is nearest; `masks` tells by name which are. */
 function paintedRodsMesh(parts, low, high, step, blend) {
-  const names = Object.keys(parts), distances = point => names.map(name => Math.min(...parts[name].rods.map(of => of(point))));
+  const names = Object.keys(parts);
+  const distances = point => names.map(name => Math.min(...parts[name].rods.map(distance => distance(point))));
   const mesh = fieldMesh(point => {
     const sum = distances(point).reduce((total, x) => total + Math.exp(-x / blend), 0);
     return -blend * Math.log(sum);
@@ -140,7 +141,8 @@ function paintedRodsMesh(parts, low, high, step, blend) {
     groups.push({first, count: sorted.length / 3 - first, material});
   });
   const painted = of => Float64Array.from(partOf, part => parts[names[part]][of]);
-  const masks = Object.fromEntries(names.map((name, part) => [name, Float64Array.from(partOf, own => Number(own === part))]));
+  const masks = {};
+  names.forEach((name, part) => masks[name] = Float64Array.from(partOf, own => Number(own === part)));
   return {positions, triangles: Int32Array.from(sorted), groups, masks, stiffness: painted('stiffness'),
     density: painted('density')};
 }
@@ -166,9 +168,11 @@ function tyreMesh(ring, outer, inner, along, around) {
     triangles.push(a, c, b, b, c, d);
   });
   const cage = count => {
-    const rows = Math.max(12, Math.round(Math.sqrt(count / 6 * 16 / 7))), columns = Math.max(6, Math.round(count / 6 / rows));
-    const nodes = [], tets = [], up = rows * columns;
-    for (const radius of [inner, outer]) grid(rows, columns, (i, j) => nodes.push(...pointOf(i / rows, j / columns, radius)));
+    const rows = Math.max(12, Math.round(Math.sqrt(count / 6 * 16 / 7)));
+    const columns = Math.max(6, Math.round(count / 6 / rows)), nodes = [], tets = [], up = rows * columns;
+    for (const radius of [inner, outer]) {
+      grid(rows, columns, (i, j) => nodes.push(...pointOf(i / rows, j / columns, radius)));
+    }
     grid(rows, columns, (i, j, a, b, c, d) => {
       for (const face of [[a, b, d], [a, d, c]]) {
         const [p, q, r] = face.sort((x, y) => x - y);  // cuts of sides that prisms share begin at the lower node

@@ -148,7 +148,8 @@ class Builder {
 
   /** mask: the painted one, of its tets; curve: of its fibres; stress: in the units of the stiffness */
   addMuscle(body, mask, curve, stress) {
-    const {module, shelf, parts} = this.simulation, {model, name, modulusOfOne} = parts.find(part => part.body === body);
+    const {module, shelf, parts} = this.simulation;
+    const {model, name, modulusOfOne} = parts.find(part => part.body === body);
     const shares = module.spreadMap(model.cage, model.mesh, shelf.mesh(name).shape.masks[mask]).tets;
     const tets = [...shares.keys()].filter(t => shares[t] >= 0.5);
     return body.addMuscle(tets, module.fibresAlong(model.cage, tets, curve), stress * modulusOfOne);

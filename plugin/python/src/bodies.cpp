@@ -220,7 +220,8 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
             facade::setPressureSurface(*b.state, model);
           },
           "mesh"_a.none(),
-          "Sets the surface on which pressure acts, and whose volume counts: a closed mesh in the cage, rest space, such "
+          "Sets the surface on which pressure acts, and whose volume counts: a closed mesh in the cage, rest space, "
+          "such "
           "as an inner wall. None: the boundary of the tets. A gas keeps its present pressure.")
       .def_prop_ro("volume", number([](DeformableBody& b) { return b.volume(); }),
                    "The volume that pressure fills: of its hollows or, without any, of the body.")
