@@ -28,7 +28,7 @@ const numberFrom = (least, most) => text => {
 const oneOf = (...values) => text => values.find(value => String(value) === text);
 const ADDRESSED = {
   stiffness: numberFrom(10, 1000), damping: numberFrom(0.001, 0.2), gravity: numberFrom(0, 20),
-  yield: numberFrom(0.1, 32), activation: numberFrom(0, 1), pressure: numberFrom(0, 4000),
+  yield: numberFrom(0.1, 100), activation: numberFrom(0, 1), pressure: numberFrom(0, 4000),
   tets: oneOf(0, ...TETS), elements: oneOf('linear', 'quadratic'), skin: oneOf('linear', 'quadratic'),
   forces: oneOf(false, true),
 };
@@ -304,7 +304,7 @@ class Live {
     const {stiffness, damping, gravity, yield: stress, activation, pressure} = this.settings;
     const {tets, elements, skin, forces} = this.settings, texts = {
       stiffness: [Math.log10(stiffness), stiffness.toFixed(0)], damping: [Math.log10(damping), damping.toPrecision(1)],
-      gravity: [gravity, gravity.toFixed(1)], yield: [Math.log10(stress), stress.toPrecision(2)],
+      gravity: [gravity, gravity.toFixed(1)], yield: [Math.log10(stress), String(Number(stress.toPrecision(2)))],
       activation: [activation, activation.toFixed(2)], pressure: [pressure, pressure.toFixed(0)],
     };
     for (const [id, [value, text]] of Object.entries(texts)) {

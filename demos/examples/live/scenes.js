@@ -29,6 +29,10 @@ function aboutZ(angle) {
   return [0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];
 }
 
+function aboutX(angle) {
+  return [Math.sin(angle / 2), 0, 0, Math.cos(angle / 2)];
+}
+
 function quaternion(axis, angle) {
   const length = Math.hypot(...axis), s = Math.sin(angle / 2) / length;
   return [...axis.map(x => s * x), Math.cos(angle / 2)];
@@ -150,32 +154,37 @@ function addTwist(builder) {
   });
 }
 
-const CLAY = {half: [0.85, 0.27, 0.6], thumb: 0.19, deep: 0.2, above: 0.8, period: 1.5,
-  places: [[-0.5, 0.22], [0.02, -0.2], [0.5, 0.2]]};
+const CLAY = {half: [0.72, 0.2, 0.45], slope: 0.7, thumb: 0.2, deep: 0.26, away: 0.25, period: 1.5,
+  places: [[-0.42, 0.58], [0.02, 0.34], [0.42, 0.58], [1.1, 0.3]]};
 
-/** A thumb presses three dents into a block, and stays above it. */
+/** A block leans on a board. A thumb presses three dents into it, and waits beside it. */
 function addClay(builder) {
   addFloor(builder);
-  const top = 2 * CLAY.half[1], {places, period} = CLAY;
-  builder.addBody('clay', builder.tets(1500),
-    {position: [0, CLAY.half[1] + 0.005, 0], mass: 8, friction: 1, damping: 0.1, yields: true}, '#b06a45');
-  const thumb = builder.addSphere(CLAY.thumb, {kinematic: true, position: [0, CLAY.above + CLAY.thumb, 0]}, 'pole');
+  const {half, thumb, deep, away, period, places} = CLAY, c = Math.cos(CLAY.slope), s = Math.sin(CLAY.slope);
+  const place = (x, above, up) => [x, 0.2 + c * above + s * up, 0.5 + s * above - c * up];
+  const rotation = aboutX(CLAY.slope), last = places.length - 1, front = 2 * half[1] + thumb;
+  builder.addBox([0.82, 0.05, 0.55], {position: place(0, -0.055, 0.51), rotation, friction: 1}, 'ramp');
+  builder.addBox([0.82, 0.12, 0.04], {position: place(0, 0.015, -0.045), rotation, friction: 1}, 'ramp');
+  builder.addBox([0.5, 0.32, 0.05], {position: [0, 0.32, -0.32]}, 'ramp');
+  builder.addBody('clay', builder.tets(1500), {position: place(0, half[1] + 0.003, half[2]), rotation, mass: 8, friction: 1,
+    damping: 0.1, yields: true}, '#b06a45');
+  const ball = builder.addSphere(thumb, {kinematic: true, position: place(0, front + away, 0.5)}, 'pole');
   builder.beforeFrame(frame => {
-    const k = Math.min(Math.floor(frame * FRAME / period), places.length - 1), t = frame * FRAME - k * period;
-    const way = eased(0, 0.4, t), down = eased(0.4, 0.9, t) - eased(1.0, 1.5, t);
-    const [x, z] = places[k].map((to, axis) => to + (1 - way) * ((places[k - 1] || [0, 0])[axis] - to));
-    thumb.position = [x, CLAY.above + (top - CLAY.deep - CLAY.above) * down + CLAY.thumb, z];
+    const k = Math.min(Math.floor(frame * FRAME / period), last), t = frame * FRAME - k * period;
+    const way = eased(0, 0.4, t), pressed = k < last ? eased(0.4, 0.9, t) - eased(1.0, 1.5, t) : 0;
+    const [x, up] = places[k].map((to, axis) => to + (1 - way) * ((places[k - 1] || [0, 0.5])[axis] - to));
+    ball.position = place(x, front + away - (away + deep) * pressed, up);
   });
 }
 
 /** Of the arm: its bones, its weight, and its muscle, whose fibres run from the first point to the second. */
 const ARM = {
-  top: 1.75, muscle: [[0.13, 1.62, 0], [0.38, 0.74, 0]],
+  top: 1.75, muscle: [[0.2, 1.6, 0], [0.42, 0.74, 0]],
   rods: () => ({
     ivory: {stiffness: 200, density: 1, rods: [
-      rod([0, 1.75, 0], [0, 0.82, 0], 0.075, 0.075), rod([0, 1.66, 0], [0.13, 1.64, 0], 0.075, 0.05),
+      rod([0, 1.75, 0], [0, 0.82, 0], 0.075, 0.075), rod([0, 1.66, 0], [0.2, 1.64, 0], 0.075, 0.05),
       rod([0.08, 0.7, 0], [1, 0.7, 0], 0.075, 0.055)]},
-    cube: {stiffness: 1, density: 1, rods: [rod([0, 0.8, 0], [0.06, 0.71, 0], 0.07, 0.07)]},
+    cube: {stiffness: 1, density: 1, rods: [rod([0, 0.78, 0], [0.05, 0.72, 0], 0.085, 0.085)]},
     muscle: {stiffness: 1, density: 1, rods: [rod(...ARM.muscle, 0.045, 0.045, 0.06)]},
     heavy_ball: {stiffness: 200, density: 8, rods: [rod([1, 0.7, -0.2], [1, 0.7, 0.2], 0.05, 0.05),
       ...[-1, 1].map(side => rod([1, 0.7, 0.2 * side], [1, 0.7, 0.24 * side], 0.13, 0.13))]},
@@ -185,9 +194,9 @@ const ARM = {
 /** An upper arm that is held, a forearm with a weight, and a muscle between them. */
 function addMuscle(builder) {
   addFloor(builder);
-  builder.addBox([0.22, 0.06, 0.22], {position: [0, ARM.top + 0.06, 0]}, 'pole');
-  const body = builder.addBody('arm', builder.tets(1000), {mass: 4, pinned: p => p[1] > ARM.top - 0.06});
-  const muscle = builder.addMuscle(body, 'muscle', ARM.muscle.flat(), 40), {settings} = builder;
+  builder.addBox([0.12, 0.04, 0.12], {position: [0, ARM.top + 0.125, 0]}, 'pole');
+  const body = builder.addBody('arm', builder.tets(1000), {mass: 4, pinned: p => p[1] > ARM.top - 0.15 && p[0] < 0.08});
+  const muscle = builder.addMuscle(body, 'muscle', ARM.muscle.flat(), 100), {settings} = builder;
   builder.beforeFrame(() => {
     const wanted = settings.activation - muscle.activation;
     if (wanted !== 0) muscle.activation += Math.max(-0.02, Math.min(0.02, wanted));
@@ -200,10 +209,10 @@ const TYRE = {ring: 0.6, outer: 0.2, inner: 0.165, limp: 0.75, filled: 2};
     volume. */
 function addTyre(builder) {
   addFloor(builder);
-  const body = builder.addBody('tyre', builder.tets(2600), {
-    position: [0, TYRE.outer + 0.005, 0], mass: 30, relativeStiffness: builder.stiffness / 4, damping: 1.5, friction: 1,
-  }, '#4a4d54');
-  builder.addBox([0.75, 0.12, 0.75], {mass: 40, position: [0, 2 * TYRE.outer + 0.14, 0], friction: 1}, 'ball');
+  const body = builder.addBody('tyre', builder.tets(1500), {
+    position: [0, TYRE.outer + 0.005, 0], mass: 30, relativeStiffness: builder.stiffness / 10, damping: 1.5, friction: 1,
+  }, '#5c6069');
+  builder.addBox([0.8, 0.06, 0.28], {mass: 30, position: [0, 2 * TYRE.outer + 0.08, 0], friction: 1}, 'ball');
   body.setPressureSurface(null);  // the inner wall: the visible one is outside
   const first = body.volume, {settings} = builder, most = USUAL.pressure * first * FRAME / TYRE.filled;
   builder.beforeFrame(frame => {
@@ -224,10 +233,10 @@ const SCENES = {
   stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
   twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]],
     skin: 'quadratic'},
-  clay: {title: 'Clay', build: addClay, tets: 1500, focus: [[-0.95, 0, -0.7], [0.95, 1.15, 0.7]], own: 'yield',
+  clay: {title: 'Clay', build: addClay, tets: 1500, focus: [[-0.85, 0, -0.35], [0.95, 1.05, 0.65]], own: 'yield',
     skin: 'quadratic'},
-  muscle: {title: 'Muscle', build: addMuscle, tets: 1000, focus: [[-0.3, 0, -0.4], [1.2, 1.9, 0.4]], own: 'activation'},
-  tyre: {title: 'Tyre', build: addTyre, tets: 2600, focus: [[-0.95, 0, -0.95], [0.95, 0.8, 0.95]], own: 'pressure'},
+  muscle: {title: 'Muscle', build: addMuscle, tets: 1000, focus: [[-0.2, 0.3, -0.35], [1.15, 1.9, 0.35]], own: 'activation'},
+  tyre: {title: 'Tyre', build: addTyre, tets: 1500, focus: [[-0.95, 0, -0.95], [0.95, 0.8, 0.95]], own: 'pressure'},
 };
 /** Settings that belong to one scene each, which names its `own`. */
 const OWN = Object.values(SCENES).map(({own}) => own).filter(Boolean);
@@ -241,7 +250,7 @@ const SHAPES = {
   cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 18),
   soft_ball: () => ballMesh(BALL_RADIUS, 40),
   mat: () => matMesh([1, 0.2, 1], 24, 0.25),
-  clay: () => roundedBoxMesh(CLAY.half, 0.08, 44),
+  clay: () => roundedBoxMesh(CLAY.half, 0.09, 40),
   arm: () => paintedRodsMesh(ARM.rods(), [-0.3, 0.4, -0.5], [1.3, 2, 0.5], 0.026, 0.012),
   tyre: () => tyreMesh(TYRE.ring, TYRE.outer, TYRE.inner, 160, 56),
   bar: () => barMesh(BAR.half, BAR.width, 120, 96),

@@ -328,7 +328,7 @@ class Simulation {
 
   applyYield({body, modulusOfOne, yields}) {
     const yieldStress = this.settings.yield * modulusOfOne;
-    if (yields) body.setPlasticity({yieldStress, hardening: yieldStress});
+    if (yields) body.setPlasticity({yieldStress, hardening: 0.2 * yieldStress});
   }
 
   // --- Hands
