@@ -281,9 +281,9 @@ class Controls(WithBrowser):
                 words = f"`#{scene}&{identifier}=${{Number(live.settings.{identifier}.toPrecision(3))}}`"
                 self.one.page.until(f"location.hash.startsWith({words})", 60)
                 self.assertEqual(self.one.call("reset")["hash"], start)
-        self.one.open("stack")
+        self.one.open("stack", tets=0)
         self.assertIsNotNone(self.one.step(30)["compared"], "settings of other scenes change nothing here")
-        self.one.page.until("location.hash === '#stack'", 60)
+        self.one.page.until("location.hash === '#stack&skin=linear'", 60)
 
     def test_tets_and_elements(self):
         for tets in ("100", "1000", "0"):
