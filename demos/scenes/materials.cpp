@@ -21,7 +21,7 @@ constexpr Material kMaterials[] = {
     {"wall", {0.66, 0.72, 0.78}, 0.0, 0.22}, {"pole", {0.35, 0.36, 0.40}, 0.2},
     {"mat", {0.62, 0.78, 0.80}, 0.1},        {"mat_chequer", {0.36, 0.60, 0.66}, 0.1},
     {"ball", {0.93, 0.62, 0.22}, 0.3},       {"heavy_ball", {0.42, 0.43, 0.47}, 0.4},
-    {"cube", {0.80, 0.33, 0.38}, 0.2},
+    {"cube", {0.80, 0.33, 0.38}, 0.2},       {"muscle", {0.70, 0.20, 0.17}, 0.3},
 };
 
 /// In viewers whose only light is at the camera, surfaces that face upwards would be black.

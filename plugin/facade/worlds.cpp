@@ -187,6 +187,18 @@ void setPinnedPositions(World::Body& body, const std::vector<int>& nodes, const 
   for (std::size_t i = 0; i < nodes.size(); ++i) check(soft.setPinnedPosition(nodes[i], vectorAt(points, i)));
 }
 
+void setPressureSurface(World::Body& body, const MeshModel& mesh) {
+  DeformableBody& own = alive(body);
+  if (!mesh.mesh) return check(own.setPressureSurface({}, {}));
+  Result<Embedding> embedding = embed(*body.cage, *mesh.mesh);
+  if (embedding.status().code == StatusCode::CageMismatch) {  // another mesh than that of the cage
+    Cage cage = *body.cage;
+    cage.vertexTets.clear();
+    embedding = embed(cage, *mesh.mesh);
+  }
+  check(own.setPressureSurface(*mesh.mesh, take(std::move(embedding))));
+}
+
 std::vector<unsigned char> pinnedOf(const World::Body& body) {
   const DeformableBody& soft = alive(body);
   std::vector<unsigned char> mask(nodeCount(body));

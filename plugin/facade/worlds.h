@@ -110,6 +110,8 @@ void setVelocities(World::Body& body, const double* velocities, std::size_t numb
 void setPinned(World::Body& body, const std::vector<int>& nodes, bool pinned);
 void setPinnedPositions(World::Body& body, const std::vector<int>& nodes, const double* positions, std::size_t numbers);
 std::vector<unsigned char> pinnedOf(const World::Body& body);
+/// The surface on which pressure acts: a mesh in the body's cage; without one, the boundary of its tets.
+void setPressureSurface(World::Body& body, const MeshModel& mesh);
 void setFriction(World::Body& body, double friction);
 void setFriction(World::RigidBody& rigid, double friction);
 void setRestitution(btCollisionObject& object, double restitution);

@@ -76,6 +76,14 @@ export interface Tetskin {
    */
   readMesh(bytes: Uint8Array | ArrayBuffer, format: string): Mesh;
   /**
+   * Reads a map painted on a mesh: a new array, of one number per vertex in the order of `readMesh`.
+   * @param bytes, format  as for `readMesh`: ply, glb, gltf, vrm or obj
+   * @param name  of a property of the vertices of a .ply; an attribute of one number of a .gltf, .glb or .vrm, such as
+   *              _STIFFNESS; or red, green, blue or alpha, of vertex colours, 0 to 1
+   * @throws InvalidOption, if the file has no such map: the message names those that it has; as `readMesh`
+   */
+  loadVertexMap(bytes: Uint8Array | ArrayBuffer, format: string, name: string): Float64Array;
+  /**
    * A mesh of arrays.
    * @param positions  n x 3, any unit
    * @param triangles  m x 3 vertex indices, counter-clockwise from outside
@@ -90,6 +98,20 @@ export interface Tetskin {
    * @throws Cancelled, Empty, Degenerate, InvalidOption, OutOfMemory
    */
   createCage(mesh: Mesh, options?: CageOptions): Cage;
+  /** A copy with other maps painted on it: a map of 1 removes that which it has, none leaves it. */
+  paintCage(cage: Cage, mesh: Mesh, maps: PaintedMaps): Cage;
+  /**
+   * Spreads any map from the vertices of a mesh over its cage, whose inside has the values of the nearest surface. To
+   * pin what is painted, take the nodes of at least 0.5 of a mask of 0 and 1.
+   * @param values  one for each vertex
+   * @throws SizeMismatch, NonFinite, InvalidOption: for the geometric mean, a value that is not above 0
+   */
+  spreadMap(cage: Cage, mesh: Mesh, values: Numbers, options?: SpreadOptions): SpreadMap;
+  /**
+   * Fibres for `addMuscle`: for each of these tets the direction of the nearest piece of a curve, a new array.
+   * @param curve  m x 3, rest space: at least two points, not all in one place
+   */
+  fibresAlong(cage: Cage, tets: Numbers, curve: Numbers): Float64Array;
   /** A copy with stiffness factors that make the cage as compliant as the body in it. Takes seconds. */
   calibrate(cage: Cage, options?: CalibrationOptions): Cage;
   /** A cage of quadratic tets: each tet becomes one, stored as eight. For meshes that fill their cage. */
@@ -132,17 +154,33 @@ export interface Mesh extends Thing {
   toBytes(): Uint8Array;
 }
 
-export interface CageOptions {
+export interface PaintedMaps {
+  /** One factor above 0 per vertex of the mesh, of the stiffness there; the inside has those of the nearest surface */
+  stiffness?: Numbers;
+  /** The same for the density */
+  density?: Numbers;
+}
+
+export interface SpreadOptions {
+  /** geometric: of logarithms, for values above 0 that span decades, such as stiffness; "arithmetic" */
+  mean?: "arithmetic" | "geometric";
+}
+
+/** New arrays. */
+export interface SpreadMap {
+  /** For each tet, the mean over the material in it */
+  readonly tets: Float64Array;
+  /** For each node, the mean of the tets around it */
+  readonly nodes: Float64Array;
+}
+
+export interface CageOptions extends PaintedMaps {
   /** About how many tets; 3000 */
   targetTets?: number;
   /** Whether regions of the mesh that are near each other get a copy of a tet each; true */
   duplicateElements?: boolean;
   /** Whether the boundary is moved towards the surface; true */
   fit?: boolean;
-  /** One factor above 0 per vertex of the mesh, of the stiffness there; the inside has those of the nearest surface */
-  stiffness?: Numbers;
-  /** The same for the density */
-  density?: Numbers;
   /** Called with the fraction done, 0 to 1; cancels by returning false. Its exceptions are passed on. */
   progress?: (fraction: number) => boolean | void;
 }
@@ -513,6 +551,12 @@ export interface Body extends Thing {
    * @param outside  absolute pressure outside; 0, or 101325 for a real tyre in Pa
    */
   setGas(pressure: number, outside?: number): void;
+  /**
+   * Sets the surface on which pressure acts, and whose volume counts. By default it is that of the body, if it is
+   * closed. A gas keeps its present pressure.
+   * @param mesh  closed, in the cage, rest space, such as an inner wall; null: the boundary of the tets
+   */
+  setPressureSurface(mesh: Mesh | null): void;
   friction: number;
   /** 0 to 1. The product of both objects' counts, so both need one: see `BodyOptions`. */
   restitution: number;

@@ -162,6 +162,65 @@ test("cages are calibrated, scaled, made quadratic, or made of tets", () => {
   assert.equal(tetskin.cageOfTets(cage.nodes, cage.tets).tetCount, cage.tetCount);
 });
 
+test("a painted map is read from the bytes of a file", () => {
+  const ply = Buffer.from("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n" +
+    "property float z\nproperty uchar red\nproperty float quality\nelement face 1\n" +
+    "property list uchar int vertex_indices\nend_header\n0 0 0 255 0.5\n1 0 0 0 2\n0 1 0 51 -3\n3 0 1 2\n");
+  assert.deepEqual([...tetskin.loadVertexMap(ply, "ply", "quality")], [0.5, 2, -3]);
+  assert.deepEqual([...tetskin.loadVertexMap(ply, "arm.PLY", "red")].map(x => Math.round(1e6 * x) / 1e6), [1, 0, 0.2]);
+  const obj = new TextEncoder().encode("v 0 0 0 1 0 0.25\nv 1 0 0 0 1 0.5\nv 0 1 0 0 0 1\nf 1 2 3\n");
+  assert.deepEqual([...tetskin.loadVertexMap(obj, "obj", "blue")], [0.25, 0.5, 1]);
+  assert.throws(() => tetskin.loadVertexMap(ply, "ply", "stiffness"), failure("InvalidOption", /quality/));
+  assert.throws(() => tetskin.loadVertexMap(ply, "ply"), failure("InvalidArgument", /^name/));
+  assert.throws(() => tetskin.loadVertexMap(files.stl(shape), "stl", "red"), failure("UnsupportedFormat"));
+  assert.throws(() => tetskin.loadVertexMap(ply.subarray(0, 200), "ply", "red"), failure("Malformed", /file\.ply/));
+});
+
+test("maps are spread over a cage, and painted on it", () => {
+  const cage = tetskin.createCage(mesh, {targetTets: 500}), {nodes, tets} = cage, before = cage.toBytes();
+  const values = mesh.positions.filter((_, i) => i % 3 === 0).map(x => x < 1 ? 1 : 100);
+  const spread = tetskin.spreadMap(cage, mesh, values);
+  const geometric = tetskin.spreadMap(cage, mesh, values, {mean: "geometric"});
+  assert.deepEqual([spread.tets.length, spread.nodes.length], [cage.tetCount, cage.nodeCount]);
+  let between = 0;
+  spread.tets.forEach((value, t) => {
+    const ends = [0, 1, 2, 3].map(k => nodes[3 * tets[4 * t + k]]);
+    if (Math.max(...ends) < 0.9) assert.equal(value, 1);
+    if (Math.min(...ends) > 1.1) assert.equal(value, 100);
+    if (value > 10 && value < 90) assert.ok(geometric.tets[t] < value && ++between);
+  });
+  assert.ok(between > 0);
+  const painted = tetskin.paintCage(cage, mesh, {stiffness: values, density: values});
+  const made = tetskin.createCage(mesh, {targetTets: 500, stiffness: values, density: values});
+  assert.deepEqual([painted.paintedStiffness, painted.masses], [made.paintedStiffness, made.masses]);
+  assert.notDeepEqual(painted.masses, cage.masses);
+  assert.deepEqual(cage.toBytes(), before);
+  const ones = new Float64Array(mesh.vertexCount).fill(1);
+  assert.equal(tetskin.paintCage(painted, mesh, {stiffness: ones}).paintedStiffness.length, 0);
+  assert.throws(() => tetskin.spreadMap(cage, mesh, [1]), failure("SizeMismatch"));
+  assert.throws(() => tetskin.spreadMap(cage, mesh, values, {mean: "harmonic"}), failure("InvalidArgument", /mean/));
+  const zeros = values.map(x => x - 1);
+  assert.throws(() => tetskin.spreadMap(cage, mesh, zeros, {mean: "geometric"}), failure("InvalidOption"));
+  assert.throws(() => tetskin.paintCage(cage, mesh, {density: [1, 2]}), failure("SizeMismatch", /density/));
+  assert.throws(() => tetskin.paintCage(cage, mesh, {density: zeros}), failure("InvalidOption", /density/));
+  assert.throws(() => tetskin.paintCage(mesh, cage, {}), failure("InvalidArgument", /cage/));
+});
+
+test("fibres follow a curve", () => {
+  const cage = tetskin.createCage(mesh, {targetTets: 100}), all = Array.from({length: cage.tetCount}, (_, t) => t);
+  const middle = t => [0, 1, 2, 3].reduce((sum, k) => sum + cage.nodes[3 * cage.tets[4 * t + k]] / 4, 0);
+  const fibres = tetskin.fibresAlong(cage, all, [0, 0, 0, 1, 0, 0, 1, 9, 0]);  // along x, and then along y
+  assert.equal(fibres.length, 3 * all.length);
+  for (const t of all) {
+    if (middle(t) < 0.7) assert.deepEqual([...fibres.subarray(3 * t, 3 * t + 3)], [1, 0, 0]);
+  }
+  assert.deepEqual([...tetskin.fibresAlong(cage, [3], [0, 0, 0, 0, -2, 0])], [0, -1, 0]);
+  assert.throws(() => tetskin.fibresAlong(cage, all, [0, 0, 0]), failure("InvalidOption", /two points/));
+  for (const none of [-1, cage.tetCount]) {
+    assert.throws(() => tetskin.fibresAlong(cage, [none], [0, 0, 0, 1, 0, 0]), failure("IndexOutOfRange", /tets/));
+  }
+});
+
 test("bones at rest leave the mesh where it is", () => {
   const cage = tetskin.createCage(mesh, {targetTets: 100});
   for (const interpolation of ["linear", "quadratic"]) {

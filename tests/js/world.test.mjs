@@ -566,6 +566,34 @@ test("bad arguments are named, and the world stays as it was", () => {
   assert.equal(world.rigidBodies.length, 1);
 });
 
+test("the surface under pressure is the visible one, another one, or that of the tets", () => {
+  const body = tetskin.createWorld({gravity: [0, 0, 0]}).addBody(cage, mesh), visible = body.volume;
+  const volumeOf = ({positions: x, triangles}) => {
+    let sum = 0;
+    for (let t = 0; t < triangles.length; t += 3) {
+      const [a, b, c] = [0, 1, 2].map(k => x.subarray(3 * triangles[t + k], 3 * triangles[t + k] + 3));
+      for (let k = 0, l = 1, m = 2; k < 3; [k, l, m] = [k + 1, m, k]) sum += a[k] * (b[l] * c[m] - b[m] * c[l]);
+    }
+    return Math.abs(sum) / 6;
+  };
+  const near = (value, expected, by) => assert.ok(Math.abs(value / expected - 1) < by, `${value}, not ${expected}`);
+  const {positions, triangles} = tube({radius: 0.15, rings: 20}), inner = tetskin.createMesh(positions, triangles);
+  near(visible, volumeOf(mesh), 1e-5);
+  body.setGas(100);
+  body.setPressureSurface(inner);
+  near(body.volume, volumeOf(inner), 1e-5);
+  near(body.pressure, 100, 1e-6);
+  body.setPressureSurface(null);
+  const boundary = cage.boundaryFaces();
+  near(body.volume, volumeOf({positions: cage.nodes, triangles: boundary}), 1e-5);
+  body.setPressureSurface(mesh);
+  near(body.volume, visible, 1e-9);
+  const open = tetskin.createMesh(positions, triangles.subarray(3));
+  assert.throws(() => body.setPressureSurface(open), failure("InvalidOption", /not closed/));
+  assert.throws(() => body.setPressureSurface(), failure("InvalidArgument", /mesh/));
+  near(body.volume, visible, 1e-9);
+});
+
 test("tets grow, contract and flow", () => {
   const world = tetskin.createWorld({gravity: [0, 0, 0], deterministic: true});
   const body = world.addBody(cage, mesh, {youngsModulus: 1e5, stiffnessDamping: 0.02});

@@ -17,7 +17,8 @@ PAGE = Path(os.environ.get("TETSKIN_LIVE_PAGE", REPOSITORY / "out/live/live.html
 NATIVE = os.environ.get("TETSKIN_LIVE_NATIVE")
 PICTURES = REPOSITORY / "build/live/pictures"
 DESKTOP, PHONE = (960, 640), (390, 844)
-USUAL = {"stiffness": 50, "damping": 0.02, "gravity": 9.81, "tets": 0, "elements": "linear", "skin": "linear",
+USUAL = {"stiffness": 50, "damping": 0.02, "gravity": 9.81, "yield": 1, "activation": 0.5,
+         "pressure": 1500, "tets": 0, "elements": "linear", "skin": "linear",
          "forces": False}
 
 

@@ -252,6 +252,39 @@ class Controls(WithBrowser):
         self.one.step(1)
         self.assertAlmostEqual(float(self.said("gravity")), self.worker("-simulation.world.gravity[1]"), delta=0.06)
 
+    def test_clay_muscle_and_tyre_have_a_slider_each(self):
+        weight = """(({nodes, cage: {nodes: rest}}) => {
+          const heights = nodes.filter((_, i) => i % 3 === 1 && rest[i - 1] > 0.9);
+          return heights.reduce((sum, y) => sum + y / heights.length, 0);
+        })(simulation.parts[0].body)"""
+        # The scene, its slider, what it changes, frames until it has, by how much it does from a tenth to nine tenths.
+        cases = [("clay", "yield", "Math.max(...simulation.parts[0].body.plasticStrains)", 270, -0.2),
+                 ("muscle", "activation", weight, 240, 0.4),
+                 ("tyre", "pressure", "simulation.world.poses()[8]", 300, 0.03)]
+        identifiers = [identifier for _, identifier, *_ in cases]
+        for scene, identifier, get, frames, change in cases:
+            with self.subTest(scene):
+                self.one.open(scene)
+                start = self.one.state()["hash"]
+                shown = [one for one in identifiers if not self.one.page.evaluate(
+                    f"document.getElementById('{one}').parentElement.hidden")]
+                self.assertEqual(shown, [identifier])
+                seen = []
+                for share in (0.1, 0.9):
+                    self.one.call("reset")
+                    self.slide(identifier, share)
+                    self.one.step(frames)
+                    self.one.page.frame()
+                    self.one.picture(f"{scene}_{share}")
+                    seen.append(self.worker(get))
+                self.assertGreater((seen[1] - seen[0]) / change, 1, seen)
+                words = f"`#{scene}&{identifier}=${{Number(live.settings.{identifier}.toPrecision(3))}}`"
+                self.one.page.until(f"location.hash.startsWith({words})", 60)
+                self.assertEqual(self.one.call("reset")["hash"], start)
+        self.one.open("stack", tets=0)
+        self.assertIsNotNone(self.one.step(30)["compared"], "settings of other scenes change nothing here")
+        self.one.page.until("location.hash === '#stack&skin=linear'", 60)
+
     def test_tets_and_elements(self):
         for tets in ("100", "1000", "0"):
             with self.subTest(tets):

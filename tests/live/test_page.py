@@ -10,7 +10,7 @@ import unittest
 from live import DESKTOP, NATIVE, PAGE, USUAL, Server, WithBrowser, colours
 from native import COMPARED, FRAMES, HASHES, native_hashes
 
-SCENES = ["serpent", "heap", "pit", "gripper", "stack", "twist"]
+SCENES = ["serpent", "heap", "pit", "gripper", "stack", "twist", "clay", "muscle", "tyre"]
 MEGABYTE = 1e6
 
 

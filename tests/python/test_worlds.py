@@ -135,6 +135,34 @@ def test_pressure_and_gas_fill_a_body(mesh, cage):
     assert body.pressure == 0
 
 
+def volume_of(positions, triangles):
+    a, b, c = (np.asarray(positions)[np.asarray(triangles)[:, k]] for k in range(3))
+    return abs(np.einsum("ij,ij", a, np.cross(b, c))) / 6
+
+
+def test_the_surface_under_pressure_is_the_visible_one_another_one_or_that_of_the_tets(mesh, cage):
+    body = ts.World(gravity=(0, 0, 0)).add_body(cage, mesh)
+    visible = volume_of(mesh.positions, mesh.triangles)
+    assert body.volume == pytest.approx(visible, rel=1e-5)
+    middle = np.asarray(mesh.positions) * (1, 0, 1)
+    middle /= np.linalg.norm(middle, axis=1)[:, None]
+    inner = ts.TriangleMesh(0.5 * (middle + mesh.positions), mesh.triangles)  # of half the tube's radius
+    body.set_gas(100)
+    body.set_pressure_surface(inner)
+    assert body.volume == pytest.approx(volume_of(inner.positions, inner.triangles), rel=1e-5)
+    assert body.pressure == pytest.approx(100, rel=1e-6)
+    body.set_pressure_surface(None)
+    boundary = body.volume
+    assert abs(boundary / visible - 1) > 1e-3  # the tets reach a little beyond the surface, or not as far
+    body.set_pressure_surface(mesh)
+    assert body.volume == pytest.approx(visible, rel=1e-5)
+    with pytest.raises(ts.Error, match="not closed"):
+        body.set_pressure_surface((mesh.positions, mesh.triangles[1:]))
+    with pytest.raises(TypeError):
+        body.set_pressure_surface()
+    assert body.volume == pytest.approx(visible, rel=1e-5)
+
+
 def test_materials_are_read_and_set(mesh, cage):
     world = ts.World()
     body = world.add_body(

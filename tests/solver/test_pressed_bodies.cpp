@@ -245,6 +245,21 @@ TEST(PressedBodies, AnotherSurfaceKeepsTheGasPressureAndTheBoundsOfAConstantOne)
   EXPECT_EQ(body->pressure(), 100) << "it has not burst";
 }
 
+TEST(PressedBodies, TheBoundaryOfTheTetsReplacesASurfaceThatWasPrepared) {
+  for (const bool pressed : {false, true}) {
+    TetskinWorld world;
+    const TetMesh cage = lifted(latticeCage(4, 4, 4, 0.5), 3);
+    TriangleMesh mesh = sphereOf(2);
+    for (Eigen::Vector3d& x : mesh.positions) x = 0.2 * x + Eigen::Vector3d(1, 4, 1);
+    const auto body = added(world, cage, latex());
+    body->preparePressureSurface(std::make_shared<const TriangleMesh>(mesh), embed(Cage(cage), mesh).value());
+    EXPECT_LT(body->volume(), 0.04);
+    ASSERT_TRUE(body->setPressure(pressed ? 100 : 0).ok());
+    ASSERT_TRUE(body->setPressureSurface(TriangleMesh(), Embedding()).ok());
+    EXPECT_GT(body->volume(), 7.9);
+  }
+}
+
 TEST(PressedBodies, ABodyThatIsScaledHasTheBoundsOfItsSize) {
   const TetMesh cage = lifted(latticeCage(3, 3, 3, 0.2), 50);
   TriangleMesh mesh = sphereOf(1);

@@ -9,8 +9,9 @@
 //                     times}. first: the earliest frame that there is to go back to; compared: {frame, hash} that is
 //                     shown beside the native one; times: milliseconds by stage
 //   errors            sentences of all errors so far
-//   open(name, settings)   opens a scene, paused, with these settings changed: {stiffness, damping, gravity, tets,
-//                     elements: 'linear' or 'quadratic', skin: likewise, forces}; others stay
+//   open(name, settings)   opens a scene, paused, with these settings changed: {stiffness, damping, gravity, yield,
+//                     activation, pressure, tets, elements: 'linear' or 'quadratic', skin: likewise, forces}; others
+//                     stay
 //   play(playing)     has time go on, or stop
 //   step(frames)      so many frames; the page draws the last
 //   rewind(frames)    back by so many

@@ -28,6 +28,7 @@ const numberFrom = (least, most) => text => {
 const oneOf = (...values) => text => values.find(value => String(value) === text);
 const ADDRESSED = {
   stiffness: numberFrom(10, 1000), damping: numberFrom(0.001, 0.2), gravity: numberFrom(0, 20),
+  yield: numberFrom(0.1, 100), activation: numberFrom(0, 1), pressure: numberFrom(0, 4000),
   tets: oneOf(0, ...TETS), elements: oneOf('linear', 'quadratic'), skin: oneOf('linear', 'quadratic'),
   forces: oneOf(false, true),
 };
@@ -104,7 +105,7 @@ class Live {
     clearTimeout(this.addressing);
     this.addressing = setTimeout(() => {
       const changed = Object.keys(ADDRESSED).filter(name => name === 'skin' ? this.skinIsChosen
-        : this.settings[name] !== USUAL[name]);
+        : isSettingOf(this.scene, name) && this.settings[name] !== USUAL[name]);
       const textOf = value => typeof value === 'number' ? Number(value.toPrecision(3)) : value;
       const words = [this.scene, ...changed.map(name => `${name}=${textOf(this.settings[name])}`)].join('&');
       try {
@@ -300,13 +301,16 @@ class Live {
   }
 
   showSettings() {
-    const {stiffness, damping, gravity, tets, elements, skin, forces} = this.settings, texts = {
+    const {stiffness, damping, gravity, yield: stress, activation, pressure} = this.settings;
+    const {tets, elements, skin, forces} = this.settings, texts = {
       stiffness: [Math.log10(stiffness), stiffness.toFixed(0)], damping: [Math.log10(damping), damping.toPrecision(1)],
-      gravity: [gravity, gravity.toFixed(1)],
+      gravity: [gravity, gravity.toFixed(1)], yield: [Math.log10(stress), String(Number(stress.toPrecision(2)))],
+      activation: [activation, activation.toFixed(2)], pressure: [pressure, pressure.toFixed(0)],
     };
     for (const [id, [value, text]] of Object.entries(texts)) {
       element(id).value = value;
       element(id).nextElementSibling.textContent = text;
+      element(id).parentElement.hidden = !isSettingOf(this.scene, id);
     }
     Object.entries({tets, elements, skin}).forEach(([id, value]) => element(id).value = value);
     element('forces').checked = forces;
@@ -330,7 +334,10 @@ class Live {
     const tenTo = id => 10 ** Number(element(id).value);
     element('stiffness').oninput = () => this.set({stiffness: tenTo('stiffness')});
     element('damping').oninput = () => this.set({damping: tenTo('damping')});
-    element('gravity').oninput = () => this.set({gravity: Number(element('gravity').value)});
+    element('yield').oninput = () => this.set({yield: tenTo('yield')});
+    for (const id of ['gravity', 'activation', 'pressure']) {
+      element(id).oninput = () => this.set({[id]: Number(element(id).value)});
+    }
     element('skin').onchange = () => this.set({skin: element('skin').value});
     element('forces').onchange = () => this.set({forces: element('forces').checked});
     for (const id of ['tets', 'elements']) {

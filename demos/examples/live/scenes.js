@@ -6,8 +6,8 @@
 
 const FRAME = 1 / 60;
 /** What the sliders say where nothing else is asked for. tets: 0, the scene's own number. */
-const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, tets: 0, elements: 'linear', skin: 'linear',
-  forces: false};
+const USUAL = {stiffness: 50, damping: 0.02, gravity: 9.81, yield: 1, activation: 0.5, pressure: 1500, tets: 0,
+  elements: 'linear', skin: 'linear', forces: false};
 /** Frames between two states that native_hashes.json has. */
 const COMPARED_EVERY = 30;
 
@@ -27,6 +27,10 @@ function* scattered(seed) {
 
 function aboutZ(angle) {
   return [0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];
+}
+
+function aboutX(angle) {
+  return [Math.sin(angle / 2), 0, 0, Math.cos(angle / 2)];
 }
 
 function quaternion(axis, angle) {
@@ -150,8 +154,76 @@ function addTwist(builder) {
   });
 }
 
+const CLAY = {half: [0.72, 0.2, 0.45], slope: 0.7, thumb: 0.2, deep: 0.26, away: 0.25, period: 1.5,
+  places: [[-0.42, 0.58], [0.02, 0.34], [0.42, 0.58], [1.1, 0.3]]};
+
+/** A block leans on a board. A thumb presses three dents into it, and waits beside it. */
+function addClay(builder) {
+  addFloor(builder);
+  const {half, thumb, deep, away, period, places} = CLAY, c = Math.cos(CLAY.slope), s = Math.sin(CLAY.slope);
+  const place = (x, above, up) => [x, 0.2 + c * above + s * up, 0.5 + s * above - c * up];
+  const rotation = aboutX(CLAY.slope), last = places.length - 1, front = 2 * half[1] + thumb;
+  builder.addBox([0.82, 0.05, 0.55], {position: place(0, -0.055, 0.51), rotation, friction: 1}, 'ramp');
+  builder.addBox([0.82, 0.12, 0.04], {position: place(0, 0.015, -0.045), rotation, friction: 1}, 'ramp');
+  builder.addBox([0.5, 0.32, 0.05], {position: [0, 0.32, -0.32]}, 'ramp');
+  builder.addBody('clay', builder.tets(1500), {position: place(0, half[1] + 0.003, half[2]), rotation, mass: 8, friction: 1,
+    damping: 0.1, yields: true}, '#b06a45');
+  const ball = builder.addSphere(thumb, {kinematic: true, position: place(0, front + away, 0.5)}, 'pole');
+  builder.beforeFrame(frame => {
+    const k = Math.min(Math.floor(frame * FRAME / period), last), t = frame * FRAME - k * period;
+    const way = eased(0, 0.4, t), pressed = k < last ? eased(0.4, 0.9, t) - eased(1.0, 1.5, t) : 0;
+    const [x, up] = places[k].map((to, axis) => to + (1 - way) * ((places[k - 1] || [0, 0.5])[axis] - to));
+    ball.position = place(x, front + away - (away + deep) * pressed, up);
+  });
+}
+
+/** Of the arm: its bones, its weight, and its muscle, whose fibres run from the first point to the second. */
+const ARM = {
+  top: 1.75, muscle: [[0.2, 1.6, 0], [0.42, 0.74, 0]],
+  rods: () => ({
+    ivory: {stiffness: 200, density: 1, rods: [
+      rod([0, 1.75, 0], [0, 0.82, 0], 0.075, 0.075), rod([0, 1.66, 0], [0.2, 1.64, 0], 0.075, 0.05),
+      rod([0.08, 0.7, 0], [1, 0.7, 0], 0.075, 0.055)]},
+    cube: {stiffness: 1, density: 1, rods: [rod([0, 0.78, 0], [0.05, 0.72, 0], 0.085, 0.085)]},
+    muscle: {stiffness: 1, density: 1, rods: [rod(...ARM.muscle, 0.045, 0.045, 0.06)]},
+    heavy_ball: {stiffness: 200, density: 8, rods: [rod([1, 0.7, -0.2], [1, 0.7, 0.2], 0.05, 0.05),
+      ...[-1, 1].map(side => rod([1, 0.7, 0.2 * side], [1, 0.7, 0.24 * side], 0.13, 0.13))]},
+  }),
+};
+
+/** An upper arm that is held, a forearm with a weight, and a muscle between them. */
+function addMuscle(builder) {
+  addFloor(builder);
+  builder.addBox([0.12, 0.04, 0.12], {position: [0, ARM.top + 0.125, 0]}, 'pole');
+  const body = builder.addBody('arm', builder.tets(1000), {mass: 4, pinned: p => p[1] > ARM.top - 0.15 && p[0] < 0.08});
+  const muscle = builder.addMuscle(body, 'muscle', ARM.muscle.flat(), 100), {settings} = builder;
+  builder.beforeFrame(() => {
+    const wanted = settings.activation - muscle.activation;
+    if (wanted !== 0) muscle.activation += Math.max(-0.02, Math.min(0.02, wanted));
+  });
+}
+
+const TYRE = {ring: 0.6, outer: 0.2, inner: 0.165, limp: 0.75, filled: 2};
+
+/** A pump fills a tyre, and keeps the amount of gas in it, which would have the pressure that is set in its first
+    volume. */
+function addTyre(builder) {
+  addFloor(builder);
+  const body = builder.addBody('tyre', builder.tets(1500), {
+    position: [0, TYRE.outer + 0.005, 0], mass: 30, relativeStiffness: builder.stiffness / 10, damping: 1.5, friction: 1,
+  }, '#5c6069');
+  builder.addBox([0.8, 0.06, 0.28], {mass: 30, position: [0, 2 * TYRE.outer + 0.08, 0], friction: 1}, 'ball');
+  body.setPressureSurface(null);  // the inner wall: the visible one is outside
+  const first = body.volume, {settings} = builder, most = USUAL.pressure * first * FRAME / TYRE.filled;
+  builder.beforeFrame(frame => {
+    const has = body.pressure * body.volume, wanted = settings.pressure * first - has;
+    if (frame * FRAME < TYRE.limp || Math.abs(wanted) < 0.01 * most) return;
+    body.setGas((has + Math.max(-most, Math.min(most, wanted))) / body.volume);
+  });
+}
+
 /** In the order of the page's row. focus: the box that the first view fits; narrow: likewise, where the screen is
-    narrow; skin: 'linear' where nothing is said. */
+    narrow; skin: 'linear' where nothing is said; own: a setting that it alone has. */
 const SCENES = {
   serpent: {title: 'Serpent on ramp and dome', build: addSerpent, tets: 1000, focus: [[-1.35, 0, -0.9], [1.5, 1.7, 1]],
     narrow: [[-0.9, 0, -0.6], [1.1, 1.6, 0.7]]},
@@ -161,7 +233,14 @@ const SCENES = {
   stack: {title: 'Stack of four', build: addStack, tets: 1200, focus: [[-0.8, 0, -0.5], [0.8, 2.2, 0.5]]},
   twist: {title: 'Twisted bar', build: addTwist, tets: 600, focus: [[-1.7, 0.75, -0.45], [1.7, 1.65, 0.45]],
     skin: 'quadratic'},
+  clay: {title: 'Clay', build: addClay, tets: 1500, focus: [[-0.85, 0, -0.35], [0.95, 1.05, 0.65]], own: 'yield',
+    skin: 'quadratic'},
+  muscle: {title: 'Muscle', build: addMuscle, tets: 1000, focus: [[-0.2, 0.3, -0.35], [1.15, 1.9, 0.35]], own: 'activation'},
+  tyre: {title: 'Tyre', build: addTyre, tets: 1500, focus: [[-0.95, 0, -0.95], [0.95, 0.8, 0.95]], own: 'pressure'},
 };
+/** Settings that belong to one scene each, which names its `own`. */
+const OWN = Object.values(SCENES).map(({own}) => own).filter(Boolean);
+const isSettingOf = (name, setting) => !OWN.includes(setting) || SCENES[name].own === setting;
 
 /** The meshes of scenes by name; the serpent is the page's own. */
 const SHAPES = {
@@ -171,5 +250,8 @@ const SHAPES = {
   cushion: () => roundedBoxMesh([0.42, 0.26, 0.42], 0.1, 18),
   soft_ball: () => ballMesh(BALL_RADIUS, 40),
   mat: () => matMesh([1, 0.2, 1], 24, 0.25),
+  clay: () => roundedBoxMesh(CLAY.half, 0.09, 40),
+  arm: () => paintedRodsMesh(ARM.rods(), [-0.3, 0.4, -0.5], [1.3, 2, 0.5], 0.026, 0.012),
+  tyre: () => tyreMesh(TYRE.ring, TYRE.outer, TYRE.inner, 160, 56),
   bar: () => barMesh(BAR.half, BAR.width, 120, 96),
 };

@@ -74,6 +74,116 @@ function ringMesh(radius, thin, thick, around, across) {
   return {positions: Float64Array.from(positions), triangles: Int32Array.from(triangles)};
 }
 
+/** Where a field of signed distances, negative inside, is 0: one vertex for each cell that the surface crosses, at the
+    mean of its crossings (naive surface nets). low, high: a box around it; step: the cells' side. */
+function fieldMesh(distance, low, high, step) {
+  const counts = low.map((x, k) => Math.ceil((high[k] - x) / step) + 1), strides = [1, counts[0], counts[0] * counts[1]];
+  const placeOf = n => counts.map((count, k) => low[k] + step * (Math.floor(n / strides[k]) % count));
+  const values = Float64Array.from({length: strides[2] * counts[2]}, (_, n) => distance(placeOf(n)));
+  const positions = [], triangles = [], vertices = new Map();
+  const offsets = Array.from({length: 8}, (_, c) => (c & 1) * strides[0] + (c >> 1 & 1) * strides[1] + (c >> 2) * strides[2]);
+  const vertexOf = cell => {  // of the cell above this corner
+    if (!vertices.has(cell)) {
+      const sum = [0, 0, 0, 0];
+      for (let a = 0; a < 8; ++a) {
+        for (let k = 0; k < 3; ++k) {
+          const b = a | 1 << k, [from, to] = [values[cell + offsets[a]], values[cell + offsets[b]]];
+          if (a === b || from < 0 === to < 0) continue;
+          for (let axis = 0; axis < 3; ++axis) sum[axis] += axis === k ? from / (from - to) : a >> axis & 1;
+          ++sum[3];
+        }
+      }
+      vertices.set(cell, positions.length / 3);
+      positions.push(...placeOf(cell).map((x, k) => x + step * sum[k] / sum[3]));
+    }
+    return vertices.get(cell);
+  };
+  values.forEach((value, n) => {
+    for (let k = 0; k < 3; ++k) {
+      if (value < 0 === values[n + strides[k]] < 0) continue;
+      const u = strides[(k + 1) % 3], v = strides[(k + 2) % 3];
+      const [a, b, c, d] = [n - u - v, n - v, n, n - u].map(vertexOf);
+      triangles.push(...value < 0 ? [a, b, c, a, c, d] : [a, c, b, a, d, c]);
+    }
+  });
+  return {positions: Float64Array.from(positions), triangles: Int32Array.from(triangles)};
+}
+
+/** A rod between two points, of other radii at its ends and, by `bulge`, in its middle: its signed distance. */
+function rod([a, b, c], to, atFrom, atTo, bulge = 0) {
+  const [u, v, w] = [to[0] - a, to[1] - b, to[2] - c], square = u * u + v * v + w * w;
+  return ([x, y, z]) => {
+    const t = Math.max(0, Math.min(1, ((x - a) * u + (y - b) * v + (z - c) * w) / square));
+    const radius = atFrom + t * (atTo - atFrom) + 4 * bulge * t * (1 - t);
+    return Math.hypot(x - a - t * u, y - b - t * v, z - c - t * w) - radius;
+  };
+}
+
+/** parts: by name of their material, {rods, stiffness, density}, blended where they meet. Each vertex is painted as the
+    part that is nearest; `masks` tells by name which are. */
+function paintedRodsMesh(parts, low, high, step, blend) {
+  const names = Object.keys(parts);
+  const distances = point => names.map(name => Math.min(...parts[name].rods.map(distance => distance(point))));
+  const mesh = fieldMesh(point => {
+    const sum = distances(point).reduce((total, x) => total + Math.exp(-x / blend), 0);
+    return -blend * Math.log(sum);
+  }, low, high, step);
+  const {positions, triangles} = mesh, partOf = new Uint8Array(positions.length / 3).map((_, v) => {
+    const all = distances([...positions.subarray(3 * v, 3 * v + 3)]);
+    return all.indexOf(Math.min(...all));
+  });
+  const sorted = [], groups = [];
+  names.forEach((material, part) => {
+    const first = sorted.length / 3;
+    for (let t = 0; t < triangles.length; t += 3) {
+      if (partOf[triangles[t]] === part) sorted.push(...triangles.subarray(t, t + 3));
+    }
+    groups.push({first, count: sorted.length / 3 - first, material});
+  });
+  const painted = of => Float64Array.from(partOf, part => parts[names[part]][of]);
+  const masks = {};
+  names.forEach((name, part) => masks[name] = Float64Array.from(partOf, own => Number(own === part)));
+  return {positions, triangles: Int32Array.from(sorted), groups, masks, stiffness: painted('stiffness'),
+    density: painted('density')};
+}
+
+/** A tyre about y, with blocks on its tread. `cage` makes the wall, of one layer of prisms. */
+function tyreMesh(ring, outer, inner, along, around) {
+  const pointOf = (i, j, radius) => {
+    const reach = ring + radius * Math.cos(2 * Math.PI * j), turn = 2 * Math.PI * i;
+    return [reach * Math.cos(turn), radius * Math.sin(2 * Math.PI * j), reach * Math.sin(turn)];
+  };
+  const grid = (rows, columns, visit) => {
+    for (let i = 0; i < rows; ++i) {
+      for (let j = 0; j < columns; ++j) {
+        const at = (di, dj) => (i + di) % rows * columns + (j + dj) % columns;
+        visit(i, j, at(0, 0), at(1, 0), at(0, 1), at(1, 1));
+      }
+    }
+  };
+  const positions = [], triangles = [];
+  grid(along, around, (i, j, a, b, c, d) => {
+    const tread = Math.cos(2 * Math.PI * j / around) > 0.35 && (i + (j > around / 2 ? 2 : 0)) % 4 < 2 ? 0.016 : 0;
+    positions.push(...pointOf(i / along, j / around, outer + tread));
+    triangles.push(a, c, b, b, c, d);
+  });
+  const cage = count => {
+    const rows = Math.max(12, Math.round(Math.sqrt(count / 6 * 16 / 7)));
+    const columns = Math.max(6, Math.round(count / 6 / rows)), nodes = [], tets = [], up = rows * columns;
+    for (const radius of [inner, outer]) {
+      grid(rows, columns, (i, j) => nodes.push(...pointOf(i / rows, j / columns, radius)));
+    }
+    grid(rows, columns, (i, j, a, b, c, d) => {
+      for (const face of [[a, b, d], [a, d, c]]) {
+        const [p, q, r] = face.sort((x, y) => x - y);  // cuts of sides that prisms share begin at the lower node
+        tets.push(p, q, r, r + up, p, q, q + up, r + up, p, p + up, q + up, r + up);
+      }
+    });
+    return {nodes, tets};
+  };
+  return {positions: Float64Array.from(positions), triangles: Int32Array.from(triangles), cage};
+}
+
 /** A bar along x with a rounded square section, which gets round at its ends, and ridges along it. */
 function barMesh(halfLength, halfWidth, rings, columns) {
   const positions = [-halfLength, 0, 0], triangles = [], RIDGES = 16;

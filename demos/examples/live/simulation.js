@@ -83,7 +83,7 @@ class Shelf {
       const mesh = this.module.createMesh(shape.positions, shape.triangles);
       const coloured = group => ({...group, colour: this.materials[group.material].colour});
       const groups = shape.groups && shape.groups.map(coloured);
-      this.meshes.set(name, {mesh, groups});
+      this.meshes.set(name, {mesh, groups, shape});
     }
     return this.meshes.get(name);
   }
@@ -91,9 +91,10 @@ class Shelf {
   cage(name, tets, quadratic) {
     const key = `${name} ${tets} ${quadratic}`;
     if (!this.cages.has(key)) {
-      // Duplicate elements have no quadratic ones.
-      const options = {targetTets: quadratic ? Math.ceil(tets / 8) : tets, duplicateElements: !quadratic};
-      let cage = this.module.createCage(this.mesh(name).mesh, options);
+      const {mesh, shape} = this.mesh(name), targetTets = quadratic ? Math.ceil(tets / 8) : tets;
+      let cage = shape.cage ? this.cageOf(shape.cage(targetTets)) : this.module.createCage(mesh, {
+        targetTets, duplicateElements: !quadratic,  // those have no quadratic ones
+        stiffness: shape.stiffness, density: shape.density});
       if (quadratic) {
         const coarse = cage;
         cage = this.module.refineQuadratic(coarse);
@@ -104,6 +105,8 @@ class Shelf {
     }
     return this.cages.get(key);
   }
+
+  cageOf({nodes, tets}) { return this.module.cageOfTets(nodes, tets); }
 
   forgetOldest() {
     const [key] = this.cages.keys();
@@ -125,9 +128,10 @@ class Builder {
   /** The number of tets that is wished for, or the scene's own. */
   tets(usual) { return this.settings.tets || usual; }
 
-  /** options: the module's, and damping, a share of that which is set; gravity: its own; pinned: by rest position */
+  /** options: the module's, and damping, a share of that which is set; gravity: its own; pinned: by rest position;
+      yields: whether it flows as the setting says */
   addBody(name, tets, options, colour = '#ffffff') {
-    const {simulation, settings} = this, {damping = 1, gravity, pinned, ...others} = options;
+    const {simulation, settings} = this, {damping = 1, gravity, pinned, yields = false, ...others} = options;
     const model = simulation.modelOf(name, tets);
     const all = {
       relativeStiffness: settings.stiffness, stiffnessDamping: damping * settings.damping, visible: false, ...others,
@@ -135,10 +139,20 @@ class Builder {
     if (pinned) all.pinned = this.nodesWhere(model.cage, pinned);
     const body = this.world.addBody(model.cage, model.mesh, all);
     if (gravity === 0) body.setGravity([0, 0, 0]);
-    const part = {body, model, colour, damping, softer: all.relativeStiffness / settings.stiffness};
+    const part = {name, body, model, colour, damping, yields, softer: all.relativeStiffness / settings.stiffness};
     part.modulusOfOne = body.youngsModulus / all.relativeStiffness;
     simulation.parts.push(part);
+    simulation.applyYield(part);
     return body;
+  }
+
+  /** mask: the painted one, of its tets; curve: of its fibres; stress: in the units of the stiffness */
+  addMuscle(body, mask, curve, stress) {
+    const {module, shelf, parts} = this.simulation;
+    const {model, name, modulusOfOne} = parts.find(part => part.body === body);
+    const shares = module.spreadMap(model.cage, model.mesh, shelf.mesh(name).shape.masks[mask]).tets;
+    const tets = [...shares.keys()].filter(t => shares[t] >= 0.5);
+    return body.addMuscle(tets, module.fibresAlong(model.cage, tets, curve), stress * modulusOfOne);
   }
 
   nodesWhere(cage, chosen) {
@@ -173,7 +187,7 @@ class Builder {
 }
 
 class Simulation {
-  /** name: of SCENES; settings: {tets, stiffness, damping, gravity, skin, elements} */
+  /** name: of SCENES; settings: as USUAL */
   constructor(module, shelf, name, settings) {
     Object.assign(this, {module, shelf, name, settings: {...settings}});
     this.world = module.createWorld({gravity: [0, -settings.gravity, 0], deterministic: true, recordForces: true});
@@ -298,7 +312,8 @@ class Simulation {
 
   /** But for what changes nothing that is simulated. */
   isUsual() {
-    return Object.keys(USUAL).every(name => ['skin', 'forces'].includes(name) || this.settings[name] === USUAL[name]);
+    return Object.keys(USUAL).every(name => ['skin', 'forces'].includes(name) || !isSettingOf(this.name, name) ||
+      this.settings[name] === USUAL[name]);
   }
 
   applySettings() {
@@ -307,7 +322,13 @@ class Simulation {
     for (const part of this.parts) {
       part.body.youngsModulus = part.modulusOfOne * part.softer * stiffness;
       part.body.stiffnessDamping = part.damping * damping;
+      this.applyYield(part);
     }
+  }
+
+  applyYield({body, modulusOfOne, yields}) {
+    const yieldStress = this.settings.yield * modulusOfOne;
+    if (yields) body.setPlasticity({yieldStress, hardening: 0.2 * yieldStress});
   }
 
   // --- Hands

@@ -99,14 +99,21 @@ class Tetskin {
   }
 
   readMesh(bytes, format) {
+    return this.withFile(bytes, format, (...file) => new Mesh(this.hidden.instance, this.core.readMesh(...file)));
+  }
+  loadVertexMap(bytes, format, name) {
+    if (typeof name !== "string") throw invalid("name: must be a string, for instance red");
+    return this.withFile(bytes, format, (...file) => this.copy(Float64Array, this.core.loadVertexMap(...file, name)));
+  }
+  /** Calls `work` with the place of a file's bytes, and its extension. */
+  withFile(bytes, format, work) {
     const content = bytesOf(bytes, "bytes");
     if (typeof format !== "string") throw invalid("format: must be a string, for instance obj");
     const extension = format.slice(format.lastIndexOf(".") + 1).toLowerCase();
     if (!kFormats.includes(extension)) {
       throw new TetskinError("UnsupportedFormat", `format: ${format} is none of ${kFormats.join(", ")}`);
     }
-    return this.withBytes(content, (at, count) => new Mesh(this.hidden.instance, this.core.readMesh(
-      at, count, extension)));
+    return this.withBytes(content, (at, count) => work(at, count, extension));
   }
   createMesh(positions, triangles, options) {
     const {normals, texcoords} = optionsOf(options, {normals: [], texcoords: []});
@@ -128,13 +135,28 @@ class Tetskin {
   createCage(mesh, options) {
     const {targetTets, duplicateElements, fit, stiffness, density, progress} = optionsOf(options, kCageOptions);
     const handle = this.handle(mesh, Mesh, "mesh");
-    const mapOf = (map, name) => {
-      if ([0, mesh.vertexCount].includes(map.length)) return doubles(map);
-      throw new TetskinError("SizeMismatch", `${name}: ${map.length} numbers for ${mesh.vertexCount} vertices`);
-    };
-    return this.withMemory([mapOf(stiffness, "stiffness"), mapOf(density, "density")], (...maps) =>
+    return this.withMemory(this.mapsOf(mesh, {stiffness, density}), (...maps) =>
       this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.createCage(
         handle, targetTets, duplicateElements, fit, ...maps, tells))));
+  }
+  paintCage(cage, mesh, maps) {
+    const painted = optionsOf(maps, {stiffness: [], density: []});
+    const handles = [this.handle(cage, Cage, "cage"), this.handle(mesh, Mesh, "mesh")];
+    return this.withMemory(this.mapsOf(mesh, painted), (...places) =>
+      new Cage(this.hidden.instance, this.core.paintCage(...handles, ...places)));
+  }
+  spreadMap(cage, mesh, values, options) {
+    const {mean} = optionsOf(options, {mean: "arithmetic"});
+    if (mean !== "arithmetic" && mean !== "geometric") throw invalid("mean: \"arithmetic\" or \"geometric\"");
+    const handles = [this.handle(cage, Cage, "cage"), this.handle(mesh, Mesh, "mesh")];
+    const numbers = this.withMemory([doubles(numbersOf(values, "values"))], at =>
+      this.copy(Float64Array, this.core.spreadMap(...handles, at, mean === "geometric")));
+    return {tets: numbers.slice(0, cage.tetCount), nodes: numbers.slice(cage.tetCount)};
+  }
+  fibresAlong(cage, tets, curve) {
+    const handle = this.handle(cage, Cage, "cage");
+    return this.withMemory([indices(numbersOf(tets, "tets")), doubles(numbersOf(curve, "curve", 3))], (...places) =>
+      this.copy(Float64Array, this.core.fibresAlong(handle, ...places)));
   }
   calibrate(cage, options) {
     const {poissonRatio, modeCount, progress} = optionsOf(options, kCalibrationOptions);
@@ -172,6 +194,13 @@ class Tetskin {
 
   handle(thing, Type, name) {
     return handleIn(this.hidden.instance, thing, Type, name);
+  }
+  /** Painted maps, each of which has a number for each vertex, or none. */
+  mapsOf(mesh, maps) {
+    return Object.entries(maps).map(([name, map]) => {
+      if ([0, mesh.vertexCount].includes(map.length)) return doubles(map);
+      throw new TetskinError("SizeMismatch", `${name}: ${map.length} numbers for ${mesh.vertexCount} vertices`);
+    });
   }
   /** An exception of a progress function cancels, and is thrown afterwards. */
   withProgress(progress, work) {

@@ -277,6 +277,10 @@ class Body extends Member {
   setGas(pressure, outside = 0) {
     this.core.setGas(own(this), numberOf(pressure, "pressure"), numberOf(outside, "outside"));
   }
+  setPressureSurface(mesh) {
+    const handle = mesh === null ? null : handleIn(this.hidden.instance, mesh, Mesh, "mesh");
+    this.core.setPressureSurface(own(this), handle);
+  }
   reset() {
     this.core.resetBody(own(this));
   }

@@ -135,6 +135,10 @@ void write(BodyHandle& body, double value) {
 void setGas(BodyHandle& body, double pressure, double outside) {
   check(alive(*body.state).setGas(pressure, outside));
 }
+/// mesh  null: the boundary of the tets
+void setPressureSurface(BodyHandle& body, const MeshModel* mesh) {
+  facade::setPressureSurface(*body.state, mesh ? *mesh : MeshModel());
+}
 double friction(BodyHandle& body) {
   return static_cast<double>(alive(*body.state).body().m_cfg.kDF);
 }
@@ -202,6 +206,7 @@ EMSCRIPTEN_BINDINGS(bodies) {
   expose<&write<&DeformableBody::setPressure>>("setPressure");
   expose<&read<&DeformableBody::volume>>("bodyVolume");
   expose<&setGas>("setGas");
+  expose<&setPressureSurface>("setPressureSurface");
   expose<&friction>("bodyFriction");
   expose<&setFriction>("setBodyFriction");
   expose<&restitution>("bodyRestitution");

@@ -7,7 +7,9 @@
 #include <emscripten.h>
 #include <facade/models.h>
 #include <tetskin/cage/create_cage.h>
+#include <tetskin/cage/painted_maps.h>
 #include <tetskin/elastic/calibration.h>
+#include <tetskin/elastic/material_changes.h>
 #include <tetskin/io/files.h>
 
 #include <cstdio>
@@ -66,6 +68,11 @@ class TemporaryFile {
 MeshModel readMesh(std::uintptr_t bytes, std::size_t count, std::string extension) {
   const TemporaryFile file(extension, reinterpret_cast<const unsigned char*>(bytes), count);
   return {std::make_shared<const TriangleMesh>(take(loadMesh(file.path())))};
+}
+
+View loadVertexMapOf(std::uintptr_t bytes, std::size_t count, std::string extension, std::string name) {
+  const TemporaryFile file(extension, reinterpret_cast<const unsigned char*>(bytes), count);
+  return lent(take(loadVertexMap(file.path(), name)));
 }
 
 MeshModel createMesh(Doubles positions, Indices triangles, Doubles normals, Doubles texcoords) {
@@ -147,6 +154,31 @@ CageModel calibrateCage(CageModel model, double poissonRatio, int modeCount, boo
   return cageModel(std::move(cage), model.cage->report + report.describe());
 }
 
+CageModel paintedCage(const CageModel& model, const MeshModel& mesh, Doubles stiffness, Doubles density) {
+  Cage cage = *model.cage;
+  check(paintCage(cage, *mesh.mesh, {{stiffness.begin(), stiffness.end()}, {density.begin(), density.end()}}));
+  return cageModel(std::move(cage), model.cage->report);
+}
+/// Returns the values of tets, and then those of nodes.
+View spreadMapOf(const CageModel& model, const MeshModel& mesh, Doubles values, bool geometric) {
+  const MapMean mean = geometric ? MapMean::Geometric : MapMean::Arithmetic;
+  SpreadMap map = take(spreadMap(*model.cage, *mesh.mesh, {values.begin(), values.end()}, mean));
+  map.tets.insert(map.tets.end(), map.nodes.begin(), map.nodes.end());
+  return lent(std::move(map.tets));
+}
+View fibresAlongOf(const CageModel& model, Indices tets, Doubles curve) {
+  const std::vector<int> of(tets.begin(), tets.end());
+  const TetMesh& mesh = model.cage->mesh;
+  for (const int t : of) {
+    if (t < 0 || static_cast<std::size_t>(t) >= mesh.tetCount())
+      fail(StatusCode::IndexOutOfRange, "tets: there is no tet " + std::to_string(t));
+  }
+  std::vector<double> numbers;
+  for (const Eigen::Vector3d& fibre : take(fibresAlong(mesh, of, pointsOf(curve))))
+    numbers.insert(numbers.end(), fibre.data(), fibre.data() + 3);
+  return lent(std::move(numbers));
+}
+
 CageModel quadraticCage(const CageModel& model) {
   return cageModel(take(refineQuadratic(*model.cage)));
 }
@@ -215,6 +247,7 @@ EMSCRIPTEN_BINDINGS(models) {
   emscripten::value_object<View>("View").field("at", &View::at).field("count", &View::count);
   emscripten::class_<MeshModel>("Mesh");
   expose<&readMesh>("readMesh");
+  expose<&loadVertexMapOf>("loadVertexMap");
   expose<&createMesh>("createMesh");
   expose<&meshFromBytes>("meshFromBytes");
   expose<&meshToBytes>("meshToBytes");
@@ -227,6 +260,9 @@ EMSCRIPTEN_BINDINGS(models) {
   emscripten::class_<CageModel>("Cage");
   expose<&createCageOf>("createCage");
   expose<&calibrateCage>("calibrate");
+  expose<&paintedCage>("paintCage");
+  expose<&spreadMapOf>("spreadMap");
+  expose<&fibresAlongOf>("fibresAlong");
   expose<&quadraticCage>("refineQuadratic");
   expose<&scaledCage>("scaledCage");
   expose<&cageOfTets>("cageOfTets");

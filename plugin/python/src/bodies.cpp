@@ -212,6 +212,17 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
            "pressure"_a, "outside"_a = 0.0,
            "Fills it with a gas of this pressure above that outside: from now on (pressure + outside) x volume is "
            "constant. outside: absolute, 0 for a soft toy, 101325 for a real tyre in Pa. 0 and 0: lets the gas out.")
+      .def(
+          "set_pressure_surface",
+          [](BodyHandle& b, const std::optional<MeshLike>& mesh) {
+            const MeshModel model = mesh ? meshOf(*mesh) : MeshModel();
+            const Locked lock(*b.world);
+            facade::setPressureSurface(*b.state, model);
+          },
+          "mesh"_a.none(),
+          "Sets the surface on which pressure acts, and whose volume counts: a closed mesh in the cage, rest space, "
+          "such "
+          "as an inner wall. None: the boundary of the tets. A gas keeps its present pressure.")
       .def_prop_ro("volume", number([](DeformableBody& b) { return b.volume(); }),
                    "The volume that pressure fills: of its hollows or, without any, of the body.")
       .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),

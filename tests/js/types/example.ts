@@ -34,6 +34,9 @@ export async function main(file: ArrayBuffer): Promise<string> {
   try {
     const cage: Cage = tetskin.cageFromBytes(await cageInWorker(new Uint8Array(file)));
     const mesh: Mesh = tetskin.readMesh(file, "glb");
+    const map: Float64Array = tetskin.loadVertexMap(file, "glb", "_STIFFNESS");
+    const nodes: Float64Array = tetskin.spreadMap(cage, mesh, map, {mean: "geometric"}).nodes;
+    const fibres: Float64Array = tetskin.fibresAlong(tetskin.paintCage(cage, mesh, {stiffness: map}), [0], nodes);
     const world = tetskin.createWorld({gravity: new Float32Array([0, -9.81, 0]), deterministic: true});
     const ground = world.addPlane({friction: 1}), ball = world.addSphere(0.5, {mass: 2, velocity: [1, 0, 0]});
     const body = world.addBody(cage, mesh, soft);
@@ -41,6 +44,8 @@ export async function main(file: ArrayBuffer): Promise<string> {
     const height: number | undefined = ball.position[1];
     body.velocities = new Float64Array(3 * body.nodeCount);
     body.youngsModulus *= 2;
+    body.setPressureSurface(mesh);
+    body.addMuscle([0], fibres);
     world.gravity = [0, -1, 0];
     const snapshot: Uint8Array = world.save(new Uint8Array(world.snapshotSize));
     for (let frame = 0; frame < 60; ++frame) world.step(1 / 60, 4);
@@ -56,6 +61,10 @@ export async function main(file: ArrayBuffer): Promise<string> {
     world.addBody(cage);
     // @ts-expect-error: arrays of a mesh are not replaced
     mesh.positions = new Float64Array(3);
+    // @ts-expect-error: no such mean
+    tetskin.spreadMap(cage, mesh, map, {mean: "harmonic"});
+    // @ts-expect-error: a mesh, or null, is needed
+    body.setPressureSurface();
     // @ts-expect-error: a cage is no mesh
     tetskin.createCage(cage);
     // @ts-expect-error: things are made by what load returns

@@ -73,18 +73,20 @@ class BodyPressure {
     of.setPressure(law_, surface_);
     return {};
   }
-  /// The pressure is to act on this surface from now on; null: on the boundary of the tets. A gas keeps its present
-  /// pressure, and the bounds of a constant one become those of the new surface.
+  /// The pressure is to act on this surface from now on; null: on the boundary of the tets. One that was prepared is
+  /// forgotten. A gas keeps its present pressure, and the bounds of a constant one become those of the new surface.
   /// now  the nodes' positions
   Status setSurface(std::shared_ptr<PressureSurface> surface, const BodyProbe<Scalar>& now, BodyDynamics<Scalar>& of) {
     std::shared_ptr<PressureSurface> before = std::exchange(surface_, std::move(surface));
     const bool given = std::exchange(given_, surface_ != nullptr);
+    auto make = std::exchange(make_, nullptr);
     fault_ = {};
     if (given_) findRest(of);
     if (!acts()) return {};
     if (Status status = findSurface(of); !status.ok()) {
       surface_ = std::move(before);
       given_ = given;
+      make_ = std::move(make);
       return status;
     }
     law_.reference = referenceAfter(*before, now, of);
@@ -145,7 +147,7 @@ class BodyPressure {
     if (surface_) return {};
     if (!fault_.ok()) return fault_;
     if (!of.tets()) return {StatusCode::InvalidOption, "pressure needs a body of elastic tets"};
-    Result<PressureSurface> made = make_ && !given_ ? make_() : Status{StatusCode::Empty, ""};
+    Result<PressureSurface> made = make_ ? make_() : Status{StatusCode::Empty, ""};
     if (!made.ok()) made = PressureSurface::ofTets(of.tets()->rest());
     if (!made.ok()) return fault_ = made.status();
     surface_ = std::make_shared<PressureSurface>(std::move(made).value());
