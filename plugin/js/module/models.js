@@ -77,7 +77,7 @@ properties(Palette, {
 
 const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
 const kCageOptions = {
-  targetTets: 3000, duplicateElements: true, fit: true, stiffness: [], density: [], progress: undefined,
+  targetTets: 3000, duplicateElements: true, fit: true, stiffness: [], density: [], damping: [], progress: undefined,
 };
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
 const kWorldOptions = {gravity: [0, -9.81, 0], deterministic: false, recordForces: false, sleepAfter: 0.5};
@@ -124,13 +124,15 @@ class Tetskin {
   }
 
   createCage(mesh, options) {
-    const {targetTets, duplicateElements, fit, stiffness, density, progress} = optionsOf(options, kCageOptions);
+    const {targetTets, duplicateElements, fit, stiffness, density, damping, progress} =
+      optionsOf(options, kCageOptions);
     const handle = this.handle(mesh, Mesh, "mesh");
     const mapOf = (map, name) => {
       if ([0, mesh.vertexCount].includes(map.length)) return doubles(map);
       throw new TetskinError("SizeMismatch", `${name}: ${map.length} numbers for ${mesh.vertexCount} vertices`);
     };
-    return this.withMemory([mapOf(stiffness, "stiffness"), mapOf(density, "density")], (...maps) =>
+    const arrays = [mapOf(stiffness, "stiffness"), mapOf(density, "density"), mapOf(damping, "damping")];
+    return this.withMemory(arrays, (...maps) =>
       this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.createCage(
         handle, targetTets, duplicateElements, fit, ...maps, tells))));
   }

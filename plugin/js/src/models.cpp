@@ -122,7 +122,7 @@ View meshBounds(const MeshModel& model) {
 
 /// By value, like calibrateCage: the progress function may delete the mesh that is being used.
 CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, Doubles stiffness,
-                       Doubles density, bool tells) {
+                       Doubles density, Doubles damping, bool tells) {
   if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
     fail(StatusCode::InvalidOption, "targetTets: must be from 1 to " + std::to_string(Limits::kMaxTargetTets));
   CageOptions options;
@@ -131,6 +131,7 @@ CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements
   options.fit = fit;
   options.stiffness.assign(stiffness.begin(), stiffness.end());
   options.density.assign(density.begin(), density.end());
+  options.damping.assign(damping.begin(), damping.end());
   options.progress = progressIf(tells);
   CageReport report;
   Cage cage = take(createCage(*mesh.mesh, options, &report));

@@ -89,7 +89,8 @@ struct MuscleOf {
 };
 
 template <class Body>
-MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fibres, double stress) {
+MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fibres, double stress,
+                         const std::optional<ArrayLike>& lengthFactors) {
   Muscle muscle;
   muscle.tets = indicesOf(tets, "tets", tetCount(body));
   muscle.stress = stress;
@@ -99,6 +100,11 @@ MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fib
   const Numbers<double> numbers(rows, "fibres", 3);
   for (std::size_t k = 0; k < numbers.rows(); ++k)
     muscle.fibres.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+  if (lengthFactors) {
+    const Numbers<double> points(*lengthFactors, "length_factors", 2);
+    for (std::size_t k = 0; k < points.rows(); ++k)
+      muscle.lengthFactors.push_back({points.data()[2 * k], points.data()[2 * k + 1]});
+  }
   return {body, guarded(body, [&] { return take(changeable(body).addMuscle(muscle)); })};
 }
 
@@ -143,10 +149,18 @@ void bind(Class<Body>& type) {
           "factors"_a,
           "Multiplies the stiffness of each tet, as it was when the body was made: (tets,), 1e-6 to 1e6. A large "
           "change in one step is a blow to a body under load.")
-      .def("add_muscle", addMuscle<Body>, "tets"_a, "fibres"_a, "stress"_a = 3e5,
+      .def(
+          "set_damping_scale",
+          [](Body& b, const ArrayLike& factors) {
+            const std::vector<double> byTet = numbersOf(factors.object, "factors");
+            guarded(b, [&] { check(changeable(b).setDampingScale(byTet)); });
+          },
+          "factors"_a, "Multiplies the damping of each tet, on top of what is painted in its cage: (tets,), 0 or more.")
+      .def("add_muscle", addMuscle<Body>, "tets"_a, "fibres"_a, "stress"_a = 3e5, "length_factors"_a = nb::none(),
            "Adds a muscle, which is relaxed: set its activation. tets: a mask or indices. fibres: directions, rest "
            "space: one (3,), or one for each of its tets (n, 3). stress: pressure units: its tension at activation 1 "
-           "and its rest length.");
+           "and its rest length. length_factors: (points, 2) stretches along it, ascending, and factors of the tension "
+           "there, linear between them: it then pulls at any length by them, beside its elasticity.");
 }
 
 }  // namespace

@@ -29,10 +29,10 @@ inline ElasticModuli fromLame(double mu, double lambda) {
 
 /// Material and solver settings of an ElasticBody.
 struct ElasticOptions {
-  double youngsModulus = 1e5;  ///< in pressure units, above 0; the default, in Pa, is that of soft foam
-  double poissonRatio = 0.3;   ///< 0 to 0.4999 in float, to 0.499999 in double
-  double stiffnessDamping =
-      0.0;               ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones
+  double youngsModulus = 1e5;     ///< in pressure units, above 0; the default, in Pa, is that of soft foam
+  double poissonRatio = 0.3;      ///< 0 to 0.4999 in float, to 0.499999 in double
+  double stiffnessDamping = 0.0;  ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic
+                                  ///< ones; the cage's `paintedDamping` multiplies it
   double density = 1.0;  ///< mass per volume, above 0
   /// tetCount, above 0: factors of the stiffness. Empty: the cage's `stiffnessScale()`, or 1
   std::vector<double> stiffnessScale;
@@ -134,6 +134,9 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// body under load.
   /// factors  tetCount, 1e-6 to 1e6; with the largest, the body must not be too stiff, as for `create`
   Status setStiffnessScale(const std::vector<double>& factors);
+  /// Multiplies the damping of each tet, on top of what is painted in the cage.
+  /// factors  tetCount, 0 or more; with the largest, the body must not be too stiff, as for `create`
+  Status setDampingScale(const std::vector<double>& factors);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);

@@ -65,6 +65,7 @@ struct TetWork {
   S* sums = nullptr;           ///< by slot: forces are added here; null: written to a tet's first corners, by node
   S alpha = 0, flatAlpha = 0;  ///< the second one applies where a tet is flat or inverted
   S* alphas = nullptr;         ///< by pack and point: which of the two; unused if they are equal
+  const S* factors = nullptr;  ///< wide, by pack: of the tets in the matrix alone; null: 1
 
   // Of rest shapes that change: see rest_change.h.
   /// (P D)^-1 - 1 by rows, and det D, wide, by pack and point; null: all tets have their first shapes.

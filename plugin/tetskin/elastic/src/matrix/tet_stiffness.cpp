@@ -4,6 +4,7 @@
 #include <tetskin/elastic/src/matrix/tet_stiffness.h>
 
 #include <cassert>
+#include <cmath>
 
 namespace tetskin::elastic_detail {
 
@@ -25,28 +26,30 @@ TetStiffness::TetStiffness(const RestTets& rest, const std::vector<std::uint32_t
 
 /// A point's vectors sum to exactly 0, to the last digit, so that nothing resists a translation.
 template <class S>
-void TetStiffness::take(const MatrixSource<S>& source) {
+void TetStiffness::take(const MatrixSource<S>& source, const std::vector<double>& shares) {
   assert(source.corners);
   const RestTets& rest = source.rest;
   ratio_ = source.ratio;
   spread_ = source.spread;
   std::size_t next = 0;
-  const auto addPoint = [&](std::size_t nodes, auto&& component) {
+  const auto addPoint = [&](std::size_t tet, std::size_t nodes, auto&& component) {
+    const double factor = shares.empty() ? 1.0 : std::sqrt(shares[tet]);
     Eigen::Vector3d& first = vectors_[next];
     first.setZero();
     for (std::size_t n = 1; n < nodes; ++n) {
       Eigen::Vector3d& own = vectors_[next + n];
-      for (std::size_t k = 0; k < 3; ++k) own[static_cast<Eigen::Index>(k)] = static_cast<double>(component(n, k));
+      for (std::size_t k = 0; k < 3; ++k)
+        own[static_cast<Eigen::Index>(k)] = factor * static_cast<double>(component(n, k));
       first -= own;
     }
     next += nodes;
   };
   for (std::size_t t = 0; t < rest.count(); ++t) {
-    addPoint(4, [&](std::size_t n, std::size_t k) { return source.corners[4 * (4 * t + n) + k]; });
+    addPoint(t, 4, [&](std::size_t n, std::size_t k) { return source.corners[4 * (4 * t + n) + k]; });
   }
   for (std::size_t t = 0; t < rest.quadratic.size(); ++t) {
     for (std::size_t point = 0; point < kQuadraticPoints; ++point) {
-      addPoint(kQuadraticNodes, [&](std::size_t n, std::size_t k) {
+      addPoint(rest.count() + t, kQuadraticNodes, [&](std::size_t n, std::size_t k) {
         return source.corners[4 * (rest.quadraticCorner(t, n) + k) + point];
       });
     }
@@ -88,7 +91,8 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
   }
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) template void TetStiffness::take<Scalar>(const MatrixSource<Scalar>&);
+#define TETSKIN_INSTANTIATE(Scalar) \
+  template void TetStiffness::take<Scalar>(const MatrixSource<Scalar>&, const std::vector<double>&);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 

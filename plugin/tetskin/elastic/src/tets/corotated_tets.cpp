@@ -120,6 +120,7 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.assembled = packed.assembled.data();
   work.corners = corners_.data() + 4 * packed.firstCorner;
   work.alphas = packed.alphas.data();
+  work.factors = packed.factors.empty() ? nullptr : packed.factors.data();
   work.frames = frames_;
   work.partOf = partOf_;
   if (packed.changes.empty()) return work;
@@ -292,6 +293,7 @@ bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   const S flatAlpha = flatAlpha_;
   stream(flatAlpha_);
   changed |= flatAlpha != flatAlpha_;
+  changed |= serializeFactors(stream);
   forBoth([&](auto& packed) { changed |= serializeAssembled(stream, packed); });
   if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= serializeAlphas(stream, alpha, packed); });
   return changed;

@@ -68,7 +68,19 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool setStiffnessScale(const std::vector<double>& byTet);
   /// Shapes at which the tets are at rest beside their plastic flow: deformation gradients from the first ones, by rows
   /// and tet of the cage; empty: the first ones. Plastic strains stay. Cost O(T)
-  void setGiven(const std::vector<std::array<double, 9>>& byTet);
+  /// stiffer  factors of the matrix by tet of the cage, at least 1, where a shape that follows the deformation makes
+  ///          forces stiffer than the tet is; empty: 1
+  void setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer = {});
+  /// Some tet's forces are stiffer, by such a factor, than the matrix counts.
+  bool isStiffer() const { return isStiffer_; }
+  /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
+  void setExtraDamping(const std::vector<double>& byTet);
+  /// Counts all this in the matrix from its next assembly on.
+  /// perSecond  share of a tet's stiffness that a second of damping adds to the matrix
+  void findFactors(double perSecond);
+  /// The share that extra damping has of a tet's part in the matrix. Cost O(T)
+  /// tet  linear ones, then quadratic ones
+  std::vector<double> extraShares();
   /// The stiffness of the given shapes over that of the first ones, in the mean.
   double stiffening() const { return stiffening_; }
   /// plasticity  checked; null: nothing flows any more, and what has flowed stays. For this material: call it again
@@ -97,6 +109,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     AlignedVector<S> rotations, assembled;  ///< by pack and point
     AlignedVector<S> alphas;                ///< by pack and point, see TetWork; empty until some tet may be flat
     AlignedVector<S> changes, assembledChanges, given, yields, flowed;  ///< see TetWork; empty until they are needed
+    std::vector<double> stiffer, extraDamping;                          ///< by tet in the packs; empty: 1, 0
+    AlignedVector<S> factors;                                           ///< see TetWork; empty: 1
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };
@@ -113,8 +127,14 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   }
   template <class Visit>
   void forTets(Visit&& visit);
+  /// By how much extra damping makes a tet count more in the matrix.
+  template <class Packed>
+  double dampedFactor(const Packed& packed, std::size_t tet) const {
+    return packed.extraDamping.empty() ? 1.0 : 1.0 + perSecond_ * packed.extraDamping[tet];
+  }
   bool changes() const { return !linear_.changes.empty() || !quadratic_.changes.empty(); }
   void makeChanges();
+  bool serializeFactors(StateStream& stream);
   bool serializeChanges(StateStream& stream, bool ofMatrix);
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
@@ -149,6 +169,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
   double stiffening_ = 1.0;
   bool isGiven_ = false;      ///< shapes other than the first ones
+  bool isStiffer_ = false;    ///< see `isStiffer`
+  double perSecond_ = 0.0;    ///< see `findFactors`
   bool everFlowed_ = false;   ///< it may have
   bool yields_ = false;       ///< some tet was beyond its yield surface in the last `forces`
   bool returns_ = false;      ///< since `forgetFlow`

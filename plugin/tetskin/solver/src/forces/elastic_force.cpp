@@ -11,8 +11,8 @@ namespace tetskin::bullet_detail {
 
 ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                            const elastic_detail::RestTets& linear, const ElasticMaterial& material,
-                           std::vector<double> stiffnessScale, std::vector<QuadraticShape> quadratic,
-                           const SolverSettings& settings)
+                           std::vector<double> stiffnessScale, std::vector<double> paintedDamping,
+                           std::vector<QuadraticShape> quadratic, const SolverSettings& settings)
     : material_(material), settings_(settings) {
   assert(checkMaterial(material).ok());
   assert(stiffnessScale.empty() || stiffnessScale.size() == linear.count());
@@ -20,6 +20,7 @@ ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody
   body_.body = &body;
   setWorld(world);
   body_.stiffnessScale = std::move(stiffnessScale);
+  body_.paintedDamping = std::move(paintedDamping);
   body_.quadratic = std::move(quadratic);
   body_.build(linear, material);
 }
