@@ -29,10 +29,11 @@ inline ElasticModuli fromLame(double mu, double lambda) {
 
 /// Material and solver settings of an ElasticBody.
 struct ElasticOptions {
-  double youngsModulus = 1e5;     ///< in pressure units, above 0; the default, in Pa, is that of soft foam
-  double poissonRatio = 0.3;      ///< 0 to 0.4999 in float, to 0.499999 in double
-  double stiffnessDamping = 0.0;  ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic
-                                  ///< ones; the cage's `paintedDamping` multiplies it
+  double youngsModulus = 1e5;  ///< in pressure units, above 0; the default, in Pa, is that of soft foam
+  double poissonRatio = 0.3;   ///< 0 to 0.4999 in float, to 0.499999 in double
+  /// Seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones. The cage's `paintedDamping`
+  /// multiplies it
+  double stiffnessDamping = 0.0;
   double density = 1.0;  ///< mass per volume, above 0
   /// tetCount, above 0: factors of the stiffness. Empty: the cage's `stiffnessScale()`, or 1
   std::vector<double> stiffnessScale;
@@ -109,8 +110,8 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// threads       see `ParallelFor`; bit-identical with any number; null: none
   int step(double seconds, const std::array<double, 3>& acceleration = {}, ParallelFor* threads = nullptr);
 
-  // ---- What changes the state in which the body is at rest; each from the next step on. Errors of a `Status`:
-  // InvalidOption, SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then.
+  // ---- What changes the material, and the state in which it is at rest; each from the next step on. Errors of a
+  // `Status`: InvalidOption, SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then.
 
   /// Lets the material flow where it yields; replaces what was set before. A step costs some 4 % more, a third
   /// more while all of it flows.

@@ -31,13 +31,13 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// name  of the map in messages
 enum class Range { Any, Positive, NotNegative };
 
 bool isIn(Range range, double value) {
   return range == Range::Any || value > 0.0 || (range == Range::NotNegative && value == 0.0);
 }
 
+/// name  of the map in messages
 Status checkMap(const TriangleMesh& mesh, const std::vector<double>& values, Range range, const std::string& name) {
   if (mesh.triangles.empty())
     return {StatusCode::Empty, name + " is on a mesh without triangles, which has no inside; triangulate it first"};

@@ -78,8 +78,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// Counts all this in the matrix from its next assembly on.
   /// perSecond  share of a tet's stiffness that a second of damping adds to the matrix
   void findFactors(double perSecond);
-  /// The share that extra damping has of a tet's part in the matrix. Cost O(T)
-  /// tet  linear ones, then quadratic ones
+  /// The shares that extra damping has of the tets' parts in the matrix, of linear ones first. Cost O(T)
   std::vector<double> extraShares();
   /// The stiffness of the given shapes over that of the first ones, in the mean.
   double stiffening() const { return stiffening_; }
