@@ -179,7 +179,8 @@ void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet,
       isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
     }
     whole += volume;
-    now += own * volume * given.determinant() * given.inverse().squaredNorm() / 3.0;
+    const bool first = given == Matrix(Matrix::Identity());
+    now += own * volume * (first ? 1.0 : given.determinant() * given.inverse().squaredNorm() / 3.0);
     for (std::size_t point = 0; point < Pack::kPoints; ++point) {
       const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
       S* const change = &packed.changes[kChange * at + lane];
