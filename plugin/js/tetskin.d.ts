@@ -545,6 +545,14 @@ export interface Body extends Thing {
    */
   setDampingScale(factors: Numbers): void;
   /**
+   * Adds fibres that make tets stiffer along them, for good.
+   * @param tets         of the cage
+   * @param directions   rest space: one, or one for each of these tets, three numbers each
+   * @param stiffness    their tension on the area at rest per strain, pressure units
+   * @param tensionOnly  nothing resists where they become shorter, as a rope
+   */
+  addFibres(tets: Numbers, directions: Numbers, stiffness: number, tensionOnly?: boolean): void;
+  /**
    * Adds a muscle, which is relaxed.
    * @param tets    of the cage
    * @param fibres  directions, rest space: one, or one for each of these tets, three numbers each

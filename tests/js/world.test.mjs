@@ -605,6 +605,8 @@ test("tets grow, contract and flow", () => {
   refused(() => body.setStiffnessScale(4), "InvalidArgument", /factors/);
   body.setDampingScale(new Float64Array(tets).fill(0));
   refused(() => body.setDampingScale(new Float64Array(tets).fill(-1)), "InvalidOption", /0 or more/);
+  refused(() => body.addFibres([0], [1, 0, 0], 0), "InvalidOption", /stiffness of fibres/);
+  body.addFibres([0, 1], [1, 0, 0], 1e5, true);
   refused(() => body.addMuscle([0], [1, 0, 0], 1e4, [1, 1, 1, 1]), "InvalidOption", /lengthFactors/);
   refused(() => body.setGrowth(0), "InvalidOption", /0.05 to 20/);
   refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidArgument", /no speed/);

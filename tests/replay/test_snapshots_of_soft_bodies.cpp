@@ -281,6 +281,11 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
     EXPECT_TRUE(body.addMuscle(muscle).ok());
     muscle.lengthFactors = {{0.8, 0.2}, {1.0, 1.0}, {1.2, 0.0}};
     EXPECT_TRUE(body.addMuscle(muscle).ok());
+    Fibres fibres;
+    fibres.tets = muscle.tets;
+    fibres.directions = {Eigen::Vector3d(1, 1, 0)};
+    fibres.stiffness = 2e4;
+    EXPECT_TRUE(body.addFibres(fibres).ok());
     scene->before = [&body](int frame) {
       Plasticity plasticity;
       plasticity.yieldStress = frame < 20 ? 200.0 : 400.0;

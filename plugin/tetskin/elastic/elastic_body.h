@@ -138,6 +138,8 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// Multiplies the damping of each tet, on top of what is painted in the cage.
   /// factors  tetCount, 0 or more; with the largest, the body must not be too stiff, as for `create`
   Status setDampingScale(const std::vector<double>& factors);
+  /// Adds fibres, for good. Tets may have several. The body must not become too stiff, as for `create`
+  Status addFibres(const Fibres& fibres);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);

@@ -64,6 +64,16 @@ struct Muscle {
   std::vector<std::array<double, 2>> lengthFactors;
 };
 
+/// Fibres that make tets stiffer along them: tendon, the passive part of muscles, a hose's braid, wood. Beside the
+/// elasticity of its tets, what is stretched by a strain e along its fibres has a tension of `stiffness` x e there, on
+/// its area at rest. Neither activation nor plastic flow changes their rest length, but growth does.
+struct Fibres {
+  std::vector<int> tets;                    ///< of the cage, at least one, each once
+  std::vector<Eigen::Vector3d> directions;  ///< rest space, of any length above 0: one for each tet, or one for all
+  double stiffness = 0.0;                   ///< pressure units, above 0; a tet's stiffness factor multiplies it, too
+  bool tensionOnly = false;                 ///< as a rope, nothing resists where they become shorter
+};
+
 /// Fibres along a curve: for each tet the direction of the nearest piece of it. Of two points: the axis between them.
 /// tets   of the cage; must exist
 /// curve  points, rest space, at least two, not all in one place

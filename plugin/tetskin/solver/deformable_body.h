@@ -106,6 +106,7 @@ class TETSKIN_SOLVER_API DeformableBody {
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);  ///< 3 x 3 by rows, by tet
   Status setStiffnessScale(const std::vector<double>& factors);                     ///< by tet, 1e-6 to 1e6
   Status setDampingScale(const std::vector<double>& factors);                       ///< by tet, 0 or more
+  Status addFibres(const Fibres& fibres);                                           ///< for good
   Result<int> addMuscle(const Muscle& muscle);                                      ///< returns its number
   Status setActivation(int muscle, double activation);                              ///< 0 to 1
   double activation(int muscle) const;  ///< 0 for a muscle that does not exist

@@ -319,6 +319,14 @@ Status ElasticBody<Scalar>::setDampingScale(const std::vector<double>& factors) 
   return status.ok() ? impl_->change(impl_->changes.setDampingScale(factors)) : status;
 }
 template <class Scalar>
+Status ElasticBody<Scalar>::addFibres(const Fibres& fibres) {
+  if (!impl_) return kNoNodes;
+  const elastic_detail::MaterialChanges& changes = impl_->changes;
+  const double relative = 1.0 + std::max(fibres.stiffness, 0.0) / impl_->youngsModulus;
+  Status status = impl_->checkStiffness(relative * std::max(changes.largestScale(), 1.0), changes.largestDamping());
+  return status.ok() ? impl_->change(impl_->changes.addFibres(fibres)) : status;
+}
+template <class Scalar>
 Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {
   if (!impl_) return kNoNodes;
   return impl_->changes.addMuscle(muscle);

@@ -547,6 +547,15 @@ Status DeformableBody::setDampingScale(const std::vector<double>& factors) {
   });
 }
 
+Status DeformableBody::addFibres(const Fibres& fibres) {
+  return impl_->changeSettings("fibres", [&](auto& changes) {
+    ElasticMaterial material = stiffest(impl_->material, changes.largestScale(), changes.largestDamping());
+    material.youngsModulus *= 1.0 + std::max(fibres.stiffness, 0.0) / impl_->material.youngsModulus;
+    Status status = checkStiffness(body(), material);
+    return status.ok() ? changes.addFibres(fibres) : status;
+  });
+}
+
 Result<int> DeformableBody::addMuscle(const Muscle& muscle) {
   int number = 0;
   Status status = impl_->changeShapes("a muscle", [&](auto& changes) {

@@ -96,6 +96,14 @@ struct TetFindings {
   bool yields = false;  ///< some tet is beyond its yield surface
 };
 
+/// Corners of fibres in tets, see fibre_tets.h: layers, each like the corners of all tets, 0 where there is none. In
+/// the matrix, even layers have blocks a b^T, odd ones (a . b) 1.
+template <class S>
+struct FibreLayers {
+  const S* corners = nullptr;
+  std::size_t count = 0, size = 0;  ///< number of layers; scalars of one
+};
+
 /// Rows of the matrix; no two of them are neighbours.
 template <class S>
 struct RowWork {
@@ -113,9 +121,10 @@ struct RowWork {
   const std::uint32_t* quadraticSums = nullptr;  ///< the same for quadratic tets, with the first corners of nodes
   const std::uint32_t* quadraticTerms = nullptr;
   const S* corners = nullptr;  ///< see `TetLoops::rotatedGradients`
-  S ratio = 0;                 ///< lambda / mu
-  S spread = 1;                ///< see BlockMatrix::assemble
-  S minMass = 0;               ///< relative to the trace of the stiffness's diagonal block; see `assemble`
+  FibreLayers<S> fibres;
+  S ratio = 0;    ///< lambda / mu
+  S spread = 1;   ///< see BlockMatrix::assemble
+  S minMass = 0;  ///< relative to the trace of the stiffness's diagonal block; see `assemble`
 
   // For products and solves. Wide vectors are by chunk, points by slot.
   S* residual = nullptr;   ///< transformed: (D + L)^-1 r

@@ -87,6 +87,7 @@ void BodyDynamics<S>::setMaterial(const Lame& lame) {
   assert(tets_);
   tets_->setMaterial(lame);
   shearModulus_ = lame.mu;
+  tets_->setFibres(fibres_, matrix_.pattern().slotOf);
   components_.setStiffness(tets_->rest(), lame, matrix_);
   findMaterialVolume();
   changed_ = true;
@@ -120,6 +121,15 @@ void BodyDynamics<S>::setDamping(double damping, const std::vector<double>& fact
   if (tets_) tets_->setExtraDamping(moreDamped_);
   if (moreDamped_.empty()) return extraDamping_.reset();
   if (!extraDamping_) extraDamping_.emplace(tets_->rest(), matrix_);
+}
+
+template <class S>
+void BodyDynamics<S>::setFibres(const std::vector<std::vector<TetFibre>>& families) {
+  assert(tets_);
+  if (families == fibres_) return;
+  fibres_ = families;
+  tets_->setFibres(fibres_, matrix_.pattern().slotOf);
+  changed_ = true;
 }
 
 template <class S>
@@ -390,7 +400,8 @@ void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
 
 template <class S>
 void BodyDynamics<S>::assembleFrom(const S* corners, ParallelFor* threads) {
-  matrix_.assemble(corners, tets_ ? tets_->ratio() : S(0), threads, static_cast<S>(spread_));
+  matrix_.assemble(corners, tets_ ? tets_->ratio() : S(0), threads, static_cast<S>(spread_),
+                   tets_ ? tets_->fibreLayers() : kernels::FibreLayers<S>());
   if (!extraDamping_) return;
   extraDamping_->take({tets_->rest(), corners, static_cast<double>(tets_->ratio()), spread_}, tets_->extraShares());
 }

@@ -92,6 +92,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// damping  seconds
   /// factors  of it by tet of the cage, 0 or more; empty: 1
   void setDamping(double damping, const std::vector<double>& factors = {});
+  /// See FibreTets; empty: none.
+  void setFibres(const std::vector<std::vector<TetFibre>>& families);
   /// What gives the tets their shapes at rest from now on; empty: they keep those that they have.
   void setShapeLaw(ShapeLaw law);
   /// The pressure in the body, and where it acts; null: the body has none. Its forces, stiffness and energy count as
@@ -314,6 +316,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   NodePlaces<S> places_;
   std::optional<CorotatedTets<S>> tets_;
   LoneSolve<S> loneSolve_;
+  std::vector<std::vector<TetFibre>> fibres_;  ///< see `setFibres`
   ShapeLaw shapeLaw_;
   std::vector<std::uint32_t> tetNumbers_;  ///< see TetStretches; empty until there is such a law
   PressureLaw pressure_;

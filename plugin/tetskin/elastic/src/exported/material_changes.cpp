@@ -91,6 +91,34 @@ Status checkCurve(const std::vector<std::array<double, 2>>& curve) {
   return {};
 }
 
+/// Directions of tets of the cage.
+/// what  has them
+Status checkFibres(const std::string& what, const std::vector<int>& tets,
+                   const std::vector<Eigen::Vector3d>& directions, std::size_t tetCount) {
+  if (tets.empty()) return invalidChange(what + ": needs at least one tet");
+  std::vector<char> used(tetCount, 0);
+  for (const int tet : tets) {
+    if (tet < 0 || static_cast<std::size_t>(tet) >= tetCount) {
+      return Status{
+          StatusCode::IndexOutOfRange,
+          what + ": tet " + std::to_string(tet) + " does not exist in a cage of " + std::to_string(tetCount) + " tets"};
+    }
+    if (used[static_cast<std::size_t>(tet)]++) {
+      return invalidChange(what + ": tet " + std::to_string(tet) + " is listed twice");
+    }
+  }
+  if (directions.size() != 1 && directions.size() != tets.size()) {
+    return sizeMismatch("fibres", directions.size(), tets.size());
+  }
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const double squared = directions[k].squaredNorm();
+    if (!(squared > 0.0 && std::isfinite(squared))) {
+      return invalidChange(what + ": fibre " + std::to_string(k) + " must be finite and longer than 0");
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Status MaterialChanges::setPlasticity(const Plasticity& plasticity) {
@@ -179,28 +207,37 @@ double MaterialChanges::largestDamping(const std::vector<double>& scale) const {
   return factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
 }
 
+Status MaterialChanges::addFibres(const Fibres& fibres) {
+  if (Status status = checkFibres("fibres", fibres.tets, fibres.directions, tetCount_); !status.ok()) return status;
+  if (!(fibres.stiffness > 0.0 && std::isfinite(fibres.stiffness))) {
+    return invalidChange("the stiffness of fibres must be finite and above 0");
+  }
+  fibres_.push_back(fibres);
+  return {};
+}
+
+/// By the order of their calls, and tet of the cage, with the growth of now.
+std::vector<std::vector<TetFibre>> MaterialChanges::fibresByTet() const {
+  std::vector<std::vector<TetFibre>> families;
+  for (const Fibres& fibres : fibres_) {
+    std::vector<TetFibre>& family = families.emplace_back(tetCount_);
+    for (std::size_t k = 0; k < fibres.tets.size(); ++k) {
+      const auto tet = static_cast<std::size_t>(fibres.tets[k]);
+      TetFibre& own = family[tet];
+      own.along = fibres.directions[fibres.directions.size() == 1 ? 0 : k].normalized();
+      own.stiffness = fibres.stiffness;
+      own.tensionOnly = fibres.tensionOnly;
+      if (growth_.empty()) continue;
+      const Eigen::Map<const RowMatrix> growth(growth_[tet].data());
+      own.along = (growth.inverse() * own.along).eval();
+      own.stiffness *= growth.determinant();
+    }
+  }
+  return families;
+}
+
 Result<int> MaterialChanges::addMuscle(const Muscle& muscle) {
-  if (muscle.tets.empty()) return invalidChange("a muscle needs at least one tet");
-  std::vector<char> used(tetCount_, 0);
-  for (const int tet : muscle.tets) {
-    if (tet < 0 || static_cast<std::size_t>(tet) >= tetCount_) {
-      return Status{
-          StatusCode::IndexOutOfRange,
-          "muscle: tet " + std::to_string(tet) + " does not exist in a cage of " + std::to_string(tetCount_) + " tets"};
-    }
-    if (used[static_cast<std::size_t>(tet)]++) {
-      return invalidChange("muscle: tet " + std::to_string(tet) + " is listed twice");
-    }
-  }
-  if (muscle.fibres.size() != 1 && muscle.fibres.size() != muscle.tets.size()) {
-    return sizeMismatch("fibres", muscle.fibres.size(), muscle.tets.size());
-  }
-  for (std::size_t k = 0; k < muscle.fibres.size(); ++k) {
-    const double squared = muscle.fibres[k].squaredNorm();
-    if (!(squared > 0.0 && std::isfinite(squared))) {
-      return invalidChange("muscle: fibre " + std::to_string(k) + " must be finite and longer than 0");
-    }
-  }
+  if (Status status = checkFibres("muscle", muscle.tets, muscle.fibres, tetCount_); !status.ok()) return status;
   if (!(muscle.stress > 0.0 && std::isfinite(muscle.stress))) {
     return invalidChange("the stress of a muscle must be finite and above 0");
   }
@@ -277,6 +314,7 @@ double MaterialChanges::largestScale() const {
 
 template <class S>
 void MaterialChanges::applyShapesTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus) const {
+  body.setFibres(fibresByTet());
   if (dependsOnLengths()) {
     return body.setShapeLaw([this, poissonRatio, youngsModulus](const TetStretches& stretches) {
       return givenShapes(poissonRatio, youngsModulus, &stretches);

@@ -30,6 +30,8 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   Status setStiffnessScale(const std::vector<double>& factors);
   Status setDampingScale(const std::vector<double>& factors);
+  Status addFibres(const Fibres& fibres);
+  std::size_t fibresCount() const { return fibres_.size(); }
   Result<int> addMuscle(const Muscle& muscle);
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;  ///< 0 for one that does not exist
@@ -57,6 +59,7 @@ class TETSKIN_ELASTIC_API MaterialChanges {
     double steepest = 0.0;  ///< the largest slope of its curve of tension over length; at least 0
   };
   std::vector<double> dampingFactors(const std::vector<double>& scale) const;
+  std::vector<std::vector<TetFibre>> fibresByTet() const;
   bool givesShapes() const;
   bool dependsOnLengths() const;
   GivenShapes givenShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches) const;
@@ -66,6 +69,7 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   std::vector<std::array<double, 9>> growth_;  ///< by tet; empty: none
   std::vector<double> stiffnessScale_, paintedDamping_, dampingScale_;
   std::vector<Group> muscles_;
+  std::vector<Fibres> fibres_;
 };
 
 }  // namespace tetskin::elastic_detail

@@ -9,10 +9,12 @@
 #include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/core/types.h>
 #include <tetskin/elastic/material_changes.h>
+#include <tetskin/elastic/src/tets/fibre_tets.h>
 #include <tetskin/elastic/src/tets/material.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -72,7 +74,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   ///          forces stiffer than the tet is; empty: 1
   void setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer = {});
   /// Some tet's forces are stiffer, by such a factor, than the matrix counts.
-  bool isStiffer() const { return isStiffer_; }
+  bool isStiffer() const { return isStiffer_ || (fibres_ && fibres_->outdated(mu_).stiffer); }
   /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
   void setExtraDamping(const std::vector<double>& byTet);
   /// Counts all this in the matrix from its next assembly on.
@@ -80,8 +82,13 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   void findFactors(double perSecond);
   /// The shares that extra damping has of the tets' parts in the matrix, of linear ones first. Cost O(T)
   std::vector<double> extraShares();
-  /// The stiffness of the given shapes over that of the first ones, in the mean.
-  double stiffening() const { return stiffening_; }
+  /// The stiffness of the given shapes, and of the fibres, over that of the first shapes, in the mean.
+  double stiffening() const;
+  /// See FibreTets; empty: none. Call it again after the stiffness scale has changed.
+  /// slotOf  by node
+  void setFibres(const std::vector<std::vector<TetFibre>>& families, const std::vector<std::uint32_t>& slotOf);
+  /// Those of the last corners.
+  kernels::FibreLayers<S> fibreLayers() const { return fibres_ ? fibres_->layers() : kernels::FibreLayers<S>(); }
   /// plasticity  checked; null: nothing flows any more, and what has flowed stays. For this material: call it again
   ///             after `setMaterial`
   void setPlasticity(const Plasticity* plasticity);
@@ -152,6 +159,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
+  std::optional<FibreTets<S>> fibres_;
   std::vector<double> madeVolumes_;  ///< of `rest_` as it was made, linear and quadratic; empty: it is as it was made
   Linear linear_;
   Quadratic quadratic_;
