@@ -116,7 +116,7 @@ void CorotatedTets<S>::setFibres(const std::vector<std::vector<TetFibre>>& famil
   const auto any = [](const std::vector<TetFibre>& family) {
     return std::any_of(family.begin(), family.end(), [](const TetFibre& fibre) { return fibre.stiffness > 0.0; });
   };
-  if (std::any_of(families.begin(), families.end(), any)) fibres_.emplace(rest_, slotOf, families);
+  if (std::any_of(families.begin(), families.end(), any)) fibres_.emplace(rest_, slotOf, families, mu_);
 }
 
 template <class S>
@@ -258,13 +258,13 @@ template <class S>
 double CorotatedTets<S>::meanTurn() const {
   const std::size_t scalars = linear_.rotations.size() + quadratic_.rotations.size();  // four per rotation
   const double own = std::sqrt(16.0 * turned_ / static_cast<double>(scalars));
-  return fibres_ ? std::max(own, std::sqrt(fibres_->outdated(mu_).mean)) : own;
+  return fibres_ ? std::max(own, std::sqrt(fibres_->outdated().mean)) : own;
 }
 
 template <class S>
 double CorotatedTets<S>::maxTurn() const {
   const double own = 4.0 * arcSine(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
-  return fibres_ ? std::max(own, std::sqrt(fibres_->outdated(mu_).largest)) : own;
+  return fibres_ ? std::max(own, std::sqrt(fibres_->outdated().largest)) : own;
 }
 
 template <class S>

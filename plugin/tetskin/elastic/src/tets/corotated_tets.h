@@ -74,7 +74,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   ///          forces stiffer than the tet is; empty: 1
   void setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer = {});
   /// Some tet's forces are stiffer, by such a factor, than the matrix counts.
-  bool isStiffer() const { return isStiffer_ || (fibres_ && fibres_->outdated(mu_).stiffer); }
+  bool isStiffer() const { return isStiffer_ || (fibres_ && fibres_->outdated().stiffer); }
   /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
   void setExtraDamping(const std::vector<double>& byTet);
   /// Counts all this in the matrix from its next assembly on.

@@ -52,8 +52,8 @@ std::array<double, 4> slopesAlong(const std::array<double, 9>& gradients, const 
 
 template <class S>
 FibreTets<S>::FibreTets(const RestTets& rest, const std::vector<std::uint32_t>& slotOf,
-                        const std::vector<std::vector<TetFibre>>& families)
-    : layerSize_(4 * rest.cornerCount()) {
+                        const std::vector<std::vector<TetFibre>>& families, double shearModulus)
+    : layerSize_(4 * rest.cornerCount()), shearModulus_(shearModulus) {
   std::vector<std::size_t> layers(rest.count() + rest.quadratic.size(), 0);  // by tet: the next free one
   for (const std::vector<TetFibre>& family : families) {
     for (std::size_t t = 0; t < rest.count(); ++t) {
@@ -160,6 +160,7 @@ void FibreTets<S>::addForces(const S* points, const S* frames, const std::uint32
       for (int k = 0; k < 3; ++k) to[k] += static_cast<S>(force * spring.weights[n] * d[k]);
     }
   }
+  if (keeps) findOutdated();
 }
 
 template <class S>
@@ -173,23 +174,23 @@ double FibreTets<S>::energy(const S* points, const S* frames, const std::uint32_
 }
 
 template <class S>
-typename FibreTets<S>::Outdated FibreTets<S>::outdated(double shearModulus) const {
+void FibreTets<S>::findOutdated() {
   constexpr double kMore = 0.25;  // of what resists sidewards
-  Outdated found;
+  outdated_ = {};
   for (const Spring& spring : springs_) {
     const double squared = (spring.now.d - spring.assembled.d).squaredNorm();
-    found.mean += squared;
-    found.largest = std::max(found.largest, squared);
-    const double counted = shearModulus + spring.modulus * spring.assembled.t;
-    found.stiffer |= spring.modulus * (spring.now.t - spring.assembled.t) > kMore * counted;
+    outdated_.mean += squared;
+    outdated_.largest = std::max(outdated_.largest, squared);
+    const double counted = shearModulus_ + spring.modulus * spring.assembled.t;
+    outdated_.stiffer |= spring.modulus * (spring.now.t - spring.assembled.t) > kMore * counted;
   }
-  found.mean /= static_cast<double>(springs_.size());
-  return found;
+  outdated_.mean /= static_cast<double>(springs_.size());
 }
 
 template <class S>
 void FibreTets<S>::assemble(double alpha) {
   for (Spring& spring : springs_) spring.assembled = spring.now;
+  outdated_ = {};
   assembleAgain(alpha);
 }
 

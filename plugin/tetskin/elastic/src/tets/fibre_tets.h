@@ -33,21 +33,22 @@ struct TetFibre {
 template <class S>
 class FibreTets {
  public:
-  /// families  each by tet of the cage; some tet has fibres. A quadratic tet has the mean of its parts, of each family
+  /// families      each by tet of the cage; some tet has fibres. A quadratic tet has the mean of its parts, of each
+  /// shearModulus  of the tets, which resists sidewards, too
   FibreTets(const RestTets& rest, const std::vector<std::uint32_t>& slotOf,
-            const std::vector<std::vector<TetFibre>>& families);
+            const std::vector<std::vector<TetFibre>>& families, double shearModulus);
 
   /// Adds their forces; see TetWork for points, frames and parts.
   /// keeps  false: a question, which changes nothing
   void addForces(const S* points, const S* frames, const std::uint32_t* partOf, bool keeps, S* out);
   double energy(const S* points, const S* frames, const std::uint32_t* partOf) const;
-  /// Squared angles between the present directions and those of the matrix: mean and largest; and whether some fibre
-  /// has far more tension than the matrix counts. shearModulus  of the tets, which resists sidewards, too
+  /// How far the matrix is from the last `addForces` that kept: squared angles between directions, their mean and the
+  /// largest; and whether some fibre has far more tension than the matrix counts.
   struct Outdated {
     double mean = 0.0, largest = 0.0;
     bool stiffer = false;
   };
-  Outdated outdated(double shearModulus) const;
+  const Outdated& outdated() const { return outdated_; }
   /// V k over all fibres.
   double stiffness() const { return stiffness_; }
   /// Makes the layers for a matrix, by the last `addForces` that kept; `assembleAgain`: as they were.
@@ -58,6 +59,7 @@ class FibreTets {
   bool serialize(StateStream& stream);
 
  private:
+  void findOutdated();
   struct Direction {
     Eigen::Vector3d d = Eigen::Vector3d::Zero();
     double t = 0.0;
@@ -87,7 +89,8 @@ class FibreTets {
   std::vector<Spring> springs_;
   AlignedVector<S> corners_;
   std::size_t layerSize_ = 0, layerCount_ = 0;
-  double stiffness_ = 0.0;
+  double shearModulus_ = 1.0, stiffness_ = 0.0;
+  Outdated outdated_;
 };
 
 }  // namespace tetskin::elastic_detail
