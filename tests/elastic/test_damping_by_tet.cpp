@@ -16,7 +16,7 @@ template <class S>
 class DampingByTetOf : public WithScalar<S> {};
 TYPED_TEST_SUITE(DampingByTetOf, Scalars);
 
-constexpr double kPi = 3.14159265358979324, kSpeedOfSound = 10.0;  // of a bar with E 1e5 and a density of 1000
+constexpr double kHalfTurn = 3.14159265358979324, kSpeedOfSound = 10.0;  // of a bar with E 1e5 and a density of 1000
 
 Cage dampedBar(bool quadratic) {
   Cage bar(makeBox(quadratic ? std::array<int, 3>{10, 1, 1} : std::array<int, 3>{20, 2, 2}, Vector3d(1.0, 0.1, 0.1)));
@@ -49,16 +49,16 @@ template <class S>
 double decayOf(ElasticBody<S>& body, const Cage& bar, double dt) {
   const std::vector<double> masses = lumped(bar.mesh);
   Points velocities;
-  for (const Vector3d& p : bar.mesh.nodes) velocities.emplace_back(0.01 * std::cos(kPi * p.x()), 0.0, 0.0);
+  for (const Vector3d& p : bar.mesh.nodes) velocities.emplace_back(0.01 * std::cos(kHalfTurn * p.x()), 0.0, 0.0);
   fill(body.velocities(), velocities);
   const auto amplitude = [&] {  // of the mode: its displacement and its speed
     double shift = 0.0, speed = 0.0;
     for (std::size_t n = 0; n < masses.size(); ++n) {
-      const double shape = masses[n] * std::cos(kPi * bar.mesh.nodes[n].x());
+      const double shape = masses[n] * std::cos(kHalfTurn * bar.mesh.nodes[n].x());
       shift += shape * (static_cast<double>(body.positions()[n][0]) - bar.mesh.nodes[n].x());
       speed += shape * static_cast<double>(body.velocities()[n][0]);
     }
-    return std::hypot(shift * kPi * kSpeedOfSound, speed);
+    return std::hypot(shift * kHalfTurn * kSpeedOfSound, speed);
   };
   // The ripple of velocities that belong to the middle of a step has twice the mode's frequency: a mean over periods.
   const double period = 2.0 / kSpeedOfSound;
@@ -85,7 +85,7 @@ TYPED_TEST(DampingByTetOf, AModeDecaysByTheMeanOverItsEnergy) {
       for (const double dt : {1.0 / 240.0, 1.0 / 960.0}) {
         bar.paintedDamping = halves(bar, left, right);
         ElasticBody<TypeParam> body = made<TypeParam>(bar, ringing(kDamping));
-        const double omega = kPi * kSpeedOfSound, wanted = 0.5 * omega * omega * 0.5 * (left + right) * kDamping;
+        const double omega = kHalfTurn * kSpeedOfSound, wanted = 0.5 * omega * omega * 0.5 * (left + right) * kDamping;
         EXPECT_NEAR(decayOf(body, bar, dt) / wanted, 1.0, dt < 2e-3 ? 0.02 : 0.06) << left << " " << right << " " << dt;
       }
     }

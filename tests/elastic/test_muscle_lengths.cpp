@@ -91,12 +91,13 @@ double heldPull(const Cage& bar, double poissonRatio, double stress, double stre
   return force;
 }
 
-/// Beside its elasticity. Ends that are held cannot become wider: that is a small share of the pull.
+/// Beside its elasticity, where it does not buckle. Ends that are held cannot become wider: that is a small share of
+/// the pull.
 TYPED_TEST(MuscleLengthsOf, AHeldMusclePullsByItsLength) {
   for (const bool quadratic : {false, true}) {
     const Cage bar = muscleBar(quadratic);
     for (const double nu : {0.0, 0.3}) {
-      for (const double stretch : {0.7, 0.9, 1.0, 1.2, 1.4}) {
+      for (const double stretch : {0.85, 0.9, 1.0, 1.2, 1.4}) {
         const double passive = heldPull<TypeParam>(bar, nu, 1.0, stretch, 4);
         for (const double share : {0.05, 0.3}) {
           const double pull = heldPull<TypeParam>(bar, nu, share * kModulus, stretch, 4) - passive;

@@ -3,31 +3,37 @@
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/dynamics/extra_damping.h>
 
-#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace tetskin::elastic_detail {
 
 template <class S>
-ExtraDamping<S>::ExtraDamping(const RestTets& rest, const BlockMatrix<S>& matrix)
-    : stiffness_(rest, matrix.pattern().slotOf), velocities_(3 * matrix.slotCount()), impulses_(velocities_) {}
+void ExtraDamping<S>::take(const RestTets& rest, const S* corners, S ratio, S spread, const std::vector<double>& shares,
+                           ParallelFor* threads) {
+  assert(shares.size() == rest.count() + rest.quadratic.size());
+  corners_.assign(4 * rest.cornerCount(), S(0));
+  const auto copy = [&](std::size_t tet, std::size_t first, std::size_t count) {
+    const auto root = static_cast<S>(std::sqrt(shares[tet]));
+    for (std::size_t k = 4 * first; k < 4 * (first + count); ++k) corners_[k] = root * corners[k];
+  };
+  for (std::size_t t = 0; t < rest.count(); ++t) copy(t, 4 * t, 4);
+  for (std::size_t q = 0; q < rest.quadratic.size(); ++q) {
+    copy(rest.count() + q, rest.quadraticCorner(q), RestTets::kCornersPerNode * kQuadraticNodes);
+  }
+  matrix_.assemble(corners_.data(), ratio, threads, spread);
+}
 
 template <class S>
-void ExtraDamping<S>::takeFrom(AlignedVector<S>& impulses, const S* velocities) {
-  assert(impulses.size() == velocities_.size());
-  const std::size_t slots = velocities_.size() / 3;
-  bySlots(slots, [&](std::size_t slot, std::size_t wide) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      velocities_[3 * slot + k] = static_cast<double>(velocities[wide + k * kernels::kGroup]);
-    }
+void ExtraDamping<S>::takeFrom(AlignedVector<S>& impulses, const S* velocities, ParallelFor* threads) {
+  assert(impulses.size() == matrix_.wideSize());
+  points_.resize(4 * matrix_.slotCount(), S(0));
+  products_.resize(impulses.size());
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) points_[4 * slot + k] = velocities[wide + k * kernels::kGroup];
   });
-  std::fill(impulses_.begin(), impulses_.end(), 0.0);
-  stiffness_.addProduct(velocities_, impulses_);
-  bySlots(slots, [&](std::size_t slot, std::size_t wide) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      impulses[wide + k * kernels::kGroup] -= static_cast<S>(impulses_[3 * slot + k]);
-    }
-  });
+  matrix_.multiply(points_.data(), products_.data(), threads);
+  for (std::size_t k = 0; k < impulses.size(); ++k) impulses[k] -= products_[k];
 }
 
 TETSKIN_INSTANTIATE_CLASS(ExtraDamping)

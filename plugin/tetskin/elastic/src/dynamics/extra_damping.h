@@ -8,7 +8,6 @@
 #pragma once
 
 #include <tetskin/elastic/src/matrix/block_matrix.h>
-#include <tetskin/elastic/src/matrix/tet_stiffness.h>
 
 #include <vector>
 
@@ -17,18 +16,21 @@ namespace tetskin::elastic_detail {
 template <class S>
 class ExtraDamping {
  public:
-  ExtraDamping(const RestTets& rest, const BlockMatrix<S>& matrix);
+  ExtraDamping(const RestTets& rest, std::size_t nodes) : matrix_(nodes, rest) {}
 
   /// Cost O(T)
-  /// source  of the matrix's assembly
-  /// shares  by tet, linear ones first: the share that D has of its part of A - M
-  void take(const MatrixSource<S>& source, const std::vector<double>& shares) { stiffness_.take(source, shares); }
-  /// Takes dt D times velocities from impulses; both in the wide layout. Cost O(T)
-  void takeFrom(AlignedVector<S>& impulses, const S* velocities);
+  /// corners  of the matrix's assembly;  ratio, spread  see BlockMatrix::assemble
+  /// shares   by tet, linear ones first: the share that D has of its part of A - M
+  void take(const RestTets& rest, const S* corners, S ratio, S spread, const std::vector<double>& shares,
+            ParallelFor* threads);
+  void setDeterministic(bool on) { matrix_.setDeterministic(on); }
+  /// Takes dt D times velocities from impulses; both in the wide layout. Cost that of a product with the matrix
+  void takeFrom(AlignedVector<S>& impulses, const S* velocities, ParallelFor* threads);
 
  private:
-  TetStiffness stiffness_;
-  std::vector<double> velocities_, impulses_;  ///< 3 scalars per slot
+  BlockMatrix<S> matrix_;               ///< dt D: all masses are 0
+  AlignedVector<S> corners_;            ///< see RestTets
+  AlignedVector<S> points_, products_;  ///< by slot; in the wide layout
 };
 
 }  // namespace tetskin::elastic_detail

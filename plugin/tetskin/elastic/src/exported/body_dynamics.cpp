@@ -120,7 +120,8 @@ void BodyDynamics<S>::setDamping(double damping, const std::vector<double>& fact
   moreDamped_ = std::move(more);
   if (tets_) tets_->setExtraDamping(moreDamped_);
   if (moreDamped_.empty()) return extraDamping_.reset();
-  if (!extraDamping_) extraDamping_.emplace(tets_->rest(), matrix_);
+  if (!extraDamping_) extraDamping_.emplace(tets_->rest(), matrix_.nodeCount());
+  extraDamping_->setDeterministic(deterministic_);
 }
 
 template <class S>
@@ -162,6 +163,7 @@ void BodyDynamics<S>::setDeterministic(bool on) {
   deterministic_ = on;
   matrix_.setDeterministic(on);
   if (tets_) tets_->setDeterministic(on);
+  if (extraDamping_) extraDamping_->setDeterministic(on);
 }
 
 template <class S>
@@ -266,8 +268,8 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
     return begin();
   }
   if (shapeLaw_) {
-    const GivenShapes now = shapeLaw_({tets_->rest(), tetNumbers_, matrix_.pattern().slotOf, places_.at(0)});
-    tets_->setGiven(now.shapes, now.stiffer);
+    shapeLaw_({tets_->rest(), tetNumbers_, matrix_.pattern().slotOf, places_.at(0)}, given_);
+    tets_->setGiven(given_.shapes, given_.stiffer);
   }
   components_.find(nodes(), pinned_ > 0, seconds);
   if (changed_) stiffnessOverInertia_ = components_.stiffnessOverInertia();
@@ -403,7 +405,7 @@ void BodyDynamics<S>::assembleFrom(const S* corners, ParallelFor* threads) {
   matrix_.assemble(corners, tets_ ? tets_->ratio() : S(0), threads, static_cast<S>(spread_),
                    tets_ ? tets_->fibreLayers() : kernels::FibreLayers<S>());
   if (!extraDamping_) return;
-  extraDamping_->take({tets_->rest(), corners, static_cast<double>(tets_->ratio()), spread_}, tets_->extraShares());
+  extraDamping_->take(tets_->rest(), corners, tets_->ratio(), static_cast<S>(spread_), tets_->extraShares(), threads);
 }
 
 /// While the matrix is as it was assembled.
@@ -473,7 +475,7 @@ void BodyDynamics<S>::carry(ParallelFor* threads) {
   changed_ |= flat;
   if (flat) assembleFrom(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), threads);
   matrix_.multiply(relative_.data(), carried_.data(), threads);
-  if (extraDamping_) extraDamping_->takeFrom(carried_, last_.data());
+  if (extraDamping_) extraDamping_->takeFrom(carried_, last_.data(), threads);
   if (flat) assemble(alpha_, threads);
   const auto share = static_cast<S>(scheme_.carried);
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
@@ -536,7 +538,7 @@ void BodyDynamics<S>::remember(SolvedWith what, ParallelFor* threads) {
     if (what == SolvedWith::Others) findResidual(threads);
     if (!secondOrder_) history_.clear(matrix_.wideSize());
     AlignedVector<S>& impulses = what == SolvedWith::Others ? image_ : rightSide_;
-    if (extraDamping_) extraDamping_->takeFrom(impulses, matrix_.solution());
+    if (extraDamping_) extraDamping_->takeFrom(impulses, matrix_.solution(), threads);
     history_.keep(matrix_, impulses, scheme_, lastSeconds_, forceSeconds_);
     remembered_ = true;
   }

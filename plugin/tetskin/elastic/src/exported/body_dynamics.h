@@ -51,7 +51,7 @@ struct GivenShapes {
   std::vector<double> stiffer;
 };
 /// Called at the beginning of each step, at the positions of its forces.
-using ShapeLaw = std::function<GivenShapes(const TetStretches& stretches)>;
+using ShapeLaw = std::function<void(const TetStretches& stretches, GivenShapes& given)>;
 
 /// Positions of a body's nodes, and the elastic forces there: a question that leaves the body's state as it is.
 template <class S>
@@ -318,6 +318,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   LoneSolve<S> loneSolve_;
   std::vector<std::vector<TetFibre>> fibres_;  ///< see `setFibres`
   ShapeLaw shapeLaw_;
+  GivenShapes given_;                      ///< by it
   std::vector<std::uint32_t> tetNumbers_;  ///< see TetStretches; empty until there is such a law
   PressureLaw pressure_;
   std::shared_ptr<PressureSurface> pressureSurface_;  ///< null: no pressure

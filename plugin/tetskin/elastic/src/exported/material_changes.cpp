@@ -275,10 +275,10 @@ bool MaterialChanges::dependsOnLengths() const {
 /// By tet of the cage; where several muscles share a tet, their tensions are summed by their axes. Forces of a muscle
 /// whose tension grows with its length are stiffer than its tets by (1 + slope / E) over what these have along it.
 /// stretches  null: no muscle depends on its length
-GivenShapes MaterialChanges::givenShapes(double poissonRatio, double youngsModulus,
-                                         const TetStretches* stretches) const {
-  if (!givesShapes()) return {};
-  GivenShapes given{growth_, {}};
+void MaterialChanges::findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches,
+                                 GivenShapes& given) const {
+  if (!givesShapes()) return;
+  given.shapes = growth_;
   if (given.shapes.empty()) given.shapes.assign(tetCount_, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
   if (stretches) given.stiffer.assign(tetCount_, 1.0);
   for (const Group& group : muscles_) {
@@ -305,7 +305,6 @@ GivenShapes MaterialChanges::givenShapes(double poissonRatio, double youngsModul
       shape = (contracted(unit, w, poissonRatio) * shape).eval();
     }
   }
-  return given;
 }
 
 double MaterialChanges::largestScale() const {
@@ -316,12 +315,14 @@ template <class S>
 void MaterialChanges::applyShapesTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus) const {
   body.setFibres(fibresByTet());
   if (dependsOnLengths()) {
-    return body.setShapeLaw([this, poissonRatio, youngsModulus](const TetStretches& stretches) {
-      return givenShapes(poissonRatio, youngsModulus, &stretches);
+    return body.setShapeLaw([this, poissonRatio, youngsModulus](const TetStretches& stretches, GivenShapes& given) {
+      findShapes(poissonRatio, youngsModulus, &stretches, given);
     });
   }
   body.setShapeLaw({});
-  body.tets()->setGiven(givenShapes(poissonRatio, youngsModulus, nullptr).shapes);
+  GivenShapes given;
+  findShapes(poissonRatio, youngsModulus, nullptr, given);
+  body.tets()->setGiven(given.shapes);
 }
 
 template <class S>

@@ -62,7 +62,7 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   std::vector<std::vector<TetFibre>> fibresByTet() const;
   bool givesShapes() const;
   bool dependsOnLengths() const;
-  GivenShapes givenShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches) const;
+  void findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches, GivenShapes& given) const;
 
   std::size_t tetCount_ = 0;
   std::optional<Plasticity> plasticity_;

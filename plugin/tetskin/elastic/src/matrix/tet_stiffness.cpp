@@ -4,7 +4,6 @@
 #include <tetskin/elastic/src/matrix/tet_stiffness.h>
 
 #include <cassert>
-#include <cmath>
 
 namespace tetskin::elastic_detail {
 
@@ -27,7 +26,7 @@ TetStiffness::TetStiffness(const RestTets& rest, const std::vector<std::uint32_t
 
 /// A point's vectors sum to exactly 0, to the last digit, so that nothing resists a translation.
 template <class S>
-void TetStiffness::take(const MatrixSource<S>& source, const std::vector<double>& shares) {
+void TetStiffness::take(const MatrixSource<S>& source) {
   assert(source.corners);
   const RestTets& rest = source.rest;
   ratio_ = source.ratio;
@@ -35,14 +34,12 @@ void TetStiffness::take(const MatrixSource<S>& source, const std::vector<double>
   layers_ = 1 + source.fibres.count;
   vectors_.resize(perLayer_ * layers_);
   std::size_t next = 0;
-  const auto addPoint = [&](std::size_t tet, std::size_t nodes, auto&& component) {
-    const double factor = shares.empty() ? 1.0 : std::sqrt(shares[tet]);
+  const auto addPoint = [&](std::size_t nodes, auto&& component) {
     Eigen::Vector3d& first = vectors_[next];
     first.setZero();
     for (std::size_t n = 1; n < nodes; ++n) {
       Eigen::Vector3d& own = vectors_[next + n];
-      for (std::size_t k = 0; k < 3; ++k)
-        own[static_cast<Eigen::Index>(k)] = factor * static_cast<double>(component(n, k));
+      for (std::size_t k = 0; k < 3; ++k) own[static_cast<Eigen::Index>(k)] = static_cast<double>(component(n, k));
       first -= own;
     }
     next += nodes;
@@ -50,11 +47,11 @@ void TetStiffness::take(const MatrixSource<S>& source, const std::vector<double>
   for (std::size_t layer = 0; layer < layers_; ++layer) {
     const S* const corners = layer == 0 ? source.corners : source.fibres.corners + (layer - 1) * source.fibres.size;
     for (std::size_t t = 0; t < rest.count(); ++t) {
-      addPoint(t, 4, [&](std::size_t n, std::size_t k) { return corners[4 * (4 * t + n) + k]; });
+      addPoint(4, [&](std::size_t n, std::size_t k) { return corners[4 * (4 * t + n) + k]; });
     }
     for (std::size_t t = 0; t < rest.quadratic.size(); ++t) {
       for (std::size_t point = 0; point < kQuadraticPoints; ++point) {
-        addPoint(rest.count() + t, kQuadraticNodes,
+        addPoint(kQuadraticNodes,
                  [&](std::size_t n, std::size_t k) { return corners[4 * (rest.quadraticCorner(t, n) + k) + point]; });
       }
     }
@@ -110,8 +107,7 @@ void TetStiffness::addFibres(const StiffnessPoint& at, const Eigen::Matrix3d& gr
   }
 }
 
-#define TETSKIN_INSTANTIATE(Scalar) \
-  template void TetStiffness::take<Scalar>(const MatrixSource<Scalar>&, const std::vector<double>&);
+#define TETSKIN_INSTANTIATE(Scalar) template void TetStiffness::take<Scalar>(const MatrixSource<Scalar>&);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 

@@ -37,9 +37,8 @@ class TetStiffness {
   TetStiffness(const RestTets& rest, const std::vector<std::uint32_t>& slotOf);
 
   /// The tets must be the same as before. Cost O(T)
-  /// shares  by tet, linear ones first: factors of their stiffness, 0 or more; empty: 1
   template <class S>
-  void take(const MatrixSource<S>& source, const std::vector<double>& shares = {});
+  void take(const MatrixSource<S>& source);
 
   /// Adds alpha K times velocities to impulses, both 3 scalars per slot. Cost O(T)
   void addProduct(const std::vector<double>& velocities, std::vector<double>& impulses) const;

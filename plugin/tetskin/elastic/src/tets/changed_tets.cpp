@@ -159,47 +159,79 @@ bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet) {
 template <class S>
 void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer) {
   if (byTet.empty() && !isGiven_) return;
-  constexpr double kStale = 1.25;  // forces may be this much stiffer than the matrix
   makeChanges();
   forBoth([&](auto& packed) {
     packed.given.resize(9 * packed.flowed.size(), S(0));
-    packed.stiffer.assign(stiffer.empty() ? 0 : kGroup * packed.packs.size(), 1.0);
+    packed.stiffenings.resize(kGroup * packed.packs.size(), 1.0);
   });
-  double whole = 0.0, now = 0.0;
+  const bool known = isGiven_ && given_.size() == byTet.size();
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
-    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    const bool stays = known && std::all_of(cageTets.begin(), cageTets.end(), [&](auto own) {
+                         const auto k = static_cast<std::size_t>(own);
+                         return given_[k] == byTet[k];
+                       });
+    if (stays) return;
     // Rounded as it is stored: what has flowed is found again exactly.
-    const Matrix given = byTet.empty() ? Matrix(Matrix::Identity())
-                                       : Matrix(meanOf(byTet, cageTets).template cast<S>().template cast<double>());
-    const double volume = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
-    double own = 1.0;
-    if (!stiffer.empty()) {
-      own = packed.stiffer[tet] = meanOf(stiffer, cageTets);
-      const double counted = packed.factors.empty() ? 1.0 : static_cast<double>(packed.factors[tet]);
-      isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
+    setGiven(packed, tet,
+             byTet.empty() ? Matrix(Matrix::Identity())
+                           : Matrix(meanOf(byTet, cageTets).template cast<S>().template cast<double>()));
+  });
+  given_ = byTet;
+  isGiven_ = !byTet.empty();
+  setStiffer(stiffer);
+  findStiffening();
+}
+
+template <class S>
+template <class Tets>
+void CorotatedTets<S>::setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& given) {
+  using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+  const Matrix inverse = given.inverse();
+  const double volume = given.determinant();
+  packed.stiffenings[tet] = volume * inverse.squaredNorm() / 3.0;
+  for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+    const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
+    S* const change = &packed.changes[kChange * at + lane];
+    S* const own = &packed.given[9 * kGroup * at + lane];
+    const Matrix before = isGiven_ ? narrowMatrix(own) : Matrix(Matrix::Identity());
+    // What stays has the same bits.
+    if (before == given) {
+      if (!isGiven_) putMatrix(given, own);
+      continue;
     }
-    whole += volume;
-    const bool first = given == Matrix(Matrix::Identity());
-    now += own * volume * (first ? 1.0 : given.determinant() * given.inverse().squaredNorm() / 3.0);
-    for (std::size_t point = 0; point < Pack::kPoints; ++point) {
-      const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
-      S* const change = &packed.changes[kChange * at + lane];
-      S* const last = &packed.given[9 * kGroup * at + lane];
-      const Matrix before = isGiven_ ? narrowMatrix(last) : Matrix(Matrix::Identity());
-      // What stays has the same bits.
-      if (before == given) {
-        if (!isGiven_) putMatrix(given, last);
-        continue;
-      }
-      Matrix plastic = Matrix::Identity();  // P^-1
-      if (everFlowed_) plastic = before * (plastic + narrowMatrix(change));
-      putMatrix(given, last);
-      putMatrix(given.inverse() * plastic - Matrix::Identity(), change);
-      change[9 * kGroup] = static_cast<S>(given.determinant());
+    Matrix plastic = Matrix::Identity();  // P^-1
+    if (everFlowed_) plastic = before * (plastic + narrowMatrix(change));
+    putMatrix(given, own);
+    putMatrix(inverse * plastic - Matrix::Identity(), change);
+    change[9 * kGroup] = static_cast<S>(volume);
+  }
+}
+
+template <class S>
+void CorotatedTets<S>::setStiffer(const std::vector<double>& byTet) {
+  constexpr double kStale = 1.25;  // forces may be this much stiffer than the matrix
+  forBoth([&](auto& packed) { packed.stiffer.assign(byTet.empty() ? 0 : kGroup * packed.packs.size(), 1.0); });
+  if (byTet.empty()) return;
+  forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
+    const double own = packed.stiffer[tet] = meanOf(byTet, cageTets);
+    const double counted = packed.factors.empty() ? 1.0 : static_cast<double>(packed.factors[tet]);
+    isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
+  });
+}
+
+template <class S>
+void CorotatedTets<S>::findStiffening() {
+  stiffening_ = 1.0;
+  if (!isGiven_) return;
+  double whole = 0.0, now = 0.0;
+  forBoth([&](auto& packed) {
+    for (std::size_t tet = 0; tet < packed.stiffenings.size(); ++tet) {
+      const auto volume = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
+      whole += volume;
+      now += (packed.stiffer.empty() ? 1.0 : packed.stiffer[tet]) * volume * packed.stiffenings[tet];
     }
   });
-  isGiven_ = !byTet.empty();
-  stiffening_ = isGiven_ ? now / whole : 1.0;
+  stiffening_ = now / whole;
 }
 
 template <class S>
@@ -293,13 +325,16 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
       packed.given.clear();
       packed.yields.clear();
       packed.stiffer.clear();
+      packed.stiffenings.clear();
     });
+    given_.clear();
     isStiffer_ = isGiven_ = everFlowed_ = returns_ = yields_ = false;
     stiffening_ = 1.0;
     return changed;
   }
   bool changed = false;
   makeChanges();
+  if (stream.restoring()) given_.clear();
   stream(isGiven_);
   stream(everFlowed_);
   stream(returns_);

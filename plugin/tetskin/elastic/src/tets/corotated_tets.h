@@ -116,7 +116,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     AlignedVector<S> alphas;                ///< by pack and point, see TetWork; empty until some tet may be flat
     AlignedVector<S> changes, assembledChanges, given, yields, flowed;  ///< see TetWork; empty until they are needed
     std::vector<double> stiffer, extraDamping;                          ///< by tet in the packs; empty: 1, 0
-    AlignedVector<S> factors;                                           ///< see TetWork; empty: 1
+    std::vector<double> stiffenings;  ///< by tet in the packs: the stiffness of its given shape over the first
+    AlignedVector<S> factors;         ///< see TetWork; empty: 1
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };
@@ -141,6 +142,10 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool changes() const { return !linear_.changes.empty() || !quadratic_.changes.empty(); }
   void makeChanges();
   bool serializeFactors(StateStream& stream);
+  template <class Tets>
+  void setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& given);
+  void setStiffer(const std::vector<double>& byTet);
+  void findStiffening();
   bool serializeChanges(StateStream& stream, bool ofMatrix);
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
@@ -159,6 +164,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
+  std::vector<std::array<double, 9>> given_;  ///< by the last `setGiven`; empty: not known
   std::optional<FibreTets<S>> fibres_;
   std::vector<double> madeVolumes_;  ///< of `rest_` as it was made, linear and quadratic; empty: it is as it was made
   Linear linear_;
