@@ -45,9 +45,9 @@ TETSKIN_CAGE_API Result<SpreadMap> spreadMap(const Cage& cage, const TriangleMes
 /// Maps that a cage stores. Each has vertexCount finite values above 0, of damping also 0, or is empty: not painted.
 /// Values are factors of what a body has: its Young's modulus, its density and its damping.
 struct PaintedMaps {
-  std::vector<double> stiffness;  ///< averaged geometrically
-  std::vector<double> density;    ///< averaged arithmetically
-  std::vector<double> damping;    ///< the same
+  std::vector<double> stiffness{};  ///< averaged geometrically
+  std::vector<double> density{};    ///< averaged arithmetically
+  std::vector<double> damping{};    ///< the same
 };
 
 /// Spreads maps (see `spreadMap`) into a cage's `paintedStiffness`, `paintedDensity`, `paintedDamping` and `masses`.
