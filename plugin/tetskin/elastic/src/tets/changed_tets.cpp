@@ -164,7 +164,7 @@ void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet,
     packed.given.resize(9 * packed.flowed.size(), S(0));
     packed.stiffenings.resize(kGroup * packed.packs.size(), 1.0);
   });
-  const bool known = isGiven_ && given_.size() == byTet.size();
+  const bool known = isGiven_ && !byTet.empty() && given_.size() == byTet.size();
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
     const bool stays = known && std::all_of(cageTets.begin(), cageTets.end(), [&](auto own) {
                          const auto k = static_cast<std::size_t>(own);
