@@ -21,10 +21,10 @@ using namespace tetskin::scenes;
 
 struct CageCommand {
   ModelOptions model;
-  std::string filled;                    ///< tets that fill the mesh; empty: the cage is built
-  bool quadratic = false;                ///< each of these becomes a quadratic tet
-  bool hasMesh = false;                  ///< the cage of --filled is checked against a mesh
-  std::string stiffnessMap, densityMap;  ///< see `mapOf`; empty: none
+  std::string filled;                                ///< tets that fill the mesh; empty: the cage is built
+  bool quadratic = false;                            ///< each of these becomes a quadratic tet
+  bool hasMesh = false;                              ///< the cage of --filled is checked against a mesh
+  std::string stiffnessMap, densityMap, dampingMap;  ///< see `mapOf`; empty: none
   std::string output;
   std::string json;
   bool loose = false;
@@ -47,7 +47,7 @@ std::vector<double> mapOf(const CageCommand& command, const std::string& option)
 }
 
 PaintedMaps mapsOf(const CageCommand& command) {
-  return {mapOf(command, command.stiffnessMap), mapOf(command, command.densityMap)};
+  return {mapOf(command, command.stiffnessMap), mapOf(command, command.densityMap), mapOf(command, command.dampingMap)};
 }
 
 nlohmann::ordered_json summarise(const Surface& surface, const CageReport& report, const EmbedReport& fit,
@@ -179,6 +179,7 @@ int main(int argc, char** argv) {
                "Map of the mesh's file, of factors of the stiffness: a PLY property, a glTF attribute, or red, green, "
                "blue or alpha; NAME:LOW:HIGH takes 0 as LOW and 1 as HIGH");
   line.addText("--density-map", command.densityMap, "The same for the density");
+  line.addText("--damping-map", command.dampingMap, "The same for the damping");
   line.addOutput("-o,--output", command.output,
                  ".vtk for the cage with all its data; .ele with .node for the tets alone", CommandLine::Need::Required,
                  {".vtk", ".node", ".ele"});

@@ -14,7 +14,7 @@ struct Head {
   char tag[8];
 };
 constexpr std::size_t kHashed = sizeof(Head::hash);
-constexpr char kMesh[] = "tsk-me02", kCage[] = "tsk-ca03";
+constexpr char kMesh[] = "tsk-me02", kCage[] = "tsk-ca04";
 
 /// An array of numbers, or of vectors of them.
 template <class T>
@@ -45,6 +45,7 @@ void serialize(StateStream& stream, ReportedCage& cage) {
   array(stream, cage.stiffnessFactor);
   array(stream, cage.paintedStiffness);
   array(stream, cage.paintedDensity);
+  array(stream, cage.paintedDamping);
   array(stream, cage.masses);
   array(stream, cage.component);
   array(stream, cage.sourceTet);

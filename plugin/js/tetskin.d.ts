@@ -159,6 +159,8 @@ export interface PaintedMaps {
   stiffness?: Numbers;
   /** The same for the density */
   density?: Numbers;
+  /** The same for the damping, 0 or more */
+  damping?: Numbers;
 }
 
 export interface SpreadOptions {
@@ -584,12 +586,27 @@ export interface Body extends Thing {
    */
   setStiffnessScale(factors: Numbers): void;
   /**
+   * Multiplies the damping of each tet, on top of what is painted in the cage.
+   * @param factors  one for each tet, 0 or more
+   */
+  setDampingScale(factors: Numbers): void;
+  /**
+   * Adds fibres that make tets stiffer along them, for good.
+   * @param tets         of the cage
+   * @param directions   rest space: one, or one for each of these tets, three numbers each
+   * @param stiffness    their tension on the area at rest per strain, pressure units
+   * @param tensionOnly  nothing resists where they become shorter, as a rope
+   */
+  addFibres(tets: Numbers, directions: Numbers, stiffness: number, tensionOnly?: boolean): void;
+  /**
    * Adds a muscle, which is relaxed.
    * @param tets    of the cage
    * @param fibres  directions, rest space: one, or one for each of these tets, three numbers each
    * @param stress  its tension at activation 1 and its rest length, pressure units
+   * @param lengthFactors  pairs of a stretch along it, ascending, and the factor of the tension there, linear between
+   *                       them: it then pulls at any length by them, beside its elasticity
    */
-  addMuscle(tets: Numbers, fibres: Numbers, stress?: number): Muscle;
+  addMuscle(tets: Numbers, fibres: Numbers, stress?: number, lengthFactors?: Numbers): Muscle;
   /** Its own gravity; null: the world's. */
   setGravity(gravity: Vector | null): void;
   /** Pins nodes at their current positions, or releases them. */

@@ -142,9 +142,9 @@ double filledVolume(const Cage& cage) {
 bool sameCage(const Cage& a, const Cage& b) {
   return a.mesh.nodes == b.mesh.nodes && a.mesh.tets == b.mesh.tets && a.vertexTets == b.vertexTets &&
          a.volumeFraction == b.volumeFraction && a.stiffnessFactor == b.stiffnessFactor &&
-         a.paintedStiffness == b.paintedStiffness && a.paintedDensity == b.paintedDensity && a.masses == b.masses &&
-         a.component == b.component && a.sourceTet == b.sourceTet && a.fineVolumeFraction == b.fineVolumeFraction &&
-         a.meshHash == b.meshHash;
+         a.paintedStiffness == b.paintedStiffness && a.paintedDensity == b.paintedDensity &&
+         a.paintedDamping == b.paintedDamping && a.masses == b.masses && a.component == b.component &&
+         a.sourceTet == b.sourceTet && a.fineVolumeFraction == b.fineVolumeFraction && a.meshHash == b.meshHash;
 }
 
 }  // namespace tetskin::test

@@ -261,6 +261,30 @@ TEST(PaintedMaps, ReplaceThoseBefore) {
   EXPECT_LT(largestDifference(cage.masses, plain.masses), 1e-12);
 }
 
+TEST(PaintedMaps, DampingMayBeNothingAndLeavesTheRest) {
+  const TriangleMesh bar = barSurface(8);
+  CageOptions options;
+  options.targetTets = 300;
+  const Cage plain = createCage(bar, options).value();
+  options.damping = halves(bar, 0.0, 0.5);
+  Cage cage = createCage(bar, options).value();
+  ASSERT_EQ(cage.paintedDamping.size(), cage.mesh.tetCount());
+  const auto [least, greatest] = std::minmax_element(cage.paintedDamping.begin(), cage.paintedDamping.end());
+  EXPECT_EQ(*least, 0.0);
+  EXPECT_NEAR(*greatest, 1.0, 1e-12);
+  EXPECT_EQ(cage.masses, plain.masses);
+  EXPECT_EQ(cage.stiffnessScale(), plain.stiffnessScale());
+  PaintedMaps maps;
+  maps.damping.assign(bar.vertexCount(), 1.0);
+  ASSERT_TRUE(paintCage(cage, bar, maps).ok());
+  EXPECT_TRUE(sameCage(cage, plain));
+  maps.damping[7] = -1.0;
+  const Status status = paintCage(cage, bar, maps);
+  EXPECT_EQ(status.code, StatusCode::InvalidOption);
+  EXPECT_NE(status.message.find("the damping map is -1.000000 at vertex 7, but must be 0 or more"), std::string::npos)
+      << status.message;
+}
+
 TEST(PaintedMaps, ASheetHasThemToo) {
   const TriangleMesh sheet = sheetMesh(10);
   const Cage cage = paintedCage(sheet, {}, painted(sheet, [](const auto& p) { return 2.0 + p.x(); }), 300);

@@ -60,11 +60,13 @@ TEST_F(CageCommand, PaintsMapsOfTheMeshsFile) {
     arguments.insert(arguments.end(), maps.begin(), maps.end());
     return cage(arguments);
   };
-  const CommandResult result = painted({"--stiffness-map", "red:1:4", "--density-map", "green:2:3"});
+  const CommandResult result =
+      painted({"--stiffness-map", "red:1:4", "--density-map", "green:2:3", "--damping-map", "blue"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Result<Cage> read = loadCage(folder.path("c.vtk"));
   ASSERT_TRUE(read.ok()) << read.status().message;
   EXPECT_EQ(read.value().paintedDensity, std::vector<double>(read.value().mesh.tetCount(), 2.0));
+  EXPECT_EQ(read.value().paintedDamping, std::vector<double>(read.value().mesh.tetCount(), 0.0));
   const auto [least, greatest] =
       std::minmax_element(read.value().paintedStiffness.begin(), read.value().paintedStiffness.end());
   EXPECT_LT(*least, 1.3);

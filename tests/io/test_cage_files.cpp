@@ -21,6 +21,7 @@ void expectSame(const Cage& a, const Cage& b) {
   EXPECT_EQ(a.stiffnessFactor, b.stiffnessFactor);
   EXPECT_EQ(a.paintedStiffness, b.paintedStiffness);
   EXPECT_EQ(a.paintedDensity, b.paintedDensity);
+  EXPECT_EQ(a.paintedDamping, b.paintedDamping);
   EXPECT_EQ(a.masses, b.masses);
   EXPECT_EQ(a.component, b.component);
   EXPECT_EQ(a.sourceTet, b.sourceTet);
@@ -63,10 +64,14 @@ TEST(CageFiles, PaintedMapsReadBackExactly) {
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) {
     cage.paintedStiffness.push_back(0.1 + static_cast<double>(t) / 3.0);
     cage.paintedDensity.push_back(1.0 / static_cast<double>(t + 7));
+    cage.paintedDamping.push_back(static_cast<double>(t) / 7.0);
   }
   expectCageReadsBack(cage);
   Cage bare(cage.mesh);  // the only data of its cells
   bare.paintedDensity = cage.paintedDensity;
+  expectCageReadsBack(bare);
+  bare.paintedDensity.clear();
+  bare.paintedDamping = cage.paintedDamping;
   expectCageReadsBack(bare);
 }
 

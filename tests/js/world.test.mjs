@@ -611,6 +611,12 @@ test("tets grow, contract and flow", () => {
   steps(world, 240);
   assert.ok(length() < 0.93 * before);
   muscle.activation = 0;
+  steps(world, 240);
+  const long = body.addMuscle(Array.from({length: tets}, (_, t) => t), [1, 0, 0], 3e4, [0.5, 0, 0.8, 1, 0.9, 0]);
+  long.activation = 1;
+  steps(world, 240);
+  assert.ok(Math.abs(length() / before - 1) < 0.01, "beyond its curve it does not pull");
+  long.activation = 0;
   body.setPlasticity({yieldStress: 100, hardening: 10, largest: 0.3});
   body.velocities = body.nodes.map((x, i) => i % 3 === 0 ? 10 * x : 0);
   steps(world, 60);
@@ -625,6 +631,11 @@ test("tets grow, contract and flow", () => {
   refused(() => body.setStiffnessScale([1]), "SizeMismatch", /stiffnessScale/);
   refused(() => body.setStiffnessScale(new Float64Array(tets)), "InvalidOption", /1e-6 to 1e6/);
   refused(() => body.setStiffnessScale(4), "InvalidArgument", /factors/);
+  body.setDampingScale(new Float64Array(tets).fill(0));
+  refused(() => body.setDampingScale(new Float64Array(tets).fill(-1)), "InvalidOption", /0 or more/);
+  refused(() => body.addFibres([0], [1, 0, 0], 0), "InvalidOption", /stiffness of fibres/);
+  body.addFibres([0, 1], [1, 0, 0], 1e5, true);
+  refused(() => body.addMuscle([0], [1, 0, 0], 1e4, [1, 1, 1, 1]), "InvalidOption", /lengthFactors/);
   refused(() => body.setGrowth(0), "InvalidOption", /0.05 to 20/);
   refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidArgument", /no speed/);
   refused(() => body.setPlasticity({}), "InvalidArgument", /yieldStress/);

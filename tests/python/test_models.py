@@ -111,14 +111,15 @@ def test_other_formats_name_trimesh(tmp_path):
 def test_maps_are_painted(mesh, cage, tmp_path):
     right = mesh.positions[:, 0] > 0
     factors = np.where(right, 4.0, 1.0)
-    painted = ts.create_cage(mesh, target_tets=200, stiffness=factors, density=factors)
+    painted = ts.create_cage(mesh, target_tets=200, stiffness=factors, density=factors, damping=factors - 1)
     assert np.array_equal(painted.nodes, cage.nodes)
     middle = cage.nodes[cage.tets].mean(1)[:, 0]
     assert np.allclose(painted.painted_stiffness[middle > 0.4], 4) and np.allclose(
         painted.painted_stiffness[middle < -0.4], 1
     )
+    assert painted.painted_damping.min() == 0 and painted.painted_damping.max() == 3
     assert painted.masses.sum() == pytest.approx(2.5 * cage.masses.sum(), rel=0.02)
-    assert equal(ts.paint_cage(cage, mesh, stiffness=factors, density=factors.tolist()), painted)
+    assert equal(ts.paint_cage(cage, mesh, stiffness=factors, density=factors.tolist(), damping=factors - 1), painted)
     assert equal(ts.create_cage(mesh, target_tets=200, stiffness=np.ones(mesh.vertex_count)), cage)
     assert equal(pickle.loads(pickle.dumps(painted)), painted)
     painted.save(tmp_path / "painted.vtk")
@@ -162,6 +163,7 @@ ARRAYS = [
     "stiffness_factor",
     "painted_stiffness",
     "painted_density",
+    "painted_damping",
     "masses",
     "component",
     "source_tet",

@@ -279,6 +279,13 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
     muscle.fibres = {Eigen::Vector3d(1, 0, 0)};
     muscle.stress = 4e3;
     EXPECT_TRUE(body.addMuscle(muscle).ok());
+    muscle.lengthFactors = {{0.8, 0.2}, {1.0, 1.0}, {1.2, 0.0}};
+    EXPECT_TRUE(body.addMuscle(muscle).ok());
+    Fibres fibres;
+    fibres.tets = muscle.tets;
+    fibres.directions = {Eigen::Vector3d(1, 1, 0)};
+    fibres.stiffness = 2e4;
+    EXPECT_TRUE(body.addFibres(fibres).ok());
     scene->before = [&body](int frame) {
       Plasticity plasticity;
       plasticity.yieldStress = frame < 20 ? 200.0 : 400.0;
@@ -298,9 +305,12 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
         std::vector<double> factors(static_cast<std::size_t>(body.body().m_tetras.size()), 1.0);
         if (frame == 8) factors[2] = 3.0;
         EXPECT_TRUE(body.setStiffnessScale(factors).ok());
+        factors[4] = frame;
+        EXPECT_TRUE(body.setDampingScale(factors).ok());
       }
       if (frame % 4 == 0) {
         EXPECT_TRUE(body.setActivation(0, 0.02 * frame).ok());
+        EXPECT_TRUE(body.setActivation(1, frame == 16 ? 0.0 : 0.5).ok());
       }
     };
     return scene;

@@ -131,6 +131,52 @@ TEST(MaterialChangesOfBodies, ABodySagsAsMuchMoreAsItsTetsAreSofter) {
   EXPECT_NEAR((0.4 - heightOf(cube->body())) / sag, 1.0, 0.05) << "a reset keeps what is set";
 }
 
+/// Thrown at the ground, what is damped by half of its tets bounces less high than what is not, and higher than what
+/// all is; painted all over it is that damping, to the bit.
+TEST(MaterialChangesOfBodies, DampingByTetCountsInImpacts) {
+  const auto bounce = [](double damping, double lower, double upper) {
+    Cage cage = cubeAt(0.02);
+    for (const Tet& tet : cage.mesh.tets) {
+      double y = -0.02;
+      for (const int n : tet) y += 0.25 * cage.mesh.nodes[static_cast<std::size_t>(n)].y();
+      cage.paintedDamping.push_back(y < 0.2 ? lower : upper);
+    }
+    TetskinWorld world;
+    const auto cube = block(world, cage, damping);
+    for (int n = 0; n < cube->body().m_nodes.size(); ++n) cube->body().m_nodes[n].m_v = btVector3(0, -3, 0);
+    double highest = 0.0;
+    for (int frame = 0; frame < 60; ++frame) {
+      step(world, 1);
+      if (frame > 10) highest = std::max(highest, static_cast<double>(centreOf(cube->body()).y()));
+    }
+    return highest;
+  };
+  const double none = bounce(0.01, 0.0, 0.0), half = bounce(0.01, 0.0, 2.0), all = bounce(0.01, 2.0, 2.0);
+  EXPECT_GT(none, half);
+  EXPECT_GT(half, all);
+  EXPECT_EQ(bounce(0.01, 2.0, 2.0), bounce(0.02, 1.0, 1.0));
+}
+
+TEST(MaterialChangesOfBodies, AMuscleThatFollowsItsLengthLetsItsBodySleep) {
+  TetskinWorld world;
+  const auto cube = block(world, cubeAt(0.001), 0.02);
+  step(world, 120);
+  const double before = heightOf(cube->body());
+  Muscle muscle;
+  for (int t = 0; t < cube->body().m_tetras.size(); ++t) muscle.tets.push_back(t);
+  muscle.fibres = {Eigen::Vector3d(0, 1, 0)};
+  muscle.stress = kStiff;
+  muscle.lengthFactors = {{0.5, 0.0}, {1.0, 1.0}};
+  ASSERT_TRUE(cube->addMuscle(muscle).ok());
+  for (int frame = 1; frame <= 30; ++frame) {
+    ASSERT_TRUE(cube->setActivation(0, frame / 30.0).ok());
+    step(world, 1);
+  }
+  step(world, 240);
+  EXPECT_NEAR(heightOf(cube->body()) / before, 2.0 / 3.0, 0.02) << "1 - s = 2 (s - 0.5)";
+  EXPECT_FALSE(cube->body().isActive());
+}
+
 TEST(MaterialChangesOfBodies, WhatIsSetSurvivesAResetAndWhatHasFlowedDoesNot) {
   TetskinWorld world;
   const auto cube = block(world, cubeAt(0.02));

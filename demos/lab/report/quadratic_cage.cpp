@@ -89,6 +89,7 @@ Cage quadraticCage(const Cage& coarse, const TriangleMesh& mesh) {
       if (!coarse.sourceTet.empty()) cage.sourceTet.push_back(static_cast<int>(kSubTets) * coarse.sourceTet[t] + k);
       if (!coarse.paintedStiffness.empty()) cage.paintedStiffness.push_back(coarse.paintedStiffness[t]);
       if (!coarse.paintedDensity.empty()) cage.paintedDensity.push_back(coarse.paintedDensity[t]);
+      if (!coarse.paintedDamping.empty()) cage.paintedDamping.push_back(coarse.paintedDamping[t]);
       if (!coarse.stiffnessFactor.empty()) cage.stiffnessFactor.push_back(coarse.stiffnessFactor[t]);
     }
   }

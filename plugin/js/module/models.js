@@ -77,7 +77,7 @@ properties(Palette, {
 
 const kFormats = ["obj", "ply", "off", "stl", "glb", "gltf", "vrm"];
 const kCageOptions = {
-  targetTets: 3000, duplicateElements: true, fit: true, stiffness: [], density: [], progress: undefined,
+  targetTets: 3000, duplicateElements: true, fit: true, stiffness: [], density: [], damping: [], progress: undefined,
 };
 const kCalibrationOptions = {poissonRatio: 0.3, modeCount: 6, progress: undefined};
 const kWorldOptions = {
@@ -133,14 +133,15 @@ class Tetskin {
   }
 
   createCage(mesh, options) {
-    const {targetTets, duplicateElements, fit, stiffness, density, progress} = optionsOf(options, kCageOptions);
+    const {targetTets, duplicateElements, fit, stiffness, density, damping, progress} =
+      optionsOf(options, kCageOptions);
     const handle = this.handle(mesh, Mesh, "mesh");
-    return this.withMemory(this.mapsOf(mesh, {stiffness, density}), (...maps) =>
+    return this.withMemory(this.mapsOf(mesh, {stiffness, density, damping}), (...maps) =>
       this.withProgress(progress, tells => new Cage(this.hidden.instance, this.core.createCage(
         handle, targetTets, duplicateElements, fit, ...maps, tells))));
   }
   paintCage(cage, mesh, maps) {
-    const painted = optionsOf(maps, {stiffness: [], density: []});
+    const painted = optionsOf(maps, {stiffness: [], density: [], damping: []});
     const handles = [this.handle(cage, Cage, "cage"), this.handle(mesh, Mesh, "mesh")];
     return this.withMemory(this.mapsOf(mesh, painted), (...places) =>
       new Cage(this.hidden.instance, this.core.paintCage(...handles, ...places)));

@@ -301,8 +301,17 @@ class Body extends Member {
   setStiffnessScale(factors) {
     this.withMemory([doubles(numbersOf(factors, "factors"))], at => this.core.setStiffnessScale(own(this), at));
   }
-  addMuscle(tets, fibres, stress = 3e5) {
-    const arrays = [indices(numbersOf(tets, "tets")), doubles(numbersOf(fibres, "fibres", 3))];
+  setDampingScale(factors) {
+    this.withMemory([doubles(numbersOf(factors, "factors"))], at => this.core.setDampingScale(own(this), at));
+  }
+  addFibres(tets, directions, stiffness, tensionOnly = false) {
+    const arrays = [indices(numbersOf(tets, "tets")), doubles(numbersOf(directions, "directions", 3))];
+    this.withMemory(arrays, (...places) => this.core.addFibres(own(this), ...places, numberOf(stiffness, "stiffness"),
+      booleanOf(tensionOnly, "tensionOnly")));
+  }
+  addMuscle(tets, fibres, stress = 3e5, lengthFactors = []) {
+    const arrays = [indices(numbersOf(tets, "tets")), doubles(numbersOf(fibres, "fibres", 3)),
+      doubles(numbersOf(lengthFactors, "lengthFactors", 2))];
     return new Muscle(this, this.withMemory(arrays, (...places) => {
       return this.core.addMuscle(own(this), ...places, numberOf(stress, "stress"));
     }));

@@ -45,15 +45,30 @@ void setStiffnessScale(BodyHandle& body, Doubles factors) {
   check(alive(*body.state).setStiffnessScale(std::vector<double>(factors.begin(), factors.end())));
 }
 
-int addMuscle(BodyHandle& body, Indices tets, Doubles fibres, double stress) {
+void setDampingScale(BodyHandle& body, Doubles factors) {
+  check(alive(*body.state).setDampingScale(std::vector<double>(factors.begin(), factors.end())));
+}
+
+std::vector<Eigen::Vector3d> directionsOf(Doubles numbers) {
+  std::vector<Eigen::Vector3d> directions;
+  for (std::size_t k = 0; k + 3 <= numbers.count; k += 3)
+    directions.emplace_back(Eigen::Vector3d::Map(numbers.begin() + k));
+  return directions;
+}
+
+/// lengthFactors  pairs
+int addMuscle(BodyHandle& body, Indices tets, Doubles fibres, Doubles lengthFactors, double stress) {
   Muscle muscle;
   muscle.tets.assign(tets.begin(), tets.end());
-  for (std::size_t k = 0; k + 3 <= fibres.count; k += 3) {
-    const double* v = fibres.begin() + k;
-    muscle.fibres.emplace_back(v[0], v[1], v[2]);
-  }
+  muscle.fibres = directionsOf(fibres);
+  for (std::size_t k = 0; k + 2 <= lengthFactors.count; k += 2)
+    muscle.lengthFactors.push_back({lengthFactors.begin()[k], lengthFactors.begin()[k + 1]});
   muscle.stress = stress;
   return take(alive(*body.state).addMuscle(muscle));
+}
+void addFibres(BodyHandle& body, Indices tets, Doubles directions, double stiffness, bool tensionOnly) {
+  check(alive(*body.state)
+            .addFibres({std::vector<int>(tets.begin(), tets.end()), directionsOf(directions), stiffness, tensionOnly}));
 }
 void setActivation(BodyHandle& body, int muscle, double activation) {
   check(alive(*body.state).setActivation(muscle, activation));
@@ -71,6 +86,8 @@ EMSCRIPTEN_BINDINGS(material_changes) {
   expose<&plasticStrains>("plasticStrains");
   expose<&setGrowth>("setGrowth");
   expose<&setStiffnessScale>("setStiffnessScale");
+  expose<&setDampingScale>("setDampingScale");
+  expose<&addFibres>("addFibres");
   expose<&addMuscle>("addMuscle");
   expose<&setActivation>("setActivation");
   expose<&activation>("activation");

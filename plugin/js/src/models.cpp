@@ -129,7 +129,7 @@ View meshBounds(const MeshModel& model) {
 
 /// By value, like calibrateCage: the progress function may delete the mesh that is being used.
 CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements, bool fit, Doubles stiffness,
-                       Doubles density, bool tells) {
+                       Doubles density, Doubles damping, bool tells) {
   if (!(targetTets >= 1 && targetTets <= static_cast<double>(Limits::kMaxTargetTets)))
     fail(StatusCode::InvalidOption, "targetTets: must be from 1 to " + std::to_string(Limits::kMaxTargetTets));
   CageOptions options;
@@ -138,6 +138,7 @@ CageModel createCageOf(MeshModel mesh, double targetTets, bool duplicateElements
   options.fit = fit;
   options.stiffness.assign(stiffness.begin(), stiffness.end());
   options.density.assign(density.begin(), density.end());
+  options.damping.assign(damping.begin(), damping.end());
   options.progress = progressIf(tells);
   CageReport report;
   Cage cage = take(createCage(*mesh.mesh, options, &report));
@@ -154,9 +155,14 @@ CageModel calibrateCage(CageModel model, double poissonRatio, int modeCount, boo
   return cageModel(std::move(cage), model.cage->report + report.describe());
 }
 
-CageModel paintedCage(const CageModel& model, const MeshModel& mesh, Doubles stiffness, Doubles density) {
+CageModel paintedCage(const CageModel& model, const MeshModel& mesh, Doubles stiffness, Doubles density,
+                      Doubles damping) {
   Cage cage = *model.cage;
-  check(paintCage(cage, *mesh.mesh, {{stiffness.begin(), stiffness.end()}, {density.begin(), density.end()}}));
+  PaintedMaps maps;
+  maps.stiffness.assign(stiffness.begin(), stiffness.end());
+  maps.density.assign(density.begin(), density.end());
+  maps.damping.assign(damping.begin(), damping.end());
+  check(paintCage(cage, *mesh.mesh, maps));
   return cageModel(std::move(cage), model.cage->report);
 }
 /// Returns the values of tets, and then those of nodes.

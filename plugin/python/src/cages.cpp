@@ -29,7 +29,7 @@ std::vector<double> mapValues(const std::optional<ArrayLike>& array, const char*
 
 CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateElements, bool fit,
                   const std::optional<ArrayLike>& stiffness, const std::optional<ArrayLike>& density,
-                  const Progress& progress) {
+                  const std::optional<ArrayLike>& damping, const Progress& progress) {
   const MeshModel model = meshOf(mesh);
   ProgressCall call(progress, "cage");
   CageOptions options;
@@ -38,6 +38,7 @@ CageModel created(const MeshLike& mesh, std::size_t targetTets, bool duplicateEl
   options.fit = fit;
   options.stiffness = mapValues(stiffness, "stiffness");
   options.density = mapValues(density, "density");
+  options.damping = mapValues(damping, "damping");
   options.progress = call.function();
   CageReport report;
   Result<Cage> cage = released([&] { return createCage(*model.mesh, options, &report); });
@@ -59,9 +60,10 @@ CageModel calibrated(const CageModel& model, double poissonRatio, int modeCount,
 }
 
 CageModel painted(const CageModel& model, const MeshLike& mesh, const std::optional<ArrayLike>& stiffness,
-                  const std::optional<ArrayLike>& density) {
+                  const std::optional<ArrayLike>& density, const std::optional<ArrayLike>& damping) {
   const MeshModel surface = meshOf(mesh);
-  const PaintedMaps maps{mapValues(stiffness, "stiffness"), mapValues(density, "density")};
+  const PaintedMaps maps{mapValues(stiffness, "stiffness"), mapValues(density, "density"),
+                         mapValues(damping, "damping")};
   Cage cage = *model.cage;
   check(released([&] { return paintCage(cage, *surface.mesh, maps); }));
   return cageModel(std::move(cage), model.cage->report);
@@ -131,6 +133,8 @@ void bindCages(nb::module_& module) {
                    "(t,) float64, or none: factors of the stiffness from a painted map. A read-only view.")
       .def_prop_ro("painted_density", arrayOf<&Cage::paintedDensity>(),
                    "(t,) float64, or none: factors of the density, which masses contain. A read-only view.")
+      .def_prop_ro("painted_damping", arrayOf<&Cage::paintedDamping>(),
+                   "(t,) float64, or none: factors of the damping. A read-only view.")
       .def_prop_ro("masses", arrayOf<&Cage::masses>(),
                    "(n,) float64, for a density of 1: their sum is the mesh's volume, or the integral of its painted "
                    "density. A read-only view.")
@@ -167,12 +171,13 @@ void bindCages(nb::module_& module) {
 
   module.def(
       "create_cage", created, "mesh"_a, nb::kw_only(), "target_tets"_a = 3000, "duplicate_elements"_a = true,
-      "fit"_a = true, "stiffness"_a = nb::none(), "density"_a = nb::none(), "progress"_a.none() = nb::none(),
+      "fit"_a = true, "stiffness"_a = nb::none(), "density"_a = nb::none(), "damping"_a = nb::none(),
+      "progress"_a.none() = nb::none(),
       "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same input "
       "gives the same cage. Takes about half a second for 60,000 triangles; the GIL is released.\n\n"
       "duplicate_elements: if regions of the mesh are less than a tet apart, each gets its own copy of the tet. fit: "
-      "move boundary nodes towards the surface. stiffness, density: (vertices,) factors above 0, painted on the mesh: "
-      "see paint_cage. progress: called with the fraction done, from 0 to 1; returns False to "
+      "move boundary nodes towards the surface. stiffness, density, damping: (vertices,) factors above 0, "
+      "painted on the mesh: see paint_cage. progress: called with the fraction done, from 0 to 1; returns False to "
       "cancel, which raises an Error with the code CANCELLED; an exception in it is raised. True: prints a bar. "
       "Ctrl-C, or a notebook's interrupt button, always cancels.");
   module.def(
@@ -184,8 +189,10 @@ void bindCages(nb::module_& module) {
       "compare. progress: as in create_cage.");
   module.def(
       "paint_cage", painted, "cage"_a, "mesh"_a, nb::kw_only(), "stiffness"_a = nb::none(), "density"_a = nb::none(),
+      "damping"_a = nb::none(),
       "A copy of the cage with maps painted on its mesh, or on a level of detail of it: (vertices,) factors above "
-      "0, which replace those before; None leaves them. The inside has the values of the nearest surface. "
+      "0, of the damping also 0, which replace those before; None leaves them. The inside has the values of the "
+      "nearest surface. "
       "Calibrate after painting.");
   module.def("spread_map", spreadOver, "cage"_a, "mesh"_a, "values"_a, nb::kw_only(), "geometric"_a = false,
              "Any map of (vertices,) numbers, or a mask of booleans, averaged over what each tet holds: (t,) and (n,) "

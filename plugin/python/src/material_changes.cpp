@@ -88,18 +88,38 @@ struct MuscleOf {
   int number = 0;
 };
 
+/// One direction (3,), or rows of them.
+std::vector<Eigen::Vector3d> directionsOf(const ArrayLike& array, const char* name) {
+  const ArrayLike rows{dimensionsOf(array.object) == 1
+                           ? nb::module_::import_("numpy").attr("reshape")(array.object, nb::make_tuple(1, -1))
+                           : array.object};
+  const Numbers<double> numbers(rows, name, 3);
+  std::vector<Eigen::Vector3d> directions;
+  for (std::size_t k = 0; k < numbers.rows(); ++k)
+    directions.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+  return directions;
+}
+
 template <class Body>
-MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fibres, double stress) {
+MuscleOf<Body> addMuscle(Body& body, const ArrayLike& tets, const ArrayLike& fibres, double stress,
+                         const std::optional<ArrayLike>& lengthFactors) {
   Muscle muscle;
   muscle.tets = indicesOf(tets, "tets", tetCount(body));
   muscle.stress = stress;
-  const bool one = dimensionsOf(fibres.object) == 1;
-  const ArrayLike rows{one ? nb::module_::import_("numpy").attr("reshape")(fibres.object, nb::make_tuple(1, -1))
-                           : fibres.object};
-  const Numbers<double> numbers(rows, "fibres", 3);
-  for (std::size_t k = 0; k < numbers.rows(); ++k)
-    muscle.fibres.emplace_back(Eigen::Vector3d::Map(numbers.data() + 3 * k));
+  muscle.fibres = directionsOf(fibres, "fibres");
+  if (lengthFactors) {
+    const Numbers<double> points(*lengthFactors, "length_factors", 2);
+    for (std::size_t k = 0; k < points.rows(); ++k)
+      muscle.lengthFactors.push_back({points.data()[2 * k], points.data()[2 * k + 1]});
+  }
   return {body, guarded(body, [&] { return take(changeable(body).addMuscle(muscle)); })};
+}
+
+template <class Body>
+void addFibres(Body& body, const ArrayLike& tets, const ArrayLike& directions, double stiffness, bool tensionOnly) {
+  const Fibres fibres{indicesOf(tets, "tets", tetCount(body)), directionsOf(directions, "directions"), stiffness,
+                      tensionOnly};
+  guarded(body, [&] { check(changeable(body).addFibres(fibres)); });
 }
 
 template <class Body>
@@ -143,10 +163,22 @@ void bind(Class<Body>& type) {
           "factors"_a,
           "Multiplies the stiffness of each tet, as it was when the body was made: (tets,), 1e-6 to 1e6. A large "
           "change in one step is a blow to a body under load.")
-      .def("add_muscle", addMuscle<Body>, "tets"_a, "fibres"_a, "stress"_a = 3e5,
+      .def(
+          "set_damping_scale",
+          [](Body& b, const ArrayLike& factors) {
+            const std::vector<double> byTet = numbersOf(factors.object, "factors");
+            guarded(b, [&] { check(changeable(b).setDampingScale(byTet)); });
+          },
+          "factors"_a, "Multiplies the damping of each tet, on top of what is painted in its cage: (tets,), 0 or more.")
+      .def("add_fibres", addFibres<Body>, "tets"_a, "directions"_a, "stiffness"_a, "tension_only"_a = false,
+           "Adds fibres that make tets stiffer along them, for good. tets: a mask or indices. directions: rest space: "
+           "one (3,), or one for each of these tets (n, 3). stiffness: pressure units: their tension on the area at "
+           "rest per strain. tension_only: nothing resists where they become shorter, as a rope.")
+      .def("add_muscle", addMuscle<Body>, "tets"_a, "fibres"_a, "stress"_a = 3e5, "length_factors"_a = nb::none(),
            "Adds a muscle, which is relaxed: set its activation. tets: a mask or indices. fibres: directions, rest "
            "space: one (3,), or one for each of its tets (n, 3). stress: pressure units: its tension at activation 1 "
-           "and its rest length.");
+           "and its rest length. length_factors: (points, 2) stretches along it, ascending, and factors of the tension "
+           "there, linear between them: it then pulls at any length by them, beside its elasticity.");
 }
 
 }  // namespace

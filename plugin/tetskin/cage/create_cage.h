@@ -26,6 +26,7 @@ struct CageOptions {
   /// in the cage: see `paintCage`.
   std::vector<double> stiffness{};
   std::vector<double> density{};  ///< the same for the density
+  std::vector<double> damping{};  ///< vertexCount factors of the material's damping, 0 or more; empty: 1
   /// Called now and then with the fraction done, an estimate from 0 to 1, never decreasing; returns false to cancel.
   /// May be empty.
   std::function<bool(double fraction)> progress{};

@@ -42,18 +42,19 @@ struct SpreadMap {
 TETSKIN_CAGE_API Result<SpreadMap> spreadMap(const Cage& cage, const TriangleMesh& mesh,
                                              const std::vector<double>& values, MapMean mean = MapMean::Arithmetic);
 
-/// Maps that a cage stores. Each has vertexCount finite values above 0, or is empty: not painted. Values are factors of
-/// what a body has: its Young's modulus and its density.
+/// Maps that a cage stores. Each has vertexCount finite values above 0, of damping also 0, or is empty: not painted.
+/// Values are factors of what a body has: its Young's modulus, its density and its damping.
 struct PaintedMaps {
-  std::vector<double> stiffness;  ///< averaged geometrically
-  std::vector<double> density;    ///< averaged arithmetically
+  std::vector<double> stiffness{};  ///< averaged geometrically
+  std::vector<double> density{};    ///< averaged arithmetically
+  std::vector<double> damping{};    ///< the same
 };
 
-/// Spreads maps (see `spreadMap`) into a cage's `paintedStiffness`, `paintedDensity` and `masses`. Each replaces the
-/// one that was painted before; a map of 1 removes it, an empty one leaves it. Masses become those of the painted
-/// density: their sum is its integral over the tets' material. A cage without masses gets them, by the tets' material;
-/// nodes around which there is none get a little. Stiffness factors stay as they are, so call `calibrate` after this.
-/// `createCage` does this with the maps in its options.
+/// Spreads maps (see `spreadMap`) into a cage's `paintedStiffness`, `paintedDensity`, `paintedDamping` and `masses`.
+/// Each replaces the one that was painted before; a map of 1 removes it, an empty one leaves it. Masses become those of
+/// the painted density: their sum is its integral over the tets' material. A cage without masses gets them, by the
+/// tets' material; nodes around which there is none get a little. Stiffness factors stay as they are, so call
+/// `calibrate` after this. `createCage` does this with the maps in its options.
 ///
 /// cage    as for `spreadMap`; unchanged on an error
 /// Cost    that of `spreadMap` for each map

@@ -39,6 +39,8 @@ struct TETSKIN_CORE_API Cage {
   std::vector<double> paintedStiffness;
   /// tetCount, above 0: relative density of the material, which `masses` already contain; see `paintCage`
   std::vector<double> paintedDensity;
+  /// tetCount, 0 or more: factors of the material's damping; see `paintCage`
+  std::vector<double> paintedDamping;
   /// nodeCount, above 0, for a density of 1: their sum is the mesh's volume, or the integral of the painted density
   std::vector<double> masses;
   std::vector<int> component;  ///< tetCount, from 0: component of the cage, connected through shared nodes

@@ -31,8 +31,9 @@ inline ElasticModuli fromLame(double mu, double lambda) {
 struct ElasticOptions {
   double youngsModulus = 1e5;  ///< in pressure units, above 0; the default, in Pa, is that of soft foam
   double poissonRatio = 0.3;   ///< 0 to 0.4999 in float, to 0.499999 in double
-  double stiffnessDamping =
-      0.0;               ///< seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones
+  /// Seconds: Rayleigh damping; damping forces are this times the rate of the elastic ones. The cage's `paintedDamping`
+  /// multiplies it
+  double stiffnessDamping = 0.0;
   double density = 1.0;  ///< mass per volume, above 0
   /// tetCount, above 0: factors of the stiffness. Empty: the cage's `stiffnessScale()`, or 1
   std::vector<double> stiffnessScale;
@@ -109,8 +110,8 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// threads       see `ParallelFor`; bit-identical with any number; null: none
   int step(double seconds, const std::array<double, 3>& acceleration = {}, ParallelFor* threads = nullptr);
 
-  // ---- What changes the state in which the body is at rest; each from the next step on. Errors of a `Status`:
-  // InvalidOption, SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then.
+  // ---- What changes the material, and the state in which it is at rest; each from the next step on. Errors of a
+  // `Status`: InvalidOption, SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then.
 
   /// Lets the material flow where it yields; replaces what was set before. A step costs some 4 % more, a third
   /// more while all of it flows.
@@ -134,6 +135,11 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// body under load.
   /// factors  tetCount, 1e-6 to 1e6; with the largest, the body must not be too stiff, as for `create`
   Status setStiffnessScale(const std::vector<double>& factors);
+  /// Multiplies the damping of each tet, on top of what is painted in the cage.
+  /// factors  tetCount, 0 or more; with the largest, the body must not be too stiff, as for `create`
+  Status setDampingScale(const std::vector<double>& factors);
+  /// Adds fibres, for good. Tets may have several. The body must not become too stiff, as for `create`
+  Status addFibres(const Fibres& fibres);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
   Status setActivation(int muscle, double activation);

@@ -121,9 +121,10 @@ TETSKIN_IO_API Result<Cage> loadCage(const std::string& path, TetFileReport* rep
 /// Writes a cage: the file of `saveTetMesh`, followed, in a `.vtk` file, by all data of the cage, so that `loadCage`
 /// gives a bit-identical cage:
 /// - FIELD:      `mesh_hash` (unsigned_int, upper and lower 32 bits), `vertex_tets` (int, one per vertex of the mesh)
-/// - CELL_DATA:  `fill`, `factor`, `painted_stiffness`, `painted_density` (double), `part`,
+/// - CELL_DATA:  `fill`, `factor`, `painted_stiffness`, `painted_density`, `painted_damping` (double), `part`,
 ///   `lattice_tet`, `quadratic_tet` (int), `fine_fill` (unsigned_char, kFineTets per tet): volumeFraction,
-///   stiffnessFactor, paintedStiffness, paintedDensity, component, sourceTet, quadraticTet and fineVolumeFraction
+///   stiffnessFactor, paintedStiffness, paintedDensity, paintedDamping, component, sourceTet, quadraticTet and
+///   fineVolumeFraction
 /// - POINT_DATA: `mass` (double)
 ///
 /// ParaView shows these arrays; Bullet's reader and simple programs stop before them. A cage without data gives the

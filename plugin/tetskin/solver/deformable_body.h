@@ -92,36 +92,24 @@ class TETSKIN_SOLVER_API DeformableBody {
   /// Applies from the next step on; 0 or more. The body wakes. Error: InvalidOption
   Status setStiffnessDamping(double seconds);
 
-  // ---- What changes the state in which the body is at rest: for ForceModel::Corotated alone. Each acts from the next
-  // step on, wakes the body, and is part of snapshots. Errors of a `Status`: InvalidOption (also within a step),
-  // SizeMismatch or IndexOutOfRange, which say what is wrong; nothing is changed then. Tets are those of the cage. If
-  // the body is scaled, what has flowed is forgotten; if it gets other tets, all of it.
+  // ---- What changes the material, for ForceModel::Corotated alone: the calls of `ElasticBody` (tetskin/elastic),
+  // which says what they do. Each acts from the next step on, wakes the body, and is part of snapshots. An error
+  // (InvalidOption, also within a step, SizeMismatch or IndexOutOfRange) says what is wrong; nothing is changed then.
+  // Tets are those of the cage. If the body is scaled, what has flowed is forgotten; if it gets other tets, all of it.
 
-  /// Lets the material flow where it yields; replaces what was set before.
-  Status setPlasticity(const Plasticity& plasticity);
-  Status endPlasticity();  ///< nothing flows any more; what has flowed stays
-  /// The body returns to its first shape; it flows again when it has been there, below its yield stress, for half a
-  /// second.
-  Status resetPlasticFlow();
-  /// tetCount equivalent plastic strains, 0 or more: how much each tet has flowed in all, to and fro. A quadratic tet's
-  /// parts have its mean.
-  std::vector<double> plasticStrains() const;
-  /// Makes tets grow to multiples of their first size, at which they are at rest; masses stay. Beside it, plastic flow
-  /// stays. A large change in one step is a blow: change it over some steps.
-  /// length  factor of length, 0.05 to 20; 1: none
-  Status setGrowth(double length);
-  Status setGrowth(const std::vector<double>& lengths);  ///< tetCount factors of length
-  /// The same along axes.
-  /// deformations  by tet, 3 x 3 by rows, symmetric: factors of length along three axes, rest space
-  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
-  /// Multiplies the stiffness of each tet, as it was when the body was added. A large change in one step is a blow to a
-  /// body under load.
-  /// factors  tetCount, 1e-6 to 1e6; with the largest, the body must not be too stiff, as for `setYoungsModulus`
-  Status setStiffnessScale(const std::vector<double>& factors);
-  Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
-  /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal
-  Status setActivation(int muscle, double activation);
-  double activation(int muscle) const;  ///< that was set last; 0 for a muscle that does not exist
+  Status setPlasticity(const Plasticity& plasticity);                               ///< what yields flows
+  Status endPlasticity();                                                           ///< nothing flows any more
+  Status resetPlasticFlow();                                                        ///< back to the first shape
+  std::vector<double> plasticStrains() const;                                       ///< tetCount, 0 or more
+  Status setGrowth(double length);                                                  ///< factor of length, 0.05 to 20
+  Status setGrowth(const std::vector<double>& lengths);                             ///< the same by tet
+  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);  ///< 3 x 3 by rows, by tet
+  Status setStiffnessScale(const std::vector<double>& factors);                     ///< by tet, 1e-6 to 1e6
+  Status setDampingScale(const std::vector<double>& factors);                       ///< by tet, 0 or more
+  Status addFibres(const Fibres& fibres);                                           ///< for good
+  Result<int> addMuscle(const Muscle& muscle);                                      ///< returns its number
+  Status setActivation(int muscle, double activation);                              ///< 0 to 1
+  double activation(int muscle) const;  ///< 0 for a muscle that does not exist
 
   // ---- Pressure, for ForceModel::Corotated alone; see the page "Pressure and gas".
 

@@ -72,7 +72,7 @@ Status checkInput(const TriangleMesh& mesh, const CageOptions& options) {
     return {StatusCode::Empty, "the mesh has " + std::to_string(mesh.vertexCount()) +
                                    " vertices but no triangles; a cage needs a surface, so triangulate it first"};
   }
-  return cage_detail::checkMaps(mesh, {options.stiffness, options.density});
+  return cage_detail::checkMaps(mesh, {options.stiffness, options.density, options.damping});
 }
 
 Status notDivisible(const Surface& surface) {
@@ -279,7 +279,8 @@ Result<Cage> build(const TriangleMesh& mesh, const CageOptions& options, CageRep
   report.verticesOutside =
       cage_detail::countOutside(surface.points, surface.points.size(), bound.tets.mesh, bound.tets.tetOf);
   Cage cage = cageOf(mesh, surface, std::move(bound));
-  if (Status status = paintCage(cage, mesh, {options.stiffness, options.density}); !status.ok()) return status;
+  if (Status status = paintCage(cage, mesh, {options.stiffness, options.density, options.damping}); !status.ok())
+    return status;
   if (!progress.reach(1.0)) return cancelled();
   return cage;
 } catch (const Cancellation&) {

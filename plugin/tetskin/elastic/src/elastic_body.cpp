@@ -32,7 +32,8 @@ ElasticOptions withCageDefaults(const Cage& cage, ElasticOptions options) {
 
 /// options  completed by the cage's values
 template <class Scalar>
-Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
+Status checkOptions(const Cage& wholeCage, const ElasticOptions& options) {
+  const TetMesh& cage = wholeCage.mesh;
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
   if (Status status =
           elastic_detail::checkMaterial<Scalar>(options.youngsModulus, options.poissonRatio, options.stiffnessDamping);
@@ -59,7 +60,10 @@ Status checkOptions(const TetMesh& cage, const ElasticOptions& options) {
   const double mass = options.nodeMasses.empty()
                           ? options.density * volume
                           : std::accumulate(options.nodeMasses.begin(), options.nodeMasses.end(), 0.0);
-  return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, options.stiffnessDamping, mass, volume);
+  const std::vector<double>& painted = wholeCage.paintedDamping;
+  const double damping =
+      options.stiffnessDamping * (painted.empty() ? 1.0 : *std::max_element(painted.begin(), painted.end()));
+  return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, damping, mass, volume);
 }
 
 Status checkMesh(const TetMesh& cage, const TetMeshReport& report) {
@@ -78,11 +82,12 @@ Status checkMesh(const TetMesh& cage, const TetMeshReport& report) {
 template <class Scalar>
 struct ElasticBody<Scalar>::Impl {
   /// options  completed by the cage's values
-  Impl(elastic_detail::RestTets rest, const TetMesh& cage, const ElasticOptions& options)
+  Impl(elastic_detail::RestTets rest, const TetMesh& cage, const std::vector<double>& paintedDamping,
+       const ElasticOptions& options)
       : dynamics(std::move(rest), cage.nodeCount()),
         masses(options.nodeMasses),
         volume(totalVolume(cage)),
-        changes(cage.tetCount()),
+        changes(cage.tetCount(), paintedDamping),
         tetCount(cage.tetCount()),
         youngsModulus(options.youngsModulus),
         poissonRatio(options.poissonRatio),
@@ -94,7 +99,6 @@ struct ElasticBody<Scalar>::Impl {
     limits.tolerance = options.tolerance;
     limits.iterations = options.maxIterations;
     dynamics.setMaterial(elastic_detail::lameOf(options.youngsModulus, options.poissonRatio));
-    dynamics.setDamping(options.stiffnessDamping);
     dynamics.setDeterministic(options.deterministic);
     if (masses.empty()) {
       masses.assign(cage.nodeCount(), 0.0);
@@ -109,6 +113,7 @@ struct ElasticBody<Scalar>::Impl {
     }
     assert(masses.size() == cage.nodeCount());
     for (std::size_t n = 0; n < masses.size(); ++n) dynamics.setMass(n, static_cast<Scalar>(masses[n]));
+    applyChanges();
   }
 
   void read(const std::array<double, 3>& push) {
@@ -158,16 +163,18 @@ struct ElasticBody<Scalar>::Impl {
   std::size_t tetCount;
   double youngsModulus, poissonRatio, damping;
 
+  /// scale, ofDamping  the largest factors of stiffness and damping
+  Status checkStiffness(double scale, double ofDamping) const {
+    return elastic_detail::checkStiffness<Scalar>(std::max(scale, 1.0) * youngsModulus, ofDamping * damping, mass(),
+                                                  volume);
+  }
   /// Gives the tets what was set, if it is valid.
   Status change(Status status) {
     if (status.ok()) applyChanges();
     return status;
   }
   void applyChanges() {
-    if (!dynamics.tets()) return;
-    if (dynamics.tets()->setStiffnessScale(changes.stiffnessScale()))
-      dynamics.setMaterial(elastic_detail::lameOf(youngsModulus, poissonRatio));
-    changes.applyTo(*dynamics.tets(), poissonRatio, youngsModulus);
+    if (dynamics.tets()) changes.applyTo(dynamics, poissonRatio, youngsModulus, damping);
   }
 };
 
@@ -183,12 +190,12 @@ Result<ElasticBody<Scalar>> ElasticBody<Scalar>::create(const Cage& cage, const 
   if (Status status = checkMesh(cage.mesh, repairTetMesh(positive.mesh)); !status.ok()) return status;
   if (Status status = validateAttributes(cage); !status.ok()) return status;
   const ElasticOptions all = withCageDefaults(cage, options);
-  if (Status status = checkOptions<Scalar>(cage.mesh, all); !status.ok()) return status;
+  if (Status status = checkOptions<Scalar>(cage, all); !status.ok()) return status;
   const Result<std::vector<QuadraticTet>> quadratic = quadraticTets(positive);
   if (!quadratic.ok()) return quadratic.status();
   ElasticBody body;
   body.impl_ = std::make_shared<Impl>(elastic_detail::restTets(positive, quadratic.value(), options.stiffnessScale),
-                                      positive.mesh, all);
+                                      positive.mesh, cage.paintedDamping, all);
   return body;
 }
 
@@ -302,11 +309,22 @@ template <class Scalar>
 Status ElasticBody<Scalar>::setStiffnessScale(const std::vector<double>& factors) {
   if (!impl_) return kNoNodes;
   const double largest = factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
-  const double mass = std::accumulate(impl_->masses.begin(), impl_->masses.end(), 0.0);
-  Status status = elastic_detail::checkStiffness<Scalar>(std::max(largest, 1.0) * impl_->youngsModulus, impl_->damping,
-                                                         mass, impl_->volume);
-  if (!status.ok()) return status;
-  return impl_->change(impl_->changes.setStiffnessScale(factors));
+  Status status = impl_->checkStiffness(largest, impl_->changes.largestDamping());
+  return status.ok() ? impl_->change(impl_->changes.setStiffnessScale(factors)) : status;
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::setDampingScale(const std::vector<double>& factors) {
+  if (!impl_) return kNoNodes;
+  Status status = impl_->checkStiffness(impl_->changes.largestScale(), impl_->changes.largestDamping(factors));
+  return status.ok() ? impl_->change(impl_->changes.setDampingScale(factors)) : status;
+}
+template <class Scalar>
+Status ElasticBody<Scalar>::addFibres(const Fibres& fibres) {
+  if (!impl_) return kNoNodes;
+  const elastic_detail::MaterialChanges& changes = impl_->changes;
+  const double relative = 1.0 + std::max(fibres.stiffness, 0.0) / impl_->youngsModulus;
+  Status status = impl_->checkStiffness(relative * std::max(changes.largestScale(), 1.0), changes.largestDamping());
+  return status.ok() ? impl_->change(impl_->changes.addFibres(fibres)) : status;
 }
 template <class Scalar>
 Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {

@@ -127,9 +127,10 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
   return refusal("ForceModel::Corotated", changes);
 }
 
-/// The material of the stiffest tet.
-ElasticMaterial stiffest(ElasticMaterial material, double largestScale) {
-  material.youngsModulus *= std::max(largestScale, 1.0);
+/// The material of the stiffest and most damped tet.
+ElasticMaterial stiffest(ElasticMaterial material, double scale, double ofDamping) {
+  material.youngsModulus *= std::max(scale, 1.0);
+  material.damping *= ofDamping;
   return material;
 }
 
@@ -204,9 +205,9 @@ struct DeformableBody::Impl final : BodyOwner {
     elasticity = std::move(force);
   }
   /// Creates the force of the body's material.
-  /// linear, quadratic  the body's tets; not used by Bullet's forces
+  /// linear, quadratic  the body's tets, and paintedDamping: not used by Bullet's forces
   void makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
-                      std::vector<QuadraticShape> quadratic);
+                      const std::vector<double>& paintedDamping, std::vector<QuadraticShape> quadratic);
   void apply(const ElasticMaterial& now) {
     assert(applyMaterial);
     material = now;
@@ -215,8 +216,10 @@ struct DeformableBody::Impl final : BodyOwner {
   }
   Status set(const ElasticMaterial& now) {
     Status status = checkMaterial(now);
-    if (status.ok())
-      status = checkStiffness(*body, stiffest(now, corotated() ? corotated()->body().changes.largestScale() : 1.0));
+    if (status.ok()) {
+      const elastic_detail::MaterialChanges none, &changes = corotated() ? corotated()->body().changes : none;
+      status = checkStiffness(*body, stiffest(now, changes.largestScale(), changes.largestDamping()));
+    }
     if (status.ok()) apply(now);
     return status;
   }
@@ -311,7 +314,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
                                      : defaultYoungsModulus(cage.mesh, options, masses, pressure, !corotated),
                                  options.poissonRatio, options.stiffnessDamping};
   if (Status status = checkMaterial(material); !status.ok()) return status;
-  if (Status status = checkStiffness(*body, material); !status.ok()) return status;
+  const double ofDamping = elastic_detail::MaterialChanges(cage.mesh.tetCount(), cage.paintedDamping).largestDamping();
+  if (Status status = checkStiffness(*body, stiffest(material, 1.0, ofDamping)); !status.ok()) return status;
   if (Status status = checkGravity(world.getGravity(), *body); !status.ok()) return status;
 
   auto impl = std::make_unique<Impl>(world, solver, std::move(body));
@@ -319,7 +323,7 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
   impl->material = material;
   impl->weightPressure = pressure;
   std::unique_ptr<DeformableBody> made(new DeformableBody(std::move(impl)));
-  made->impl_->makeElasticity(options, rest.value(), std::move(quadratic).value());
+  made->impl_->makeElasticity(options, rest.value(), cage.paintedDamping, std::move(quadratic).value());
   made->impl_->enter();
   if (options.configureWorld) {
     world.setUseProjection(true);
@@ -347,6 +351,7 @@ void DeformableBody::Impl::enter() {
 }
 
 void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const elastic_detail::RestTets& linear,
+                                          const std::vector<double>& paintedDamping,
                                           std::vector<QuadraticShape> quadratic) {
   forceModel = options.forceModel;
   restMeasure = restMeasureOf(*body);
@@ -360,7 +365,8 @@ void DeformableBody::Impl::makeElasticity(const SoftBodyOptions& options, const 
       applyMaterial(material);
       return;
     default:
-      makeElasticity<ElasticForce>(*world, *body, linear, material, options.stiffnessScale, std::move(quadratic),
+      makeElasticity<ElasticForce>(*world, *body, linear, material, options.stiffnessScale, paintedDamping,
+                                   std::move(quadratic),
                                    SolverSettings{options.solverTolerance, options.maxIterations});
   }
 }
@@ -528,8 +534,25 @@ Status DeformableBody::setGrowthTensors(const std::vector<std::array<double, 9>>
 Status DeformableBody::setStiffnessScale(const std::vector<double>& factors) {
   return impl_->changeSettings("stiffness by tet", [&](auto& changes) {
     const double largest = factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
-    Status status = checkStiffness(body(), stiffest(impl_->material, largest));
+    Status status = checkStiffness(body(), stiffest(impl_->material, largest, changes.largestDamping()));
     return status.ok() ? changes.setStiffnessScale(factors) : status;
+  });
+}
+
+Status DeformableBody::setDampingScale(const std::vector<double>& factors) {
+  return impl_->changeSettings("damping by tet", [&](auto& changes) {
+    Status status =
+        checkStiffness(body(), stiffest(impl_->material, changes.largestScale(), changes.largestDamping(factors)));
+    return status.ok() ? changes.setDampingScale(factors) : status;
+  });
+}
+
+Status DeformableBody::addFibres(const Fibres& fibres) {
+  return impl_->changeSettings("fibres", [&](auto& changes) {
+    ElasticMaterial material = stiffest(impl_->material, changes.largestScale(), changes.largestDamping());
+    material.youngsModulus *= 1.0 + std::max(fibres.stiffness, 0.0) / impl_->material.youngsModulus;
+    Status status = checkStiffness(body(), material);
+    return status.ok() ? changes.addFibres(fibres) : status;
   });
 }
 

@@ -31,8 +31,14 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+enum class Range { Any, Positive, NotNegative };
+
+bool isIn(Range range, double value) {
+  return range == Range::Any || value > 0.0 || (range == Range::NotNegative && value == 0.0);
+}
+
 /// name  of the map in messages
-Status checkMap(const TriangleMesh& mesh, const std::vector<double>& values, bool positive, const std::string& name) {
+Status checkMap(const TriangleMesh& mesh, const std::vector<double>& values, Range range, const std::string& name) {
   if (mesh.triangles.empty())
     return {StatusCode::Empty, name + " is on a mesh without triangles, which has no inside; triangulate it first"};
   if (values.size() != mesh.vertexCount()) {
@@ -42,9 +48,10 @@ Status checkMap(const TriangleMesh& mesh, const std::vector<double>& values, boo
   }
   const std::vector<char> used = usedVertices(mesh);
   for (std::size_t v = 0; v < values.size(); ++v) {
-    if (std::isfinite(values[v]) && !(positive && used[v] && !(values[v] > 0.0))) continue;
+    if (std::isfinite(values[v]) && (!used[v] || isIn(range, values[v]))) continue;
     const std::string named = name + " is " + std::to_string(values[v]) + " at vertex " + std::to_string(v);
     if (!std::isfinite(values[v])) return {StatusCode::NonFinite, named + "; pass finite values"};
+    if (range == Range::NotNegative) return {StatusCode::InvalidOption, named + ", but must be 0 or more"};
     return {StatusCode::InvalidOption,
             named + ", but must be above 0; pass a small value, such as 0.01, where there is hardly any"};
   }
@@ -264,24 +271,30 @@ Status check(const Cage& cage, const TriangleMesh& mesh) {
 
 Status cage_detail::checkMaps(const TriangleMesh& mesh, const PaintedMaps& maps) {
   Status status;
-  if (!maps.stiffness.empty()) status = checkMap(mesh, maps.stiffness, true, "the stiffness map");
-  if (status.ok() && !maps.density.empty()) status = checkMap(mesh, maps.density, true, "the density map");
+  if (!maps.stiffness.empty()) status = checkMap(mesh, maps.stiffness, Range::Positive, "the stiffness map");
+  if (status.ok() && !maps.density.empty()) status = checkMap(mesh, maps.density, Range::Positive, "the density map");
+  if (status.ok() && !maps.damping.empty())
+    status = checkMap(mesh, maps.damping, Range::NotNegative, "the damping map");
   return status;
 }
 
 Result<SpreadMap> spreadMap(const Cage& cage, const TriangleMesh& mesh, const std::vector<double>& values,
                             MapMean mean) {
   if (Status status = check(cage, mesh); !status.ok()) return status;
-  if (Status status = checkMap(mesh, values, mean == MapMean::Geometric, "the map"); !status.ok()) return status;
+  if (Status status = checkMap(mesh, values, mean == MapMean::Geometric ? Range::Positive : Range::Any, "the map");
+      !status.ok())
+    return status;
   return spread(cage, mesh, values, mean);
 }
 
 Status paintCage(Cage& cage, const TriangleMesh& mesh, const PaintedMaps& maps) {
   if (Status status = check(cage, mesh); !status.ok()) return status;
   if (Status status = cage_detail::checkMaps(mesh, maps); !status.ok()) return status;
-  std::vector<double> stiffness = cage.paintedStiffness, density = cage.paintedDensity, masses = cage.masses;
+  std::vector<double> stiffness = cage.paintedStiffness, density = cage.paintedDensity, damping = cage.paintedDamping,
+                      masses = cage.masses;
   if (!maps.stiffness.empty()) stiffness = factorsOf(cage, mesh, maps.stiffness, MapMean::Geometric);
   if (!maps.density.empty()) density = factorsOf(cage, mesh, maps.density, MapMean::Arithmetic);
+  if (!maps.damping.empty()) damping = factorsOf(cage, mesh, maps.damping, MapMean::Arithmetic);
   if (!maps.density.empty() && !(density.empty() && cage.paintedDensity.empty()))
     masses = massesFor(cage, cage.paintedDensity, density);
   if (!std::all_of(masses.begin(), masses.end(), [](double mass) { return mass > 0.0 && std::isfinite(mass); })) {
@@ -290,6 +303,7 @@ Status paintCage(Cage& cage, const TriangleMesh& mesh, const PaintedMaps& maps) 
   }
   cage.paintedStiffness = std::move(stiffness);
   cage.paintedDensity = std::move(density);
+  cage.paintedDamping = std::move(damping);
   cage.masses = std::move(masses);
   return {};
 }

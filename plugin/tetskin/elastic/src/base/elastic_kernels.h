@@ -65,6 +65,7 @@ struct TetWork {
   S* sums = nullptr;           ///< by slot: forces are added here; null: written to a tet's first corners, by node
   S alpha = 0, flatAlpha = 0;  ///< the second one applies where a tet is flat or inverted
   S* alphas = nullptr;         ///< by pack and point: which of the two; unused if they are equal
+  const S* factors = nullptr;  ///< wide, by pack: of the tets in the matrix alone; null: 1
 
   // Of rest shapes that change: see rest_change.h.
   /// (P D)^-1 - 1 by rows, and det D, wide, by pack and point; null: all tets have their first shapes.
@@ -95,6 +96,14 @@ struct TetFindings {
   bool yields = false;  ///< some tet is beyond its yield surface
 };
 
+/// Corners of fibres in tets, see fibre_tets.h: layers, each like the corners of all tets, 0 where there is none. In
+/// the matrix, even layers have blocks a b^T, odd ones (a . b) 1.
+template <class S>
+struct FibreLayers {
+  const S* corners = nullptr;
+  std::size_t count = 0, size = 0;  ///< number of layers; scalars of one
+};
+
 /// Rows of the matrix; no two of them are neighbours.
 template <class S>
 struct RowWork {
@@ -112,9 +121,10 @@ struct RowWork {
   const std::uint32_t* quadraticSums = nullptr;  ///< the same for quadratic tets, with the first corners of nodes
   const std::uint32_t* quadraticTerms = nullptr;
   const S* corners = nullptr;  ///< see `TetLoops::rotatedGradients`
-  S ratio = 0;                 ///< lambda / mu
-  S spread = 1;                ///< see BlockMatrix::assemble
-  S minMass = 0;               ///< relative to the trace of the stiffness's diagonal block; see `assemble`
+  FibreLayers<S> fibres;
+  S ratio = 0;    ///< lambda / mu
+  S spread = 1;   ///< see BlockMatrix::assemble
+  S minMass = 0;  ///< relative to the trace of the stiffness's diagonal block; see `assemble`
 
   // For products and solves. Wide vectors are by chunk, points by slot.
   S* residual = nullptr;   ///< transformed: (D + L)^-1 r

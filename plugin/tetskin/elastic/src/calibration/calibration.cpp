@@ -60,6 +60,7 @@ Cage used(const Cage& cage) {
   }
   result.paintedStiffness = cage.paintedStiffness;
   result.paintedDensity = cage.paintedDensity;
+  result.paintedDamping = cage.paintedDamping;
   result.volumeFraction = cage.volumeFraction;
   result.fineVolumeFraction = cage.fineVolumeFraction;
   result.quadraticTet = cage.quadraticTet;

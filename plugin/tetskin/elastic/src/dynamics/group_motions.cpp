@@ -119,7 +119,7 @@ void GroupMotions::addStiffness(const TetStiffness& stiffness, const StiffnessPo
   for (Part& part : parts) {
     for (Eigen::Index k = 0; k < kMotions; ++k) {
       const Eigen::Map<const Eigen::Matrix3d> gradient(part.gradients.col(k).data());
-      Eigen::Map<Eigen::Matrix3d>(part.stresses.col(k).data()) = stiffness.stress(gradient);
+      Eigen::Map<Eigen::Matrix3d>(part.stresses.col(k).data()) = stiffness.stress(gradient, at.layer);
     }
   }
   for (const Part& row : parts) {

@@ -56,9 +56,9 @@ int LoneSolve<S>::solveInTwoLevels(const LoneSystem<S>& system, ConjugateGradien
   const double relative = limits.tolerance * limits.tolerance * limits.acting;
   const double target = std::max({relative, limits.enough, static_cast<double>(std::numeric_limits<S>::min())});
   const S* corners = system.tets.cornersAgain(static_cast<S>(system.alpha), threads);
-  const int iterations =
-      twoLevels_->solve(matrix, {rest, corners, static_cast<double>(system.tets.ratio()), system.spread},
-                        system.rightSide.data(), points, target, limits.iterations, threads);
+  const int iterations = twoLevels_->solve(
+      matrix, {rest, corners, static_cast<double>(system.tets.ratio()), system.spread, system.tets.fibreLayers()},
+      system.rightSide.data(), points, target, limits.iterations, threads);
   // What is left is measured, and stays.
   limits.reduction = 1.0;
   limits.iterations = 0;

@@ -98,6 +98,7 @@ void BodyDynamics<S>::setMaterial(const Lame& lame) {
   assert(tets_);
   tets_->setMaterial(lame);
   shearModulus_ = lame.mu;
+  tets_->setFibres(fibres_, matrix_.pattern().slotOf);
   components_.setStiffness(tets_->rest(), lame, matrix_);
   findMaterialVolume();
   changed_ = true;
@@ -111,9 +112,43 @@ void BodyDynamics<S>::findMaterialVolume() {
 }
 
 template <class S>
-void BodyDynamics<S>::setDamping(double damping) {
-  changed_ |= damping != damping_;
-  damping_ = damping;
+void BodyDynamics<S>::setDamping(double damping, const std::vector<double>& factors) {
+  double least = 1.0, mean = 1.0;
+  std::vector<double> more;
+  if (!factors.empty()) {
+    const auto [first, last] = std::minmax_element(factors.begin(), factors.end());
+    least = mean = *first;
+    for (const double factor : factors) {
+      if (damping * (*last - least) > 0.0) more.push_back(damping * (factor - least));
+    }
+    if (!more.empty()) {
+      mean = std::accumulate(factors.begin(), factors.end(), 0.0) / static_cast<double>(factors.size());
+    }
+  }
+  changed_ |= least * damping != damping_ || more != moreDamped_;
+  damping_ = least * damping;
+  meanDamping_ = mean * damping;
+  moreDamped_ = std::move(more);
+  if (tets_) tets_->setExtraDamping(moreDamped_);
+  if (moreDamped_.empty()) return extraDamping_.reset();
+  if (!extraDamping_) extraDamping_.emplace(tets_->rest(), matrix_.nodeCount());
+  extraDamping_->setDeterministic(deterministic_);
+}
+
+template <class S>
+void BodyDynamics<S>::setFibres(const std::vector<std::vector<TetFibre>>& families) {
+  assert(tets_);
+  if (families == fibres_) return;
+  fibres_ = families;
+  tets_->setFibres(fibres_, matrix_.pattern().slotOf);
+  changed_ = true;
+}
+
+template <class S>
+void BodyDynamics<S>::setShapeLaw(ShapeLaw law) {
+  assert(tets_ || !law);
+  if (law && tetNumbers_.empty()) tetNumbers_ = tetNumbers(tets_->rest());
+  shapeLaw_ = std::move(law);
 }
 
 template <class S>
@@ -139,6 +174,7 @@ void BodyDynamics<S>::setDeterministic(bool on) {
   deterministic_ = on;
   matrix_.setDeterministic(on);
   if (tets_) tets_->setDeterministic(on);
+  if (extraDamping_) extraDamping_->setDeterministic(on);
 }
 
 template <class S>
@@ -242,9 +278,13 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
     assembleIfNeeded(1.0, threads);
     return begin();
   }
+  if (shapeLaw_) {
+    shapeLaw_({tets_->rest(), tetNumbers_, matrix_.pattern().slotOf, places_.at(0)}, given_);
+    tets_->setGiven(given_.shapes, given_.stiffer);
+  }
   components_.find(nodes(), pinned_ > 0, seconds);
   if (changed_) stiffnessOverInertia_ = components_.stiffnessOverInertia();
-  stiffnessNumber_ = seconds * (seconds + damping_) * stiffnessPerInertia();
+  stiffnessNumber_ = seconds * (seconds + meanDamping_) * stiffnessPerInertia();
   stiff_ = stiffnessNumber_ > kStiff;
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
   tets_->flowFor(seconds);
@@ -346,7 +386,8 @@ void BodyDynamics<S>::assembleIfNeeded(double turnFraction, ParallelFor* threads
   const double fraction = turnFraction * std::min(1.0, seconds / kFullTurnStep);
   // A stiff component rotates as a whole, and may be a single tet among many of other components.
   const double maximum = turnFraction < 1.0 ? kMeanTurn : kMaxTurn;
-  const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum);
+  const bool turned = tets_ && (tets_->meanTurn() > fraction * kMeanTurn || tets_->maxTurn() > fraction * maximum ||
+                                tets_->isStiffer());
   if (changed_ || alpha != alpha_ || turned || !isSpread()) assemble(alpha, threads);
 }
 
@@ -362,12 +403,20 @@ void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
                                                                       : 0.0;
   const auto flatAlpha = static_cast<S>(flat);
   changed_ = true;  // until it is done: memory may run out
-  matrix_.assemble(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr,
-                   tets_ ? tets_->ratio() : S(0), threads, static_cast<S>(stretched_));
   alpha_ = alpha;
   spread_ = stretched_;
+  if (tets_) tets_->findFactors(forceSeconds_ / alpha);
+  assembleFrom(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr, threads);
   changed_ = false;
   findUnitImpulses(threads);
+}
+
+template <class S>
+void BodyDynamics<S>::assembleFrom(const S* corners, ParallelFor* threads) {
+  matrix_.assemble(corners, tets_ ? tets_->ratio() : S(0), threads, static_cast<S>(spread_),
+                   tets_ ? tets_->fibreLayers() : kernels::FibreLayers<S>());
+  if (!extraDamping_) return;
+  extraDamping_->take(tets_->rest(), corners, tets_->ratio(), static_cast<S>(spread_), tets_->extraShares(), threads);
 }
 
 /// While the matrix is as it was assembled.
@@ -435,11 +484,9 @@ void BodyDynamics<S>::carry(ParallelFor* threads) {
   toPoints(last_.data(), relative_);
   const bool flat = tets_->flattest() < kernels::kFlatVolume;
   changed_ |= flat;
-  if (flat) {
-    matrix_.assemble(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), tets_->ratio(), threads,
-                     static_cast<S>(spread_));
-  }
+  if (flat) assembleFrom(tets_->cornersWithoutFlat(static_cast<S>(alpha_), threads), threads);
   matrix_.multiply(relative_.data(), carried_.data(), threads);
+  if (extraDamping_) extraDamping_->takeFrom(carried_, last_.data(), threads);
   if (flat) assemble(alpha_, threads);
   const auto share = static_cast<S>(scheme_.carried);
   bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
@@ -501,7 +548,9 @@ void BodyDynamics<S>::remember(SolvedWith what, ParallelFor* threads) {
   if (tets_ && !stiff_ && untouched_ >= kUntouched) {
     if (what == SolvedWith::Others) findResidual(threads);
     if (!secondOrder_) history_.clear(matrix_.wideSize());
-    history_.keep(matrix_, what == SolvedWith::Others ? image_ : rightSide_, scheme_, lastSeconds_, forceSeconds_);
+    AlignedVector<S>& impulses = what == SolvedWith::Others ? image_ : rightSide_;
+    if (extraDamping_) extraDamping_->takeFrom(impulses, matrix_.solution(), threads);
+    history_.keep(matrix_, impulses, scheme_, lastSeconds_, forceSeconds_);
     remembered_ = true;
   }
   solved_ = tets_ && !stiff_;
@@ -532,7 +581,7 @@ double BodyDynamics<S>::rigidCompliance(std::size_t component, const std::array<
 template <class S>
 double BodyDynamics<S>::keptInImpact(std::size_t component, double energy) const {
   constexpr double kPi = 3.14159265358979324;  // half a period is a phase of it
-  const double frequency = components_.impactFrequency(component), kept = keptInHalfPeriod(damping_, frequency);
+  const double frequency = components_.impactFrequency(component), kept = keptInHalfPeriod(meanDamping_, frequency);
   return kept > 0.0 ? kept * (1.0 - flowsInImpact(component, energy, kPi / frequency)) : 0.0;
 }
 
@@ -540,7 +589,7 @@ template <class S>
 double BodyDynamics<S>::bounceSeconds(double mass, double radius, double leastKept) const {
   constexpr double kPi = 3.14159265358979324;
   const double seconds = tets_ && !tets_->flows() ? components_.impactSeconds(mass, radius) : 0.0;
-  return seconds > 0.0 && keptInHalfPeriod(damping_, kPi / seconds) >= leastKept ? seconds : 0.0;
+  return seconds > 0.0 && keptInHalfPeriod(meanDamping_, kPi / seconds) >= leastKept ? seconds : 0.0;
 }
 
 /// The share of an impact's energy that flows within half a period: what is beyond the energy at which the whole
@@ -708,8 +757,7 @@ void BodyDynamics<S>::carry(bool turns, const std::array<double, 9>& turn, const
 
 template <class S>
 void BodyDynamics<S>::assembleAgain(double alpha) {
-  matrix_.assemble(tets_ ? tets_->cornersAgain(static_cast<S>(alpha), nullptr) : nullptr, tets_ ? tets_->ratio() : S(0),
-                   nullptr, static_cast<S>(spread_));
+  assembleFrom(tets_ ? tets_->cornersAgain(static_cast<S>(alpha), nullptr) : nullptr, nullptr);
   findUnitImpulses(nullptr);
 }
 

@@ -15,10 +15,12 @@
 #pragma once
 
 #include <tetskin/elastic/src/dynamics/body_components.h>
+#include <tetskin/elastic/src/dynamics/extra_damping.h>
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 #include <tetskin/elastic/src/dynamics/lone_solve.h>
 #include <tetskin/elastic/src/dynamics/pressure_law.h>
 #include <tetskin/elastic/src/dynamics/pressure_surface.h>
+#include <tetskin/elastic/src/dynamics/tet_stretches.h>
 
 #include <array>
 #include <cassert>
@@ -42,6 +44,14 @@ struct StepStart {
 
 /// What has changed the solution of a step.
 enum class SolvedWith { ElasticityAlone, Others };
+
+/// Shapes at rest that depend on how the body is deformed: see CorotatedTets::setGiven.
+struct GivenShapes {
+  std::vector<std::array<double, 9>> shapes;
+  std::vector<double> stiffer;
+};
+/// Called at the beginning of each step, at the positions of its forces.
+using ShapeLaw = std::function<void(const TetStretches& stretches, GivenShapes& given)>;
 
 /// Positions of a body's nodes, and the elastic forces there: a question that leaves the body's state as it is.
 template <class S>
@@ -80,7 +90,12 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   // What takes effect at the next `predict`.
   void setMaterial(const Lame& lame);
   /// damping  seconds
-  void setDamping(double damping);
+  /// factors  of it by tet of the cage, 0 or more; empty: 1
+  void setDamping(double damping, const std::vector<double>& factors = {});
+  /// See FibreTets; empty: none.
+  void setFibres(const std::vector<std::vector<TetFibre>>& families);
+  /// What gives the tets their shapes at rest from now on; empty: they keep those that they have.
+  void setShapeLaw(ShapeLaw law);
   /// The pressure in the body, and where it acts; null: the body has none. Its forces, stiffness and energy count as
   /// elastic ones everywhere.
   void setPressure(const PressureLaw& law, std::shared_ptr<PressureSurface> surface);
@@ -293,6 +308,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void assembleIfNeeded(double turnFraction, ParallelFor* threads);
   double matrixAlpha() const;
   void assemble(double alpha, ParallelFor* threads);
+  void assembleFrom(const S* corners, ParallelFor* threads);
   void findUnitImpulses(ParallelFor* threads);
   double allowedTurn() const;
   void assembleAgain(double alpha);
@@ -304,6 +320,10 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   NodePlaces<S> places_;
   std::optional<CorotatedTets<S>> tets_;
   LoneSolve<S> loneSolve_;
+  std::vector<std::vector<TetFibre>> fibres_;  ///< see `setFibres`
+  ShapeLaw shapeLaw_;
+  GivenShapes given_;                      ///< by it
+  std::vector<std::uint32_t> tetNumbers_;  ///< see TetStretches; empty until there is such a law
   PressureLaw pressure_;
   std::shared_ptr<PressureSurface> pressureSurface_;  ///< null: no pressure
   std::vector<std::uint32_t> pressureSlots_;          ///< by node of the surface
@@ -315,13 +335,15 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double spread_ = 1.0;          ///< of the last assembly
   ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,
-      forces_;                          ///< by slot; moved_: displacements of x0, see NodePlaces
-  AlignedVector<S> carried_, last_;     ///< in the wide layout, see `carry`
-  AlignedVector<S> rightSide_, image_;  ///< in the wide layout
-  AlignedVector<S> began_;              ///< in the wide layout: the solution without elastic forces
-  AlignedVector<S> acting_;             ///< in the wide layout: impulses, see `solve`
-  double unitImpulses_ = 0.0;           ///< `squaredImpulses` of 1, by the matrix without rows
-  double damping_ = 0.0;
+      forces_;                                ///< by slot; moved_: displacements of x0, see NodePlaces
+  AlignedVector<S> carried_, last_;           ///< in the wide layout, see `carry`
+  AlignedVector<S> rightSide_, image_;        ///< in the wide layout
+  AlignedVector<S> began_;                    ///< in the wide layout: the solution without elastic forces
+  AlignedVector<S> acting_;                   ///< in the wide layout: impulses, see `solve`
+  double unitImpulses_ = 0.0;                 ///< `squaredImpulses` of 1, by the matrix without rows
+  double damping_ = 0.0, meanDamping_ = 0.0;  ///< the first one: of the least damped tet
+  std::vector<double> moreDamped_;            ///< seconds beside it, by tet of the cage; empty: none
+  std::optional<ExtraDamping<S>> extraDamping_;
   double alpha_ = 0.0;  ///< of the last assembly
   Stage stage_ = Stage::Between;
   bool stiff_ = false, pressed_ = false, secondOrder_ = false, impact_ = false, sameLength_ = false,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -46,14 +47,76 @@ bool isGrowth(const RowMatrix& deformation) {
   return isGrowth(axes.eigenvalues().minCoeff()) && isGrowth(axes.eigenvalues().maxCoeff());
 }
 
-/// The shape at which a muscle's tet is at rest.
+/// The contraction w, see `contracted`, by which a muscle pulls with a tension beside its elasticity when it is
+/// stretched by s. A tet that is free across its fibres has (1 + 2 nu w) (s (1 + w) - 1) E on its first area.
 /// tension  over Young's modulus
-RowMatrix contracted(const Eigen::Vector3d& fibre, double tension, double poissonRatio) {
-  const double most = 1.0 / kLeastGrowth - 1.0;
-  const double w = std::min(2.0 * tension / (1.0 + std::sqrt(1.0 + 8.0 * poissonRatio * tension)), most);
+double contraction(double tension, double poissonRatio, double stretch) {
+  if (!(tension > 0.0)) return 0.0;
+  const double slope = stretch + 2.0 * poissonRatio * (stretch - 1.0);
+  return std::min(2.0 * tension / (slope + std::sqrt(slope * slope + 8.0 * poissonRatio * stretch * tension)),
+                  1.0 / kLeastGrowth - 1.0);
+}
+
+/// The shape at which a muscle's tet is at rest.
+RowMatrix contracted(const Eigen::Vector3d& unit, double w, double poissonRatio) {
   const double along = 1.0 / (1.0 + w), across = std::sqrt(1.0 + 2.0 * poissonRatio * w);
-  const Eigen::Vector3d unit = fibre / std::sqrt(fibre.squaredNorm());
   return across * RowMatrix::Identity() + (along - across) * unit * unit.transpose();
+}
+
+double valueOf(const std::vector<std::array<double, 2>>& curve, double at) {
+  const auto next = std::find_if(curve.begin(), curve.end(), [at](const auto& point) { return point[0] > at; });
+  if (next == curve.begin()) return curve.front()[1];
+  if (next == curve.end()) return curve.back()[1];
+  const auto& [x, y] = *(next - 1);
+  return y + ((*next)[1] - y) * (at - x) / ((*next)[0] - x);
+}
+
+double steepestOf(const std::vector<std::array<double, 2>>& curve) {
+  double steepest = 0.0;
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    steepest = std::max(steepest, (curve[k][1] - curve[k - 1][1]) / (curve[k][0] - curve[k - 1][0]));
+  }
+  return steepest;
+}
+
+Status checkCurve(const std::vector<std::array<double, 2>>& curve) {
+  for (std::size_t k = 0; k < curve.size(); ++k) {
+    const auto& [stretch, factor] = curve[k];
+    const bool ascends = stretch > (k > 0 ? curve[k - 1][0] : 0.0) && std::isfinite(stretch);
+    if (ascends && factor >= 0.0 && std::isfinite(factor)) continue;
+    return invalidChange("muscle: point " + std::to_string(k) +
+                         " of lengthFactors must have a larger stretch than the one before, above 0, and a factor of 0 "
+                         "or more, both finite");
+  }
+  return {};
+}
+
+/// Directions of tets of the cage.
+/// what  has them
+Status checkFibres(const std::string& what, const std::vector<int>& tets,
+                   const std::vector<Eigen::Vector3d>& directions, std::size_t tetCount) {
+  if (tets.empty()) return invalidChange(what + ": needs at least one tet");
+  std::vector<char> used(tetCount, 0);
+  for (const int tet : tets) {
+    if (tet < 0 || static_cast<std::size_t>(tet) >= tetCount) {
+      return Status{
+          StatusCode::IndexOutOfRange,
+          what + ": tet " + std::to_string(tet) + " does not exist in a cage of " + std::to_string(tetCount) + " tets"};
+    }
+    if (used[static_cast<std::size_t>(tet)]++) {
+      return invalidChange(what + ": tet " + std::to_string(tet) + " is listed twice");
+    }
+  }
+  if (directions.size() != 1 && directions.size() != tets.size()) {
+    return sizeMismatch("fibres", directions.size(), tets.size());
+  }
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const double squared = directions[k].squaredNorm();
+    if (!(squared > 0.0 && std::isfinite(squared))) {
+      return invalidChange(what + ": fibre " + std::to_string(k) + " must be finite and longer than 0");
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -118,32 +181,68 @@ Status MaterialChanges::setStiffnessScale(const std::vector<double>& factors) {
   return {};
 }
 
+Status MaterialChanges::setDampingScale(const std::vector<double>& factors) {
+  if (factors.size() != tetCount_) return sizeMismatch("dampingScale", factors.size(), tetCount_);
+  const auto bad =
+      std::find_if_not(factors.begin(), factors.end(), [](double f) { return f >= 0.0 && std::isfinite(f); });
+  if (bad != factors.end()) {
+    return invalidChange("the damping scale of tet " + std::to_string(bad - factors.begin()) +
+                         " must be finite, and 0 or more");
+  }
+  const bool none = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
+  dampingScale_ = none ? std::vector<double>() : factors;
+  return {};
+}
+
+/// By tet of the cage; empty: 1.
+std::vector<double> MaterialChanges::dampingFactors(const std::vector<double>& scale) const {
+  if (paintedDamping_.empty() || scale.empty()) return paintedDamping_.empty() ? scale : paintedDamping_;
+  std::vector<double> factors = paintedDamping_;
+  for (std::size_t t = 0; t < factors.size(); ++t) factors[t] *= scale[t];
+  return factors;
+}
+
+double MaterialChanges::largestDamping(const std::vector<double>& scale) const {
+  const std::vector<double> factors = dampingFactors(scale);
+  return factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
+}
+
+Status MaterialChanges::addFibres(const Fibres& fibres) {
+  if (Status status = checkFibres("fibres", fibres.tets, fibres.directions, tetCount_); !status.ok()) return status;
+  if (!(fibres.stiffness > 0.0 && std::isfinite(fibres.stiffness))) {
+    return invalidChange("the stiffness of fibres must be finite and above 0");
+  }
+  fibres_.push_back(fibres);
+  return {};
+}
+
+/// By the order of their calls, and tet of the cage, with the growth of now.
+std::vector<std::vector<TetFibre>> MaterialChanges::fibresByTet() const {
+  std::vector<std::vector<TetFibre>> families;
+  for (const Fibres& fibres : fibres_) {
+    std::vector<TetFibre>& family = families.emplace_back(tetCount_);
+    for (std::size_t k = 0; k < fibres.tets.size(); ++k) {
+      const auto tet = static_cast<std::size_t>(fibres.tets[k]);
+      TetFibre& own = family[tet];
+      own.along = fibres.directions[fibres.directions.size() == 1 ? 0 : k].normalized();
+      own.stiffness = fibres.stiffness;
+      own.tensionOnly = fibres.tensionOnly;
+      if (growth_.empty()) continue;
+      const Eigen::Map<const RowMatrix> growth(growth_[tet].data());
+      own.along = (growth.inverse() * own.along).eval();
+      own.stiffness *= growth.determinant();
+    }
+  }
+  return families;
+}
+
 Result<int> MaterialChanges::addMuscle(const Muscle& muscle) {
-  if (muscle.tets.empty()) return invalidChange("a muscle needs at least one tet");
-  std::vector<char> used(tetCount_, 0);
-  for (const int tet : muscle.tets) {
-    if (tet < 0 || static_cast<std::size_t>(tet) >= tetCount_) {
-      return Status{
-          StatusCode::IndexOutOfRange,
-          "muscle: tet " + std::to_string(tet) + " does not exist in a cage of " + std::to_string(tetCount_) + " tets"};
-    }
-    if (used[static_cast<std::size_t>(tet)]++) {
-      return invalidChange("muscle: tet " + std::to_string(tet) + " is listed twice");
-    }
-  }
-  if (muscle.fibres.size() != 1 && muscle.fibres.size() != muscle.tets.size()) {
-    return sizeMismatch("fibres", muscle.fibres.size(), muscle.tets.size());
-  }
-  for (std::size_t k = 0; k < muscle.fibres.size(); ++k) {
-    const double squared = muscle.fibres[k].squaredNorm();
-    if (!(squared > 0.0 && std::isfinite(squared))) {
-      return invalidChange("muscle: fibre " + std::to_string(k) + " must be finite and longer than 0");
-    }
-  }
+  if (Status status = checkFibres("muscle", muscle.tets, muscle.fibres, tetCount_); !status.ok()) return status;
   if (!(muscle.stress > 0.0 && std::isfinite(muscle.stress))) {
     return invalidChange("the stress of a muscle must be finite and above 0");
   }
-  muscles_.push_back({muscle, 0.0});
+  if (Status status = checkCurve(muscle.lengthFactors); !status.ok()) return status;
+  muscles_.push_back({muscle, 0.0, steepestOf(muscle.lengthFactors)});
   return static_cast<int>(muscles_.size()) - 1;
 }
 
@@ -167,21 +266,45 @@ bool MaterialChanges::givesShapes() const {
          std::any_of(muscles_.begin(), muscles_.end(), [](const Group& group) { return group.activation > 0.0; });
 }
 
-/// By tet of the cage; where several muscles share a tet, their tensions are summed by their axes.
-std::vector<std::array<double, 9>> MaterialChanges::givenShapes(double poissonRatio, double youngsModulus) const {
-  if (!givesShapes()) return {};
-  std::vector<std::array<double, 9>> given = growth_;
-  if (given.empty()) given.assign(tetCount_, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+/// A muscle that is active pulls by its length.
+bool MaterialChanges::dependsOnLengths() const {
+  return std::any_of(muscles_.begin(), muscles_.end(),
+                     [](const Group& group) { return group.activation > 0.0 && !group.muscle.lengthFactors.empty(); });
+}
+
+/// By tet of the cage; where several muscles share a tet, their tensions are summed by their axes. Forces of a muscle
+/// whose tension grows with its length are stiffer than its tets by (1 + slope / E) over what these have along it.
+/// stretches  null: no muscle depends on its length
+void MaterialChanges::findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches,
+                                 GivenShapes& given) const {
+  if (!givesShapes()) return;
+  given.shapes = growth_;
+  if (given.shapes.empty()) given.shapes.assign(tetCount_, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+  if (stretches) given.stiffer.assign(tetCount_, 1.0);
   for (const Group& group : muscles_) {
     if (!(group.activation > 0.0)) continue;
     const Muscle& muscle = group.muscle;
+    const double tension = group.activation * muscle.stress / youngsModulus;
     for (std::size_t k = 0; k < muscle.tets.size(); ++k) {
-      Eigen::Map<RowMatrix> shape(given[static_cast<std::size_t>(muscle.tets[k])].data());
-      const double tension = group.activation * muscle.stress / youngsModulus;
-      shape = (contracted(muscle.fibres[muscle.fibres.size() == 1 ? 0 : k], tension, poissonRatio) * shape).eval();
+      const auto tet = static_cast<std::size_t>(muscle.tets[k]);
+      Eigen::Map<RowMatrix> shape(given.shapes[tet].data());
+      const Eigen::Vector3d& fibre = muscle.fibres[muscle.fibres.size() == 1 ? 0 : k];
+      const Eigen::Vector3d unit = fibre / std::sqrt(fibre.squaredNorm());
+      double w = 0.0;
+      if (muscle.lengthFactors.empty()) {
+        w = contraction(tension, poissonRatio, 1.0);
+      } else {
+        // From its length when it has grown.
+        const Eigen::Vector3d grown =
+            growth_.empty() ? unit : Eigen::Vector3d(Eigen::Map<const RowMatrix>(growth_[tet].data()).inverse() * unit);
+        const double stretch = std::clamp(stretches->length(tet, grown), kLeastGrowth, kLargestGrowth);
+        w = contraction(tension * valueOf(muscle.lengthFactors, stretch), poissonRatio, stretch);
+        const double own = (1.0 + w) * (1.0 + 2.0 * poissonRatio * w);
+        given.stiffer[tet] = std::max(given.stiffer[tet], (1.0 + tension * group.steepest) / own);
+      }
+      shape = (contracted(unit, w, poissonRatio) * shape).eval();
     }
   }
-  return given;
 }
 
 double MaterialChanges::largestScale() const {
@@ -189,14 +312,25 @@ double MaterialChanges::largestScale() const {
 }
 
 template <class S>
-void MaterialChanges::applyShapesTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const {
-  tets.setGiven(givenShapes(poissonRatio, youngsModulus));
+void MaterialChanges::applyShapesTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus) const {
+  body.setFibres(fibresByTet());
+  if (dependsOnLengths()) {
+    return body.setShapeLaw([this, poissonRatio, youngsModulus](const TetStretches& stretches, GivenShapes& given) {
+      findShapes(poissonRatio, youngsModulus, &stretches, given);
+    });
+  }
+  body.setShapeLaw({});
+  GivenShapes given;
+  findShapes(poissonRatio, youngsModulus, nullptr, given);
+  body.tets()->setGiven(given.shapes);
 }
 
 template <class S>
-void MaterialChanges::applyTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const {
-  applyShapesTo(tets, poissonRatio, youngsModulus);
-  tets.setPlasticity(plasticity_ ? &*plasticity_ : nullptr);
+void MaterialChanges::applyTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus, double damping) const {
+  if (body.tets()->setStiffnessScale(stiffnessScale_)) body.setMaterial(lameOf(youngsModulus, poissonRatio));
+  body.setDamping(damping, dampingFactors(dampingScale_));
+  applyShapesTo(body, poissonRatio, youngsModulus);
+  body.tets()->setPlasticity(plasticity_ ? &*plasticity_ : nullptr);
 }
 
 void MaterialChanges::serialize(StateStream& stream) {
@@ -205,9 +339,10 @@ void MaterialChanges::serialize(StateStream& stream) {
   if (stream.restoring()) growth_.resize(count == tetCount_ ? count : 0);
   if (count != growth_.size()) return stream.fail();
   for (std::array<double, 9>& shape : growth_) stream.plain(shape.data(), shape.size());
-  stream.array(stiffnessScale_);
-  if (!stiffnessScale_.empty() && stiffnessScale_.size() != tetCount_) {
-    stiffnessScale_.clear();
+  for (std::vector<double>* scale : {&stiffnessScale_, &dampingScale_}) {
+    stream.array(*scale);
+    if (scale->empty() || scale->size() == tetCount_) continue;
+    scale->clear();
     return stream.fail();
   }
   for (Group& group : muscles_) {
@@ -227,9 +362,9 @@ void MaterialChanges::serialize(StateStream& stream) {
   if (stream.restoring()) plasticity_ = now;
 }
 
-#define TETSKIN_INSTANTIATE(Scalar)                                                                   \
-  template void MaterialChanges::applyShapesTo<Scalar>(CorotatedTets<Scalar>&, double, double) const; \
-  template void MaterialChanges::applyTo<Scalar>(CorotatedTets<Scalar>&, double, double) const;
+#define TETSKIN_INSTANTIATE(Scalar)                                                                  \
+  template void MaterialChanges::applyShapesTo<Scalar>(BodyDynamics<Scalar>&, double, double) const; \
+  template void MaterialChanges::applyTo<Scalar>(BodyDynamics<Scalar>&, double, double, double) const;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 

@@ -7,7 +7,7 @@
 
 #include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/elastic/material_changes.h>
-#include <tetskin/elastic/src/tets/corotated_tets.h>
+#include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <array>
 #include <optional>
@@ -18,7 +18,9 @@ namespace tetskin::elastic_detail {
 class TETSKIN_ELASTIC_API MaterialChanges {
  public:
   MaterialChanges() = default;
-  explicit MaterialChanges(std::size_t tets) : tetCount_(tets) {}
+  /// paintedDamping  see Cage
+  explicit MaterialChanges(std::size_t tets, std::vector<double> paintedDamping = {})
+      : tetCount_(tets), paintedDamping_(std::move(paintedDamping)) {}
 
   // Errors: InvalidOption, SizeMismatch, IndexOutOfRange, NonFinite; nothing is changed then.
   Status setPlasticity(const Plasticity& plasticity);
@@ -27,37 +29,47 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   Status setGrowth(const std::vector<double>& lengths);
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   Status setStiffnessScale(const std::vector<double>& factors);
-  /// By tet of the cage; empty: 1.
-  const std::vector<double>& stiffnessScale() const { return stiffnessScale_; }
+  Status setDampingScale(const std::vector<double>& factors);
+  Status addFibres(const Fibres& fibres);
+  std::size_t fibresCount() const { return fibres_.size(); }
   Result<int> addMuscle(const Muscle& muscle);
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;  ///< 0 for one that does not exist
   std::size_t muscleCount() const { return muscles_.size(); }
 
-  /// The largest factor of the stiffness; 1 without any.
-  double largestScale() const;
-  /// Gives the shapes at which they are at rest to tets of this material: growth and muscles.
+  double largestScale() const;  ///< the largest factor of the stiffness; 1 without any
+  /// The same of the damping.
+  /// scale  in place of that which is set
+  double largestDamping(const std::vector<double>& scale) const;
+  double largestDamping() const { return largestDamping(dampingScale_); }
+  /// Gives the shapes at which they are at rest to a body's tets: growth and muscles. The body refers to this while
+  /// muscles depend on their length.
   template <class S>
-  void applyShapesTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const;
-  /// Gives all of it to tets of this material, but for the stiffness: see `CorotatedTets::setStiffnessScale`.
+  void applyShapesTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus) const;
+  /// Gives all of it to a body with tets.
   template <class S>
-  void applyTo(CorotatedTets<S>& tets, double poissonRatio, double youngsModulus) const;
-  /// Writes or reads what may change from step to step: growth, stiffness, activations, the limits of flow.
+  void applyTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus, double damping) const;
+  /// Writes or reads what may change from step to step: growth, stiffness, damping, activations, limits of flow.
   void serialize(StateStream& stream);
 
  private:
   struct Group {
     Muscle muscle;
     double activation = 0.0;
+    double steepest = 0.0;  ///< the largest slope of its curve of tension over length; at least 0
   };
+  std::vector<double> dampingFactors(const std::vector<double>& scale) const;
+  std::vector<std::vector<TetFibre>> fibresByTet() const;
   bool givesShapes() const;
-  std::vector<std::array<double, 9>> givenShapes(double poissonRatio, double youngsModulus) const;
+  bool dependsOnLengths() const;
+  void findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches, GivenShapes& given) const;
 
   std::size_t tetCount_ = 0;
   std::optional<Plasticity> plasticity_;
   std::vector<std::array<double, 9>> growth_;  ///< by tet; empty: none
-  std::vector<double> stiffnessScale_;
+  std::vector<double> stiffnessScale_, paintedDamping_, dampingScale_;
   std::vector<Group> muscles_;
+  std::vector<Fibres> fibres_;
 };
 
 }  // namespace tetskin::elastic_detail

@@ -407,7 +407,7 @@ TETSKIN_INLINE void addToNodes(const Pack& pack, int lane, const S* from, S* sum
   }
 }
 
-/// The factor of the stiffness in the matrix.
+/// The factor of the stiffness in the matrix, beside that of its tets.
 /// at        index in `alphas`
 /// gradient  returns F
 template <class S, int W, class Pack, class Gradient>
@@ -418,6 +418,16 @@ TETSKIN_INLINE Lanes<S, W> alphaOf(const TetWork<S, Pack>& work, std::size_t at,
   const Lanes<S, W> alpha = ratio < S(kFlatVolume) ? all<S, W>(work.flatAlpha) : all<S, W>(work.alpha);
   put<S, W>(alpha, work.alphas + at);
   return alpha;
+}
+
+/// What gradients of shape functions are multiplied by, for the matrix.
+/// mu  mu V
+template <class S, int W, class Pack>
+TETSKIN_INLINE Lanes<S, W> gradientFactor(const TetWork<S, Pack>& work, std::size_t pack, int lane,
+                                          const Lanes<S, W>& alpha, const Lanes<S, W>& mu) {
+  Lanes<S, W> squared = alpha * mu;
+  if (work.factors) squared *= wide<S, W>(work.factors + kGroup * pack + static_cast<std::size_t>(lane));
+  return squareRoots<S, W>(squared);
 }
 
 }  // namespace tetskin::kernels::TETSKIN_KERNELS

@@ -248,7 +248,7 @@ TETSKIN_INLINE void rotatedShapeGradients(const TetWork<S, QuadraticPack<S>>& wo
   V mu = S(0.5) * wide<S, W>(pack.shear + lane);
   WideMatrix<S, W> r = rotationOf<S, W>(quaternions<S, W>(work.rotations + 4 * first + lane));
   if (work.changes) changeRest<S, W>(work, Pack::kPoints * p + point, lane, r, mu);
-  const V factor = squareRoots<S, W>(alpha * mu);
+  const V factor = gradientFactor<S, W>(work, p, lane, alpha, mu);
   byShapeGradients<S, W>(
       pack, lane, weights,
       [&](const V& gx, const V& gy, const V& gz) { return rotated<S, W>(r, factor * gx, factor * gy, factor * gz); },

@@ -62,13 +62,48 @@ TETSKIN_INLINE void invert(const Lanes<S, W> block[6], const Lanes<S, W>& mass, 
 
 /// Adds products a b^T of the vectors that a quadratic tet has for two nodes at its four points.
 template <class S, int W>
-TETSKIN_INLINE void addQuadraticTerm(const RowWork<S>& work, std::uint32_t term, int lane, Lanes<S, W> sum[9]) {
+TETSKIN_INLINE void addQuadraticTerm(const RowWork<S>& work, const S* corners, std::uint32_t term, int lane,
+                                     Lanes<S, W> sum[9]) {
   const std::uint32_t* indices = work.quadraticTerms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
   WidePoints<S, W> a[3];
-  for (std::size_t i = 0; i < 3; ++i) a[i] = pointsAt<S, W>(work.corners + 4 * i, indices);
+  for (std::size_t i = 0; i < 3; ++i) a[i] = pointsAt<S, W>(corners + 4 * i, indices);
   for (std::size_t j = 0; j < 3; ++j) {
-    const WidePoints<S, W> b = pointsAt<S, W>(work.corners + 4 * j, indices + kGroup);
+    const WidePoints<S, W> b = pointsAt<S, W>(corners + 4 * j, indices + kGroup);
     for (std::size_t i = 0; i < 3; ++i) sum[3 * i + j] += a[i].x * b.x + a[i].y * b.y + a[i].z * b.z + a[i].w * b.w;
+  }
+}
+
+/// Adds a b^T, over the tets around the edge of a pair of nodes and the points of each tet, with a and b from
+/// `corners`.
+template <class S, int W>
+TETSKIN_INLINE void addTerms(const RowWork<S>& work, const S* corners, std::size_t entry, int lane,
+                             Lanes<S, W> sum[9]) {
+  using V = Lanes<S, W>;
+  for (std::uint32_t term = work.sums[entry]; term < work.sums[entry + 1]; ++term) {
+    const std::uint32_t* indices = work.terms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
+    const WideVector<S, W> p = vectorsAt<S, W>(corners, indices);
+    const WideVector<S, W> q = vectorsAt<S, W>(corners, indices + kGroup);
+    const V a[3] = {p.x, p.y, p.z}, b[3] = {q.x, q.y, q.z};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) sum[3 * i + j] += a[i] * b[j];
+    }
+  }
+  for (std::uint32_t term = work.quadraticSums[entry]; term < work.quadraticSums[entry + 1]; ++term) {
+    addQuadraticTerm<S, W>(work, corners, term, lane, sum);
+  }
+}
+
+/// The part of fibres in a block.
+template <class S, int W>
+TETSKIN_NOINLINE void addFibres(const RowWork<S>& work, std::size_t entry, int lane, Lanes<S, W> block[9]) {
+  using V = Lanes<S, W>;
+  for (std::size_t layer = 0; layer < work.fibres.count; layer += 2) {
+    const S* const along = work.fibres.corners + layer * work.fibres.size;
+    V around[9] = {};
+    addTerms<S, W>(work, along, entry, lane, block);
+    addTerms<S, W>(work, along + work.fibres.size, entry, lane, around);
+    const V trace = around[0] + around[4] + around[8];
+    for (int i = 0; i < 3; ++i) block[4 * i] += trace;
   }
 }
 
@@ -79,23 +114,13 @@ template <class S, int W>
 TETSKIN_INLINE void assembleEntry(const RowWork<S>& work, std::size_t entry, int lane, Lanes<S, W> block[9]) {
   using V = Lanes<S, W>;
   V sum[9] = {};
-  for (std::uint32_t term = work.sums[entry]; term < work.sums[entry + 1]; ++term) {
-    const std::uint32_t* indices = work.terms + 2 * kGroup * static_cast<std::size_t>(term) + lane;
-    const WideVector<S, W> p = vectorsAt<S, W>(work.corners, indices);
-    const WideVector<S, W> q = vectorsAt<S, W>(work.corners, indices + kGroup);
-    const V a[3] = {p.x, p.y, p.z}, b[3] = {q.x, q.y, q.z};
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) sum[3 * i + j] += a[i] * b[j];
-    }
-  }
-  for (std::uint32_t term = work.quadraticSums[entry]; term < work.quadraticSums[entry + 1]; ++term) {
-    addQuadraticTerm<S, W>(work, term, lane, sum);
-  }
+  addTerms<S, W>(work, work.corners, entry, lane, sum);
   const V trace = work.spread * (sum[0] + sum[4] + sum[8]);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) block[3 * i + j] = work.ratio * sum[3 * i + j] + sum[3 * j + i];
     block[4 * i] += trace;
   }
+  if (work.fibres.count > 0) addFibres<S, W>(work, entry, lane, block);
 }
 
 /// A mass below the last digits of its stiffness would be lost in the diagonal block, and the matrix would not be

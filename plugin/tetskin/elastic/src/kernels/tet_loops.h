@@ -81,7 +81,7 @@ void rotatedGradients(const TetWork<S, TetPack<S>>& work) {
       });
       V mu = S(0.5) * wide<S, W>(pack.shear + lane);
       if (work.changes) changeRest<S, W>(work, p, lane, r, mu);
-      const V factor = squareRoots<S, W>(alpha * mu);
+      const V factor = gradientFactor<S, W>(work, p, lane, alpha, mu);
       putCorners<S, W>(pack, lane, work.corners + kCorners<TetPack<S>> * (kGroup * p + static_cast<std::size_t>(lane)),
                        [&](const V& gx, const V& gy, const V& gz) {
                          return rotated<S, W>(r, factor * gx, factor * gy, factor * gz);

@@ -137,10 +137,12 @@ double BlockMatrix<S>::sweep(Order order, ParallelFor* threads, Kernel&& kernel)
 }
 
 template <class S>
-void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads, S spread) {
+void BlockMatrix<S>::assemble(const S* corners, S ratio, ParallelFor* threads, S spread,
+                              const kernels::FibreLayers<S>& fibres) {
   assert(corners || pattern_.neighbours.empty());
   sweep(Order::Any, threads, [&](Work& part, const Table& table) {
     part.corners = corners;
+    part.fibres = fibres;
     part.ratio = ratio;
     part.spread = spread;
     part.minMass = kMinMass<S>;

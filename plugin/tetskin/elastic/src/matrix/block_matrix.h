@@ -85,7 +85,9 @@ class TETSKIN_ELASTIC_API BlockMatrix {
   /// corners  see CorotatedTets::cornersForMatrix; null: no tets, so A = M
   /// ratio    lambda / mu
   /// spread   1 + sigma / mu, in a body that a tension sigma stretches in all directions: it resists rotations
-  void assemble(const S* corners, S ratio, ParallelFor* threads, S spread = S(1));
+  /// fibres   those of the tets
+  void assemble(const S* corners, S ratio, ParallelFor* threads, S spread = S(1),
+                const kernels::FibreLayers<S>& fibres = {});
 
   /// Fixes a node in all directions, in one direction, or in all but one.
   void fix(std::size_t node);

@@ -20,6 +20,7 @@ TetStiffness::TetStiffness(const RestTets& rest, const std::vector<std::uint32_t
   };
   for (const Tet& tet : rest.tets) add(tet, 1);
   for (const RestQuadraticTet& tet : rest.quadratic) add(tet.nodes, kQuadraticPoints);
+  perLayer_ = vectors;
   vectors_.resize(vectors);
 }
 
@@ -30,6 +31,8 @@ void TetStiffness::take(const MatrixSource<S>& source) {
   const RestTets& rest = source.rest;
   ratio_ = source.ratio;
   spread_ = source.spread;
+  layers_ = 1 + source.fibres.count;
+  vectors_.resize(perLayer_ * layers_);
   std::size_t next = 0;
   const auto addPoint = [&](std::size_t nodes, auto&& component) {
     Eigen::Vector3d& first = vectors_[next];
@@ -41,20 +44,24 @@ void TetStiffness::take(const MatrixSource<S>& source) {
     }
     next += nodes;
   };
-  for (std::size_t t = 0; t < rest.count(); ++t) {
-    addPoint(4, [&](std::size_t n, std::size_t k) { return source.corners[4 * (4 * t + n) + k]; });
-  }
-  for (std::size_t t = 0; t < rest.quadratic.size(); ++t) {
-    for (std::size_t point = 0; point < kQuadraticPoints; ++point) {
-      addPoint(kQuadraticNodes, [&](std::size_t n, std::size_t k) {
-        return source.corners[4 * (rest.quadraticCorner(t, n) + k) + point];
-      });
+  for (std::size_t layer = 0; layer < layers_; ++layer) {
+    const S* const corners = layer == 0 ? source.corners : source.fibres.corners + (layer - 1) * source.fibres.size;
+    for (std::size_t t = 0; t < rest.count(); ++t) {
+      addPoint(4, [&](std::size_t n, std::size_t k) { return corners[4 * (4 * t + n) + k]; });
+    }
+    for (std::size_t t = 0; t < rest.quadratic.size(); ++t) {
+      for (std::size_t point = 0; point < kQuadraticPoints; ++point) {
+        addPoint(kQuadraticNodes,
+                 [&](std::size_t n, std::size_t k) { return corners[4 * (rest.quadraticCorner(t, n) + k) + point]; });
+      }
     }
   }
   assert(next == vectors_.size());
 }
 
-Eigen::Matrix3d TetStiffness::stress(const Eigen::Matrix3d& gradient) const {
+Eigen::Matrix3d TetStiffness::stress(const Eigen::Matrix3d& gradient, std::size_t layer) const {
+  if (layer % 2 == 1) return gradient.trace() * Eigen::Matrix3d::Identity();
+  if (layer > 0) return gradient;
   Eigen::Matrix3d sum = spread_ * gradient + gradient.transpose();
   sum.diagonal().array() += ratio_ * gradient.trace();
   return sum;
@@ -72,6 +79,10 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
         for (int k = 0; k < 3; ++k) g[3 * i + k] += v[i] * a[k];
       }
     }
+    if (at.layer > 0) {
+      addFibres(at, Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(g), impulses);
+      continue;
+    }
     const double bulk = ratio_ * (g[0] + g[4] + g[8]), more = spread_ - 1.0;
     const double xx = 2.0 * g[0] + bulk, yy = 2.0 * g[4] + bulk, zz = 2.0 * g[8] + bulk;
     const double xy = g[1] + g[3], xz = g[2] + g[6], yz = g[5] + g[7];
@@ -85,6 +96,14 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
         to[i] += more * (g[3 * i] * a[0] + g[3 * i + 1] * a[1] + g[3 * i + 2] * a[2]);
       }
     }
+  }
+}
+
+void TetStiffness::addFibres(const StiffnessPoint& at, const Eigen::Matrix3d& gradient,
+                             std::vector<double>& impulses) const {
+  const Eigen::Matrix3d rate = stress(gradient, at.layer);
+  for (std::size_t n = 0; n < at.nodes; ++n) {
+    Eigen::Map<Eigen::Vector3d>(&impulses[3 * std::size_t{at.slots[n]}]) += rate * at.vectors[n];
   }
 }
 

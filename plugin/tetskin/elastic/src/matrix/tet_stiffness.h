@@ -13,11 +13,12 @@
 namespace tetskin::elastic_detail {
 
 /// An integration point of a tet: a linear tet has one, a quadratic tet four. A motion v of the nodes has the gradient
-/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + spread G + G^T) a_n.
+/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + spread G + G^T) a_n. Fibres have points of their own:
+/// those of even layers get tr(G) a_n, of odd ones G a_n.
 struct StiffnessPoint {
   const std::uint32_t* slots = nullptr;      ///< of the tet's nodes
   const Eigen::Vector3d* vectors = nullptr;  ///< a, by node
-  std::size_t nodes = 0;
+  std::size_t nodes = 0, layer = 0;          ///< layer: 0 for the tet, 1 and more for its fibres
 };
 
 /// The data from which a matrix was assembled.
@@ -27,6 +28,7 @@ struct MatrixSource {
   const S* corners;     ///< see CorotatedTets::cornersForMatrix
   double ratio;         ///< lambda / mu
   double spread = 1.0;  ///< see BlockMatrix::assemble
+  kernels::FibreLayers<S> fibres = {};
 };
 
 class TetStiffness {
@@ -40,18 +42,22 @@ class TetStiffness {
 
   /// Adds alpha K times velocities to impulses, both 3 scalars per slot. Cost O(T)
   void addProduct(const std::vector<double>& velocities, std::vector<double>& impulses) const;
-  /// The impulses per gradient G at a point: ratio tr(G) + spread G + G^T.
-  Eigen::Matrix3d stress(const Eigen::Matrix3d& gradient) const;
+  /// The impulses per gradient G at a point of a layer: ratio tr(G) + spread G + G^T.
+  Eigen::Matrix3d stress(const Eigen::Matrix3d& gradient, std::size_t layer = 0) const;
 
-  std::size_t pointCount() const { return counts_.size(); }
+  std::size_t pointCount() const { return counts_.size() * layers_; }
   StiffnessPoint point(std::size_t k) const {
-    return {&slots_[firstSlots_[k]], &vectors_[firstVectors_[k]], counts_[k]};
+    const std::size_t layer = k / counts_.size(), own = k % counts_.size();
+    return {&slots_[firstSlots_[own]], &vectors_[layer * perLayer_ + firstVectors_[own]], counts_[own], layer};
   }
 
  private:
+  void addFibres(const StiffnessPoint& at, const Eigen::Matrix3d& gradient, std::vector<double>& impulses) const;
+
   std::vector<std::uint32_t> slots_;                               ///< of all tets' nodes
   std::vector<std::uint32_t> firstSlots_, firstVectors_, counts_;  ///< by point
   std::vector<Eigen::Vector3d> vectors_;
+  std::size_t perLayer_ = 0, layers_ = 1;  ///< vectors of a layer; the first layer is that of the tets
   double ratio_ = 0.0, spread_ = 1.0;
 };
 

@@ -88,6 +88,55 @@ void CorotatedTets<S>::makeChanges() {
 }
 
 template <class S>
+void CorotatedTets<S>::setExtraDamping(const std::vector<double>& byTet) {
+  forBoth([&](auto& packed) { packed.extraDamping.assign(byTet.empty() ? 0 : kGroup * packed.packs.size(), 0.0); });
+  if (byTet.empty()) return;
+  forTets(
+      [&](auto& packed, std::size_t tet, const auto& cageTets) { packed.extraDamping[tet] = meanOf(byTet, cageTets); });
+}
+
+template <class S>
+void CorotatedTets<S>::findFactors(double perSecond) {
+  perSecond_ = perSecond;
+  isStiffer_ = false;
+  forBoth([&](auto& packed) {
+    const bool any = !packed.stiffer.empty() || !packed.extraDamping.empty();
+    packed.factors.resize(any ? kGroup * packed.packs.size() : 0);
+    for (std::size_t tet = 0; tet < packed.factors.size(); ++tet) {
+      const double stiffer = packed.stiffer.empty() ? 1.0 : packed.stiffer[tet];
+      packed.factors[tet] = static_cast<S>(stiffer * dampedFactor(packed, tet));
+    }
+  });
+}
+
+template <class S>
+std::vector<double> CorotatedTets<S>::extraShares() {
+  std::vector<double> shares;
+  const auto add = [&](auto& packed, std::size_t tets) {
+    for (std::size_t tet = 0; tet < tets; ++tet) shares.push_back(1.0 - 1.0 / dampedFactor(packed, tet));
+  };
+  add(linear_, rest_.count());
+  add(quadratic_, rest_.quadratic.size());
+  return shares;
+}
+
+template <class S>
+bool CorotatedTets<S>::serializeFactors(StateStream& stream) {
+  bool changed = false;
+  stream(perSecond_);
+  forBoth([&](auto& packed) {
+    const AlignedVector<S> before = packed.factors;
+    stream.array(packed.factors);
+    if (!packed.factors.empty() && packed.factors.size() != kGroup * packed.packs.size()) {
+      packed.factors.clear();
+      stream.fail();
+    }
+    changed |= before != packed.factors;
+  });
+  return changed;
+}
+
+template <class S>
 bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet) {
   if (byTet.empty() && madeVolumes_.empty()) return false;
   if (madeVolumes_.empty()) {
@@ -108,38 +157,81 @@ bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet) {
 }
 
 template <class S>
-void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet) {
+void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer) {
   if (byTet.empty() && !isGiven_) return;
   makeChanges();
-  forBoth([&](auto& packed) { packed.given.resize(9 * packed.flowed.size(), S(0)); });
-  double whole = 0.0, stiffer = 0.0;
+  forBoth([&](auto& packed) {
+    packed.given.resize(9 * packed.flowed.size(), S(0));
+    packed.stiffenings.resize(kGroup * packed.packs.size(), 1.0);
+  });
+  const bool known = isGiven_ && !byTet.empty() && given_.size() == byTet.size();
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
-    using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+    const bool stays = known && std::all_of(cageTets.begin(), cageTets.end(), [&](auto own) {
+                         const auto k = static_cast<std::size_t>(own);
+                         return given_[k] == byTet[k];
+                       });
+    if (stays) return;
     // Rounded as it is stored: what has flowed is found again exactly.
-    const Matrix given = byTet.empty() ? Matrix(Matrix::Identity())
-                                       : Matrix(meanOf(byTet, cageTets).template cast<S>().template cast<double>());
-    const double volume = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
-    whole += volume;
-    stiffer += volume * given.determinant() * given.inverse().squaredNorm() / 3.0;
-    for (std::size_t point = 0; point < Pack::kPoints; ++point) {
-      const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
-      S* const change = &packed.changes[kChange * at + lane];
-      S* const own = &packed.given[9 * kGroup * at + lane];
-      const Matrix before = isGiven_ ? narrowMatrix(own) : Matrix(Matrix::Identity());
-      // What stays has the same bits.
-      if (before == given) {
-        if (!isGiven_) putMatrix(given, own);
-        continue;
-      }
-      Matrix plastic = Matrix::Identity();  // P^-1
-      if (everFlowed_) plastic = before * (plastic + narrowMatrix(change));
-      putMatrix(given, own);
-      putMatrix(given.inverse() * plastic - Matrix::Identity(), change);
-      change[9 * kGroup] = static_cast<S>(given.determinant());
+    setGiven(packed, tet,
+             byTet.empty() ? Matrix(Matrix::Identity())
+                           : Matrix(meanOf(byTet, cageTets).template cast<S>().template cast<double>()));
+  });
+  given_ = byTet;
+  isGiven_ = !byTet.empty();
+  setStiffer(stiffer);
+  findStiffening();
+}
+
+template <class S>
+template <class Tets>
+void CorotatedTets<S>::setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& given) {
+  using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+  const Matrix inverse = given.inverse();
+  const double volume = given.determinant();
+  packed.stiffenings[tet] = volume * inverse.squaredNorm() / 3.0;
+  for (std::size_t point = 0; point < Pack::kPoints; ++point) {
+    const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
+    S* const change = &packed.changes[kChange * at + lane];
+    S* const own = &packed.given[9 * kGroup * at + lane];
+    const Matrix before = isGiven_ ? narrowMatrix(own) : Matrix(Matrix::Identity());
+    // What stays has the same bits.
+    if (before == given) {
+      if (!isGiven_) putMatrix(given, own);
+      continue;
+    }
+    Matrix plastic = Matrix::Identity();  // P^-1
+    if (everFlowed_) plastic = before * (plastic + narrowMatrix(change));
+    putMatrix(given, own);
+    putMatrix(inverse * plastic - Matrix::Identity(), change);
+    change[9 * kGroup] = static_cast<S>(volume);
+  }
+}
+
+template <class S>
+void CorotatedTets<S>::setStiffer(const std::vector<double>& byTet) {
+  constexpr double kStale = 1.25;  // forces may be this much stiffer than the matrix
+  forBoth([&](auto& packed) { packed.stiffer.assign(byTet.empty() ? 0 : kGroup * packed.packs.size(), 1.0); });
+  if (byTet.empty()) return;
+  forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
+    const double own = packed.stiffer[tet] = meanOf(byTet, cageTets);
+    const double counted = packed.factors.empty() ? 1.0 : static_cast<double>(packed.factors[tet]);
+    isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
+  });
+}
+
+template <class S>
+void CorotatedTets<S>::findStiffening() {
+  stiffening_ = 1.0;
+  if (!isGiven_) return;
+  double whole = 0.0, now = 0.0;
+  forBoth([&](auto& packed) {
+    for (std::size_t tet = 0; tet < packed.stiffenings.size(); ++tet) {
+      const auto volume = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
+      whole += volume;
+      now += (packed.stiffer.empty() ? 1.0 : packed.stiffer[tet]) * volume * packed.stiffenings[tet];
     }
   });
-  isGiven_ = !byTet.empty();
-  stiffening_ = isGiven_ ? stiffer / whole : 1.0;
+  stiffening_ = now / whole;
 }
 
 template <class S>
@@ -232,13 +324,17 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
       packed.flowed.clear();
       packed.given.clear();
       packed.yields.clear();
+      packed.stiffer.clear();
+      packed.stiffenings.clear();
     });
-    isGiven_ = everFlowed_ = returns_ = yields_ = false;
+    given_.clear();
+    isStiffer_ = isGiven_ = everFlowed_ = returns_ = yields_ = false;
     stiffening_ = 1.0;
     return changed;
   }
   bool changed = false;
   makeChanges();
+  if (stream.restoring()) given_.clear();
   stream(isGiven_);
   stream(everFlowed_);
   stream(returns_);
@@ -259,15 +355,20 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
   return changed;
 }
 
-#define TETSKIN_INSTANTIATE(S)                                                               \
-  template void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet); \
-  template bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet);       \
-  template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);               \
-  template void CorotatedTets<S>::forgetFlow();                                              \
-  template void CorotatedTets<S>::flowFor(double seconds);                                   \
-  template double CorotatedTets<S>::flowShare(double seconds) const;                         \
-  template std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets);       \
-  template bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix);
+#define TETSKIN_INSTANTIATE(S)                                                              \
+  template void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet, \
+                                           const std::vector<double>& stiffer);             \
+  template bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet);      \
+  template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);              \
+  template void CorotatedTets<S>::forgetFlow();                                             \
+  template void CorotatedTets<S>::setExtraDamping(const std::vector<double>& byTet);        \
+  template void CorotatedTets<S>::findFactors(double perSecond);                            \
+  template std::vector<double> CorotatedTets<S>::extraShares();                             \
+  template void CorotatedTets<S>::flowFor(double seconds);                                  \
+  template double CorotatedTets<S>::flowShare(double seconds) const;                        \
+  template std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets);      \
+  template bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix);     \
+  template bool CorotatedTets<S>::serializeFactors(StateStream& stream);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE
 

@@ -110,6 +110,25 @@ void CorotatedTets<S>::setMaterial(const Lame& lame) {
 }
 
 template <class S>
+void CorotatedTets<S>::setFibres(const std::vector<std::vector<TetFibre>>& families,
+                                 const std::vector<std::uint32_t>& slotOf) {
+  fibres_.reset();
+  const auto any = [](const std::vector<TetFibre>& family) {
+    return std::any_of(family.begin(), family.end(), [](const TetFibre& fibre) { return fibre.stiffness > 0.0; });
+  };
+  if (std::any_of(families.begin(), families.end(), any)) fibres_.emplace(rest_, slotOf, families, mu_);
+}
+
+template <class S>
+double CorotatedTets<S>::stiffening() const {
+  if (!fibres_) return stiffening_;
+  double volume = 0.0;
+  for (const double own : rest_.volumes) volume += own;
+  for (const RestQuadraticTet& tet : rest_.quadratic) volume += tet.volume;
+  return stiffening_ + fibres_->stiffness() / (volume * mu_ * (2.0 + static_cast<double>(ratio_)));
+}
+
+template <class S>
 template <class Pack>
 kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size_t task) {
   kernels::TetWork<S, Pack> work;
@@ -120,6 +139,7 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.assembled = packed.assembled.data();
   work.corners = corners_.data() + 4 * packed.firstCorner;
   work.alphas = packed.alphas.data();
+  work.factors = packed.factors.empty() ? nullptr : packed.factors.data();
   work.frames = frames_;
   work.partOf = partOf_;
   if (packed.changes.empty()) return work;
@@ -178,6 +198,7 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
   if (!threads) {
     std::fill_n(out, 4 * slots_, S(0));
     cornerForces(points, out, false, nullptr);
+    if (fibres_) fibres_->addForces(points, frames_, partOf_, !isAsked_, out);
     return;
   }
   const auto& table = kernels::elasticInUse<S>(deterministic_);
@@ -192,6 +213,7 @@ void CorotatedTets<S>::forces(const S* points, S* out, ParallelFor* threads) {
     work.points = out;
     table.sum(work);
   });
+  if (fibres_) fibres_->addForces(points, frames_, partOf_, !isAsked_, out);
 }
 
 /// Restores everything, so that the next step finds its rotations from the same start, and assembles its matrix, or
@@ -224,7 +246,7 @@ template <class S>
 double CorotatedTets<S>::energy(const S* points, ParallelFor* threads) {
   double energy = 0.0;
   ask([&] { energy = cornerForces(points, nullptr, true, threads); });
-  return energy;
+  return fibres_ ? energy + fibres_->energy(points, frames_, partOf_) : energy;
 }
 
 template <class S>
@@ -235,12 +257,14 @@ void CorotatedTets<S>::probeForces(const S* points, S* out, ParallelFor* threads
 template <class S>
 double CorotatedTets<S>::meanTurn() const {
   const std::size_t scalars = linear_.rotations.size() + quadratic_.rotations.size();  // four per rotation
-  return std::sqrt(16.0 * turned_ / static_cast<double>(scalars));
+  const double own = std::sqrt(16.0 * turned_ / static_cast<double>(scalars));
+  return fibres_ ? std::max(own, std::sqrt(fibres_->outdated().mean)) : own;
 }
 
 template <class S>
 double CorotatedTets<S>::maxTurn() const {
-  return 4.0 * arcSine(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
+  const double own = 4.0 * arcSine(std::min(1.0, 0.5 * std::sqrt(static_cast<double>(maxTurned_))));
+  return fibres_ ? std::max(own, std::sqrt(fibres_->outdated().largest)) : own;
 }
 
 template <class S>
@@ -252,6 +276,7 @@ const S* CorotatedTets<S>::cornersForMatrix(S alpha, ParallelFor* threads, S fla
     packed.assembledChanges = packed.changes;
     if (flatAlpha_ > S(0)) packed.alphas.resize(packed.rotations.size() / 4);
   });
+  if (fibres_) fibres_->assemble(static_cast<double>(alpha));
   return corners(alpha, flatAlpha_ > S(0) ? flatAlpha_ : alpha, points_, threads);
 }
 
@@ -263,11 +288,13 @@ const S* CorotatedTets<S>::cornersWithoutFlat(S alpha, ParallelFor* threads) {
     packed.assembledChanges = packed.changes;
     packed.alphas.resize(packed.rotations.size() / 4);
   });
+  if (fibres_) fibres_->assemble(static_cast<double>(alpha));
   return corners(alpha, S(0), points_, threads);
 }
 
 template <class S>
 const S* CorotatedTets<S>::cornersAgain(S alpha, ParallelFor* threads) {
+  if (fibres_) fibres_->assembleAgain(static_cast<double>(alpha));
   return corners(alpha, flatAlpha_ > S(0) ? flatAlpha_ : alpha, nullptr, threads);
 }
 
@@ -292,6 +319,8 @@ bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   const S flatAlpha = flatAlpha_;
   stream(flatAlpha_);
   changed |= flatAlpha != flatAlpha_;
+  changed |= serializeFactors(stream);
+  if (fibres_) changed |= fibres_->serialize(stream);
   forBoth([&](auto& packed) { changed |= serializeAssembled(stream, packed); });
   if (flatAlpha_ > S(0)) forBoth([&](auto& packed) { changed |= serializeAlphas(stream, alpha, packed); });
   return changed;

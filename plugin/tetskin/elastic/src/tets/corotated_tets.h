@@ -9,10 +9,12 @@
 #include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/core/types.h>
 #include <tetskin/elastic/material_changes.h>
+#include <tetskin/elastic/src/tets/fibre_tets.h>
 #include <tetskin/elastic/src/tets/material.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -68,9 +70,25 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool setStiffnessScale(const std::vector<double>& byTet);
   /// Shapes at which the tets are at rest beside their plastic flow: deformation gradients from the first ones, by rows
   /// and tet of the cage; empty: the first ones. Plastic strains stay. Cost O(T)
-  void setGiven(const std::vector<std::array<double, 9>>& byTet);
-  /// The stiffness of the given shapes over that of the first ones, in the mean.
-  double stiffening() const { return stiffening_; }
+  /// stiffer  factors of the matrix by tet of the cage, at least 1, where a shape that follows the deformation makes
+  ///          forces stiffer than the tet is; empty: 1
+  void setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer = {});
+  /// Some tet's forces are stiffer, by such a factor, than the matrix counts.
+  bool isStiffer() const { return isStiffer_ || (fibres_ && fibres_->outdated().stiffer); }
+  /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
+  void setExtraDamping(const std::vector<double>& byTet);
+  /// Counts all this in the matrix from its next assembly on.
+  /// perSecond  share of a tet's stiffness that a second of damping adds to the matrix
+  void findFactors(double perSecond);
+  /// The shares that extra damping has of the tets' parts in the matrix, of linear ones first. Cost O(T)
+  std::vector<double> extraShares();
+  /// The stiffness of the given shapes, and of the fibres, over that of the first shapes, in the mean.
+  double stiffening() const;
+  /// See FibreTets; empty: none. Call it again after the stiffness scale has changed.
+  /// slotOf  by node
+  void setFibres(const std::vector<std::vector<TetFibre>>& families, const std::vector<std::uint32_t>& slotOf);
+  /// Those of the last corners.
+  kernels::FibreLayers<S> fibreLayers() const { return fibres_ ? fibres_->layers() : kernels::FibreLayers<S>(); }
   /// plasticity  checked; null: nothing flows any more, and what has flowed stays. For this material: call it again
   ///             after `setMaterial`
   void setPlasticity(const Plasticity* plasticity);
@@ -97,6 +115,9 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     AlignedVector<S> rotations, assembled;  ///< by pack and point
     AlignedVector<S> alphas;                ///< by pack and point, see TetWork; empty until some tet may be flat
     AlignedVector<S> changes, assembledChanges, given, yields, flowed;  ///< see TetWork; empty until they are needed
+    std::vector<double> stiffer, extraDamping;                          ///< by tet in the packs; empty: 1, 0
+    std::vector<double> stiffenings;  ///< by tet in the packs: the stiffness of its given shape over the first
+    AlignedVector<S> factors;         ///< see TetWork; empty: 1
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };
@@ -113,8 +134,18 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   }
   template <class Visit>
   void forTets(Visit&& visit);
+  /// By how much extra damping makes a tet count more in the matrix.
+  template <class Packed>
+  double dampedFactor(const Packed& packed, std::size_t tet) const {
+    return packed.extraDamping.empty() ? 1.0 : 1.0 + perSecond_ * packed.extraDamping[tet];
+  }
   bool changes() const { return !linear_.changes.empty() || !quadratic_.changes.empty(); }
   void makeChanges();
+  bool serializeFactors(StateStream& stream);
+  template <class Tets>
+  void setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& given);
+  void setStiffer(const std::vector<double>& byTet);
+  void findStiffening();
   bool serializeChanges(StateStream& stream, bool ofMatrix);
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
@@ -133,6 +164,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
+  std::vector<std::array<double, 9>> given_;  ///< by the last `setGiven`; empty: not known
+  std::optional<FibreTets<S>> fibres_;
   std::vector<double> madeVolumes_;  ///< of `rest_` as it was made, linear and quadratic; empty: it is as it was made
   Linear linear_;
   Quadratic quadratic_;
@@ -149,6 +182,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
   double stiffening_ = 1.0;
   bool isGiven_ = false;      ///< shapes other than the first ones
+  bool isStiffer_ = false;    ///< see `isStiffer`
+  double perSecond_ = 0.0;    ///< see `findFactors`
   bool everFlowed_ = false;   ///< it may have
   bool yields_ = false;       ///< some tet was beyond its yield surface in the last `forces`
   bool returns_ = false;      ///< since `forgetFlow`

@@ -182,6 +182,7 @@ void Cutter::cutTets() {
   repeat(cage.stiffnessFactor, from);
   repeat(cage.paintedStiffness, from);
   repeat(cage.paintedDensity, from);
+  repeat(cage.paintedDamping, from);
   repeat(cage.component, from);
   // Data about duplicates, and about parts of tets, does not apply to the parts.
   cage.vertexTets.clear();

@@ -162,6 +162,7 @@ Status VtkCageData::readArray(const VtkArray& array) {
   if (is(Owner::Cells, "factor")) return readInto(array, 1, cage_.stiffnessFactor);
   if (is(Owner::Cells, "painted_stiffness")) return readInto(array, 1, cage_.paintedStiffness);
   if (is(Owner::Cells, "painted_density")) return readInto(array, 1, cage_.paintedDensity);
+  if (is(Owner::Cells, "painted_damping")) return readInto(array, 1, cage_.paintedDamping);
   if (is(Owner::Cells, "part")) return readInto(array, 1, cage_.component);
   if (is(Owner::Cells, "lattice_tet")) return readInto(array, 1, cage_.sourceTet);
   if (is(Owner::Cells, "quadratic_tet")) return readInto(array, 1, cage_.quadraticTet);
@@ -216,6 +217,7 @@ void VtkCageData::keepTets(const std::vector<bool>& isTet) {
   keepValues(cage_.stiffnessFactor, isTet);
   keepValues(cage_.paintedStiffness, isTet);
   keepValues(cage_.paintedDensity, isTet);
+  keepValues(cage_.paintedDamping, isTet);
   keepValues(cage_.component, isTet);
   keepValues(cage_.sourceTet, isTet);
   keepValues(cage_.quadraticTet, isTet);
@@ -233,13 +235,14 @@ void appendCageData(std::string& text, const Cage& cage) {
   appendFieldArray(text, "vertex_tets", "int", cage.vertexTets, 1);
 
   const bool ofCells = !(cage.volumeFraction.empty() && cage.stiffnessFactor.empty() && cage.component.empty() &&
-                         cage.paintedStiffness.empty() && cage.paintedDensity.empty() && cage.sourceTet.empty() &&
-                         cage.quadraticTet.empty() && cage.fineVolumeFraction.empty());
+                         cage.paintedStiffness.empty() && cage.paintedDensity.empty() && cage.paintedDamping.empty() &&
+                         cage.sourceTet.empty() && cage.quadraticTet.empty() && cage.fineVolumeFraction.empty());
   if (ofCells) appendHeader(text, "CELL_DATA", cage.mesh.tetCount());
   appendScalars(text, "fill", "double", cage.volumeFraction);
   appendScalars(text, "factor", "double", cage.stiffnessFactor);
   appendScalars(text, "painted_stiffness", "double", cage.paintedStiffness);
   appendScalars(text, "painted_density", "double", cage.paintedDensity);
+  appendScalars(text, "painted_damping", "double", cage.paintedDamping);
   appendScalars(text, "part", "int", cage.component);
   appendScalars(text, "lattice_tet", "int", cage.sourceTet);
   appendScalars(text, "quadratic_tet", "int", cage.quadraticTet);

@@ -11,8 +11,8 @@ namespace tetskin::bullet_detail {
 
 ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body,
                            const elastic_detail::RestTets& linear, const ElasticMaterial& material,
-                           std::vector<double> stiffnessScale, std::vector<QuadraticShape> quadratic,
-                           const SolverSettings& settings)
+                           std::vector<double> stiffnessScale, std::vector<double> paintedDamping,
+                           std::vector<QuadraticShape> quadratic, const SolverSettings& settings)
     : material_(material), settings_(settings) {
   assert(checkMaterial(material).ok());
   assert(stiffnessScale.empty() || stiffnessScale.size() == linear.count());
@@ -20,6 +20,7 @@ ElasticForce::ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody
   body_.body = &body;
   setWorld(world);
   body_.stiffnessScale = std::move(stiffnessScale);
+  body_.paintedDamping = std::move(paintedDamping);
   body_.quadratic = std::move(quadratic);
   body_.build(linear, material);
 }
@@ -68,6 +69,7 @@ void ElasticForce::checkState(WorldStream& stream) {
   stream.same(quadratic + (faces << 32), "a soft body has other quadratic tets, or another surface of its pressure");
   stream.same(body_.dynamics->componentCount(), "a soft body has another number of parts");
   stream.same(body_.changes.muscleCount(), "a soft body has another number of muscles");
+  stream.same(body_.changes.fibresCount(), "a soft body has other fibres");
   stream.same(restMeasureOf(*body_.body), "a soft body has another shape at rest, or was scaled");
 }
 

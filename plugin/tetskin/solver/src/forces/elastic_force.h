@@ -20,9 +20,10 @@ class ElasticForce : public InactiveForce {
   /// linear          tets of the body: see `restTetsOf`
   /// material        checked: see `checkMaterial`
   /// stiffnessScale  tetCount, above 0; or empty: 1
+  /// paintedDamping  tetCount, 0 or more; or empty: 1
   /// quadratic       of the body's cage
   ElasticForce(btDeformableMultiBodyDynamicsWorld& world, btSoftBody& body, const elastic_detail::RestTets& linear,
-               const ElasticMaterial& material, std::vector<double> stiffnessScale,
+               const ElasticMaterial& material, std::vector<double> stiffnessScale, std::vector<double> paintedDamping,
                std::vector<QuadraticShape> quadratic, const SolverSettings& settings);
 
   void setMaterial(const ElasticMaterial& material);

@@ -166,9 +166,10 @@ Status checkGas(const btSoftBody& body, double pressure, double outside) {
 void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMaterial& material) {
   assert(body && linear.count() == static_cast<std::size_t>(body->m_tetras.size()));
   if (stiffnessScale.size() != linear.count()) stiffnessScale.clear();
+  if (paintedDamping.size() != linear.count()) paintedDamping.clear();
   const bool sameTets = dynamics && tetCount == linear.count();
   if (dynamics && !sameTets) quadratic.clear();
-  if (!sameTets) changes = elastic_detail::MaterialChanges(linear.count());
+  if (!sameTets) changes = elastic_detail::MaterialChanges(linear.count(), paintedDamping);
   tetCount = linear.count();
   const double lastSeconds = dynamics ? dynamics->lastSeconds() : 0.0;
   const auto nodes = static_cast<std::size_t>(body->m_nodes.size());
@@ -187,18 +188,15 @@ void ForcedBody::build(const elastic_detail::RestTets& linear, const ElasticMate
 void ForcedBody::setMaterial(const ElasticMaterial& material) {
   assert(dynamics);
   dynamics->setMaterial(elastic_detail::lameOf(material.youngsModulus, material.poissonRatio));
-  dynamics->setDamping(material.damping);
   applyChanges(material);
 }
 
 void ForcedBody::applyShapes(const ElasticMaterial& material) {
-  changes.applyShapesTo(*dynamics->tets(), material.poissonRatio, material.youngsModulus);
+  changes.applyShapesTo(*dynamics, material.poissonRatio, material.youngsModulus);
 }
 
 void ForcedBody::applyChanges(const ElasticMaterial& material) {
-  if (dynamics->tets()->setStiffnessScale(changes.stiffnessScale()))
-    dynamics->setMaterial(elastic_detail::lameOf(material.youngsModulus, material.poissonRatio));
-  changes.applyTo(*dynamics->tets(), material.poissonRatio, material.youngsModulus);
+  changes.applyTo(*dynamics, material.poissonRatio, material.youngsModulus, material.damping);
 }
 
 void ForcedBody::reset(const ElasticMaterial& material) {

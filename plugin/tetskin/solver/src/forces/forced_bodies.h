@@ -62,6 +62,7 @@ Status checkGas(const btSoftBody& body, double pressure, double outside);
 struct ForcedBody {
   btSoftBody* body = nullptr;
   std::vector<double> stiffnessScale;       ///< by tet, or empty
+  std::vector<double> paintedDamping;       ///< the same
   std::vector<QuadraticShape> quadratic;    ///< those whose parts are still tets of the body, see `withQuadraticTets`
   elastic_detail::MaterialChanges changes;  ///< what the owner has set
   std::unique_ptr<Dynamics> dynamics;

@@ -93,6 +93,9 @@ Status validateAttributes(const Cage& cage) {
     status = checkValues(cage.paintedStiffness, cage.mesh.tetCount(), "paintedStiffness", "tets", "above 0", positive);
   if (status.ok())
     status = checkValues(cage.paintedDensity, cage.mesh.tetCount(), "paintedDensity", "tets", "above 0", positive);
+  if (status.ok())
+    status = checkValues(cage.paintedDamping, cage.mesh.tetCount(), "paintedDamping", "tets", "finite, and 0 or more",
+                         [](double value) { return value >= 0.0 && std::isfinite(value); });
   if (status.ok()) status = checkValues(cage.masses, cage.mesh.nodeCount(), "masses", "nodes", "above 0", positive);
   if (status.ok()) status = checkNumbers(cage.component, cage.mesh.tetCount(), "component");
   if (status.ok()) status = checkNumbers(cage.sourceTet, cage.mesh.tetCount(), "sourceTet");

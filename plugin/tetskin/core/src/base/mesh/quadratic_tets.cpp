@@ -126,6 +126,7 @@ Result<Cage> refineQuadratic(const Cage& linear) {
   for (std::size_t t = 0; t < cage.mesh.tetCount(); ++t) cage.quadraticTet.push_back(static_cast<int>(t / kSubTets));
   cage.paintedStiffness = eightfold(linear.paintedStiffness);
   cage.paintedDensity = eightfold(linear.paintedDensity);
+  cage.paintedDamping = eightfold(linear.paintedDamping);
   refineFill(linear, cage);
   refineMasses(linear, cage);
   cage.meshHash = linear.meshHash;
