@@ -115,8 +115,7 @@ Change flowing(double yieldStrain) {
   return change;
 }
 
-/// Every fourth tet contracts.
-/// activation  by frame
+/// Every fourth tet contracts, as far as the frame says.
 Change contracting(std::size_t tets, double (*activation)(int)) {
   Change change;
   change.begin = [tets](ElasticBody<float>& body) {
