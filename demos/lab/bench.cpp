@@ -18,6 +18,7 @@
 #include <memory>
 
 #include "bench/budget_cases.h"
+#include "bench/changing_cases.h"
 #include "bench/contact_cases.h"
 #include "bench/crowd_cases.h"
 #include "bench/palette_cases.h"
@@ -359,6 +360,7 @@ int main(int argc, char** argv) {
       registerUpdateSizes(options.tets);
       registerBuildBodySizes();
       bench::registerStepCases();
+      bench::registerChangingCases();
       bench::registerSnapshotCases();
       bench::registerContactCases();
       bench::registerPileCases();

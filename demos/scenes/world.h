@@ -147,6 +147,8 @@ class World {
   const ReductionReport* reduction() const;
   /// The last body added, in the deformable world with a force of the library's.
   DeformableBody& deformable() { return *deformableBodies_.back(); }
+  /// All such bodies, in the order in which they were added.
+  const std::vector<std::unique_ptr<DeformableBody>>& deformables() const { return deformableBodies_; }
   /// A hash of the present nodes of all soft bodies, each position as three floats, seeded by `seed`: equal runs have
   /// equal hashes.
   std::uint64_t hashOfNodes(std::uint64_t seed) const;

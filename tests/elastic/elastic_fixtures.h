@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 #include <tetskin/core/cage.h>
-#include <tetskin/core/src/base/kernels/instruction_set.h>
 #include <tetskin/elastic/src/matrix/block_matrix.h>
 #include <tetskin/elastic/src/tets/corotated_tets.h>
 
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "dense_reference.h"
+#include "support/instruction_sets.h"
 
 namespace tetskin::test {
 
@@ -35,18 +35,6 @@ class WithScalar : public testing::Test {
   static constexpr double kEpsilon = std::numeric_limits<S>::epsilon();
 };
 using Scalars = testing::Types<float, double>;
-
-/// Calls visit() with each instruction set that this processor has.
-template <class Visit>
-void onEachInstructionSet(Visit&& visit) {
-  const InstructionSet before = instructionSet();
-  for (const InstructionSet set : availableInstructionSets()) {
-    const testing::ScopedTrace trace(__FILE__, __LINE__, toString(set));
-    setInstructionSet(set);
-    visit();
-  }
-  setInstructionSet(before);
-}
 
 /// Random numbers from -1 to 1, the same with every standard library.
 class Random {

@@ -185,7 +185,7 @@ scene_hashes() {
       fail "the hashes of the scene $scene are not those in hashes.txt, $expected"
     count=$((count + 1))
   done <"$folder/found_scenes.txt"
-  [ $count -eq 5 ] || fail "${*:2} printed $count scenes of 5"
+  [ $count -eq 6 ] || fail "${*:2} printed $count scenes of 6"
 }
 
 # run_tests FILTER PROGRAM [LAUNCHER...]: builds a program with tests in the application's folder, and runs those that

@@ -12,6 +12,7 @@
 #include <tetskin/touch/surface_joint.h>
 #include <tetskin/touch/surface_point.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace tetskin::test {
@@ -187,6 +188,63 @@ class Pit : public OnFloor {
   Soft body_{world(), model_, {0.0625, 2, 0.125}, firmness(50)};
 };
 
+/// Balls whose material changes as they fall on each other: each of the four ways has its own, the last has all.
+class Changing : public OnFloor {
+ public:
+  explicit Changing(const DeformableWorldOptions& options) : OnFloor(options) {
+    for (int n = 0; n < kBalls; ++n) {
+      const double aside = n % 2 - 0.5, height = 0.625 + 0.9375 * (n / 2);
+      const Eigen::Vector3d where =
+          n / 2 % 2 == 0 ? Eigen::Vector3d(aside, height, 0) : Eigen::Vector3d(0, height, aside);
+      balls_.push_back(std::make_unique<Soft>(world(), model_, where, firmness(60)));
+      require(contacts_->add(balls_.back()->body(), model_.shape()).ok());
+    }
+    for (const int n : {kClay, kAll}) require(ball(n).setPlasticity(clay()).ok());
+    for (const int n : {kMuscle, kAll}) require(ball(n).addMuscle(muscle()).ok());
+    require(ball(kGas).setGas(stress(0.0625), stress(0.25)).ok());
+    require(ball(kAll).setPressure(stress(0.03125)).ok());
+  }
+
+  /// Muscles flex and relax; what grows does so for a second, by an eighth. By frame 119, clay has flowed, and they
+  /// touch.
+  void act(int frame) override {
+    const int within = frame % 64;
+    const double activation = (within < 32 ? within : 64 - within) / 32.0;
+    for (const int n : {kMuscle, kAll}) require(ball(n).setActivation(0, activation).ok());
+    for (const int n : {kGrowth, kAll}) require(ball(n).setGrowth(1 + std::min(frame, 64) / 512.0).ok());
+    if (frame == 119) require(flowed(kClay) && flowed(kAll) && !contacts_->contacts().empty());
+  }
+
+ private:
+  enum { kClay, kMuscle, kGrowth, kGas, kAll, kBalls };
+
+  DeformableBody& ball(int n) { return *balls_[static_cast<std::size_t>(n)]->owner; }
+  double stress(double strain) { return strain * ball(0).youngsModulus(); }
+  bool flowed(int n) {
+    const std::vector<double> strains = ball(n).plasticStrains();
+    return *std::max_element(strains.begin(), strains.end()) > 0.01;
+  }
+  Plasticity clay() {
+    Plasticity made;
+    made.yieldStress = stress(0.015625);
+    made.hardening = stress(0.0625);
+    made.flowRate = 64;
+    made.largestStrain = 0.5;
+    return made;
+  }
+  Muscle muscle() {
+    Muscle made;
+    for (int t = 0; t < static_cast<int>(model_.cage.tets.size()); t += 2) made.tets.push_back(t);
+    made.fibres = {{0.5, 1, 0.25}};
+    made.stress = stress(0.25);
+    return made;
+  }
+  ReplayModel model_ = ballModel(3, 6);
+  Walls walls_{world(), 1};
+  std::vector<std::unique_ptr<Soft>> balls_;
+  std::unique_ptr<SoftContacts> contacts_ = SoftContacts::add(world()).value();
+};
+
 template <class Scene>
 std::unique_ptr<ReplayScene> make(const DeformableWorldOptions& options) {
   return std::make_unique<Scene>(options);
@@ -200,11 +258,12 @@ std::unique_ptr<ReplayScene> ReplayScene::create(const std::string& name, const 
   if (name == "drag") return make<Drag>(options);
   if (name == "twist") return make<Twist>(options);
   if (name == "pit") return make<Pit>(options);
+  if (name == "changing") return make<Changing>(options);
   return nullptr;
 }
 
 const std::vector<std::string>& replaySceneNames() {
-  static const std::vector<std::string> names = {"drop", "heap", "drag", "twist", "pit"};
+  static const std::vector<std::string> names = {"drop", "heap", "drag", "twist", "pit", "changing"};
   return names;
 }
 

@@ -43,7 +43,8 @@ class ReplayScene {
 };
 
 /// drop: a ball onto a dynamic ball, a fixed one and the floor; heap: 26 soft toys; drag: a ball with a hat, drawn by a
-/// spring; twist: a bar, wrung and released; pit: a ball falls among 48 rigid ones.
+/// spring; twist: a bar, wrung and released; pit: a ball falls among 48 rigid ones; changing: a heap of clay, of a
+/// muscle, of what grows, of gas, and of all of it.
 const std::vector<std::string>& replaySceneNames();
 
 using bullet_detail::stateHash;

@@ -73,7 +73,7 @@ std::vector<std::uint64_t> recorded(DeformableWorld& world, const std::string& p
 }
 
 class RecordedScenes : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Of, RecordedScenes, testing::Values("drag", "twist", "drop"));
+INSTANTIATE_TEST_SUITE_P(Of, RecordedScenes, testing::Values("drag", "twist", "drop", "changing"));
 
 TEST_P(RecordedScenes, ArePlayedToTheLastBitByAWorldToWhichNobodyDoesAnything) {
   const TemporaryFile file(GetParam());

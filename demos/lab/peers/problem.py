@@ -10,6 +10,8 @@ Each module in `adapters` has a class `Simulation` with these functions, which s
     simulation.start()                                what the peer compiles; afterwards nothing is added
     simulation.set_velocities(handle, rows)           of a soft body's nodes
     simulation.move(handle, position)                 before a step: where it takes a rigid body that is moved
+    simulation.lead(handle, positions)                before a step: where it takes the nodes that are led
+    simulation.release(handle)                        the nodes that were led are free
     simulation.step(dt)                               one frame, in the substeps of the setting
     simulation.nodes(handle), velocities(handle)      (nodes, 3)
     simulation.surface(handle)                        (vertices, 3): the skin, or the nodes without one
@@ -40,12 +42,14 @@ class Unsupported(Exception):
 
 @dataclass(frozen=True)
 class Material:
-    """youngs_modulus: Pa; density: kg/m3; damping: seconds, proportional to stiffness (Rayleigh)."""
+    """youngs_modulus: Pa; density: kg/m3; damping: seconds, proportional to stiffness (Rayleigh). yield_strain: of a bar
+    that is pulled, its stress over Young's modulus; None: elastic."""
     youngs_modulus: float = 5e5
     poisson_ratio: float = 0.3
     density: float = 100.0
     damping: float = 0.0
     friction: float = 0.5
+    yield_strain: float | None = None
 
     @property
     def lame(self):
@@ -56,7 +60,8 @@ class Material:
 
 @dataclass(frozen=True)
 class Body:
-    """A soft body, placed: nodes (n, 3), tets (t, 4) that are oriented positively, pinned (n,) booleans.
+    """A soft body, placed: nodes (n, 3), tets (t, 4) that are oriented positively, pinned (n,) booleans, led (n,): nodes
+    that the scene moves, until it releases them. swells: times its volume that it is to have.
 
     skin: positions (v, 3) and triangles (m, 3), counter-clockwise from outside, in the space of the nodes, or None:
     then its surface is that of the tets. contact: with the ground and with others; self_contact: also with itself.
@@ -65,6 +70,8 @@ class Body:
     tets: np.ndarray
     material: Material = field(default_factory=Material)
     pinned: np.ndarray | None = None
+    led: np.ndarray | None = None
+    swells: float = 1.0
     skin: tuple | None = None
     contact: bool = True
     self_contact: bool = False
@@ -77,6 +84,11 @@ class Body:
     @property
     def held(self):
         return np.zeros(len(self.nodes), bool) if self.pinned is None else self.pinned
+
+    @property
+    def fixed(self):
+        """Those that no force moves at the start: held or led."""
+        return self.held if self.led is None else self.held | self.led
 
     @property
     def masses(self):

@@ -30,6 +30,9 @@ struct Claim {
   double tolerance = 5e-3;
   ClaimEvent event = ClaimEvent::Free;
   bool compared = true;  ///< free bodies: with a reference in double precision, at a sixteenth of the step
+  /// The body has grown, begins at rest in its new size, and yields. What it stores is not known then: energies are
+  /// kinetic ones.
+  bool changing = false;
 };
 
 /// A name such as "free/sphere/E=1e+09/1kg/c=0.02/spin=10/dt=1_60/tol=0.005"

@@ -15,6 +15,7 @@
 #include "scenes/files.h"
 #include "scenes/placement.h"
 #include "scenes/serpent.h"
+#include "stress/changed.h"
 #include "stress/claim.h"
 
 namespace tetskin::stress {
@@ -101,6 +102,7 @@ double referenceExtent(const Claim& claim, const SoftObject& body) {
     elastic.nodeMasses.push_back(1.0 / static_cast<double>(soft.m_nodes[n].m_im));
   }
   auto reference = ElasticBody<double>::create(body.model().cage, elastic).value();
+  if (claim.changing) growAndYield(reference, claim.youngsModulus);
   for (std::size_t n = 0; n < reference.nodeCount(); ++n) {
     const btSoftBody::Node& node = soft.m_nodes[static_cast<int>(n)];
     Vector3d::Map(reference.positions()[n]) = toEigen(node.m_x);
@@ -126,16 +128,26 @@ struct Motion {
   Vector3d linear = Vector3d::Zero(), angular = Vector3d::Zero();
 };
 
-Motion motionOf(const SoftObject& body) {
+/// stores  whether what it stores is known
+Motion motionOf(const SoftObject& body, bool stores) {
   const RigidMotion whole = body.motion();
   Momentum momentum;
   addMomentum(momentum, body.soft());
   return {body.kineticEnergy(),
-          body.elasticEnergy(),
+          stores ? body.elasticEnergy() : 0.0,
           whole.mass * scenes::kEarth * whole.centroid.y(),
           reachOf(scenes::nodesOf(body.soft()), whole.centroid),
           momentum.linear,
           angularMomentumAbout(whole.centroid, body.soft())};
+}
+
+/// Enlarges a body about its centre, to the size at which it is at rest once it has grown.
+void enlarge(SoftObject& body) {
+  const Vector3d centre = body.motion().centroid;
+  for (int n = 0; n < body.soft().m_nodes.size(); ++n) {
+    btSoftBody::Node& node = body.soft().m_nodes[n];
+    node.m_x = node.m_q = toBullet(centre + kGrowth * (toEigen(node.m_x) - centre));
+  }
 }
 
 /// The body of a claim in its world.
@@ -178,9 +190,13 @@ ClaimRun::ClaimRun(const Claim& claim, Run& run)
     world_.addBox({0, boundingBox(mesh.positions).min().y() - 0.2 * size_ - 0.5, 0}, {20, 0.5, 20});
     world_.touchBySurface(body_);
   }
+  if (claim.changing) {
+    growAndYield(body_.deformable(), claim.youngsModulus);
+    enlarge(body_);
+  }
   const Vector3d drift = landing_ ? Vector3d(0.5, -2.0, 0.0) : Vector3d(0.2, 0.1, -0.1);
   body_.push(size_ * drift, claim.spin * Vector3d(1.0, 1.0, 0.3).normalized());
-  began_ = motionOf(body_);
+  began_ = motionOf(body_, !claim.changing);
   if (claim.event != ClaimEvent::Dragged) return;
   point_ = SurfaceTree::create(body_.model().binding, mesh).value().pointAtVertex(body_.soft(), 0).value();
   spring_ = SurfaceSpring::add(world_.bullet(), point_).value();
@@ -189,7 +205,7 @@ ClaimRun::ClaimRun(const Claim& claim, Run& run)
 
 bool ClaimRun::holdsTogether() const {
   const double tip = claim_.spin * size_, density = body_.motion().mass / totalVolume(body_.model().cage.mesh);
-  return density * tip * tip < claim_.youngsModulus;
+  return density * tip * tip < (claim_.changing ? kYieldStrain : 1.0) * claim_.youngsModulus;
 }
 
 void ClaimRun::step() {
@@ -201,7 +217,7 @@ void ClaimRun::step() {
 }
 
 bool ClaimRun::look() {
-  const Motion now = motionOf(body_);
+  const Motion now = motionOf(body_, !claim_.changing);
   raise(extent_, now.extent);
   const double fallen = landing_ ? began_.height - now.height : 0.0;
   const double chord = 1.0 / std::pow(std::cos(std::min(1.0, 0.5 * claim_.spin * claim_.seconds)), 2);

@@ -79,6 +79,7 @@ struct StressCase {
   StatusCode refusal = StatusCode::Ok;  ///< expected status of createSoftBody and bind, or of bind alone
   bool quick = false;                   ///< also runs with --quick
   bool lasts = false;          ///< a minute or more of simulated time, or one of thousands of claims: only with --long
+  bool changing = false;       ///< its bodies have grown, and yield: see `growAndYield`
   std::optional<Claim> claim;  ///< is run and judged instead of everything above
 
   double substep() const { return timeStep / substeps; }

@@ -8,6 +8,7 @@ namespace tetskin::stress {
 
 /// Stiff and extreme cases, which check whether the simulation stays bounded, and whether the skin keeps its promises.
 /// Those of Bullet's forces are for Kind::Bullet alone, all others for Kind::Surface.
-measure::MeasuredScenes stressScenes();
+/// changing  only those of the library's force, with bodies that have grown and yield, which need not recover
+measure::MeasuredScenes stressScenes(bool changing);
 
 }  // namespace tetskin::stress

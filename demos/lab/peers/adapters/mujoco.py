@@ -6,7 +6,8 @@ Their material is Saint Venant-Kirchhoff's; damping is Rayleigh's, in seconds, a
 among its points: the masses of the tets are set after the model has been compiled. Its elasticity is implicit under the
 integrator "discrete" alone, and explicit under "Euler". The friction of a contact would be the larger of the two: that
 of planes and rigid bodies is given priority. The settings of their own examples are those of model/flex/mechanisms:
-discrete, Newton, a tolerance of 1e-7, steps of 1 ms.
+discrete, Newton, a tolerance of 1e-7, steps of 1 ms. A flex yields by sqrt(2/3) of the norm of its strain's deviator,
+as one tet in a given strain shows, at once. What is moved is heavy, and gets velocities.
 """
 import mujoco
 import numpy as np
@@ -47,6 +48,8 @@ class Simulation:
 
     def add_soft(self, body):
         name, material = f"flex{len(self.soft)}", body.material
+        if body.swells != 1:
+            raise Unsupported("its soft bodies have no other volume at rest")
         dof = "full" if self.cells is None else {1: "trilinear", 2: "quadratic"}[self.order]
         if self.cells is None:
             held = np.flatnonzero(body.held)
@@ -55,16 +58,23 @@ class Simulation:
         else:
             pins = self.pins_of(body)
             cells = f' cellcount="{numbers(self.cells)}"'
+            if body.led is not None:
+                raise Unsupported("nodes of a grid of cells are not those of the tets")
         contact = '' if body.contact else ' contype="0" conaffinity="0"'
         self.parts.append(
             f'<flexcomp name="{name}" type="direct" dim="3" dof="{dof}"{cells} radius="{RADIUS}" '
             f'mass="{body.masses.sum()}" point="{numbers(body.nodes)}" element="{numbers(body.tets)}">'
             f'<elasticity young="{material.youngs_modulus}" poisson="{material.poisson_ratio}" '
-            f'damping="{material.damping}"/>'
+            f'damping="{material.damping}"{self.yield_of(material)}/>'
             f'<contact selfcollide="{"auto" if body.self_contact else "none"}"'
             f' friction="{material.friction} 0.005 0.0001"{contact}/>{pins}</flexcomp>')
         self.soft.append(body)
         return len(self.soft) - 1
+
+    def yield_of(self, material):
+        if material.yield_strain is None:
+            return ""
+        return f' yield="{2 / 3 * (1 + material.poisson_ratio) * material.yield_strain:.9g}"'
 
     def pins_of(self, body):
         """Pins of the grid's nodes where the body is held: on the side of its box that all held nodes lie on."""
@@ -102,7 +112,8 @@ class Simulation:
         if self.cells is None:
             for k, body in enumerate(self.soft):
                 bodies = self.model.flex_vertbodyid[self.rows_of(k)]
-                self.model.body_mass[bodies[bodies > 0]] = body.masses[bodies > 0]
+                masses = body.masses if body.led is None else np.where(body.led, HEAVY, body.masses)
+                self.model.body_mass[bodies[bodies > 0]] = masses[bodies > 0]
             mujoco.mj_setConst(self.model, self.data)
         mujoco.mj_forward(self.model, self.data)
         for k, rigid in enumerate(self.rigid):
@@ -115,7 +126,20 @@ class Simulation:
         return slice(first, first + self.model.flex_vertnum[handle])
 
     def move(self, handle, position):
-        self.targets[handle] = np.asarray(position, float)
+        self.targets[self.model.body(handle).id] = np.asarray(position, float)
+
+    def lead(self, handle, positions):
+        self.targets |= dict(zip(self.led_of(handle), np.asarray(positions, float)))
+
+    def led_of(self, handle):
+        return self.model.flex_vertbodyid[self.rows_of(handle)][self.soft[handle].led]
+
+    def release(self, handle):
+        bodies = self.led_of(handle)
+        self.model.body_mass[bodies] = self.soft[handle].masses[self.soft[handle].led]
+        mujoco.mj_setConst(self.model, mujoco.MjData(self.model))
+        for body in bodies:
+            del self.targets[body]
 
     def set_velocities(self, handle, rows):
         if self.cells is not None:
@@ -128,8 +152,8 @@ class Simulation:
     def step(self, dt):
         self.model.opt.timestep = dt / self.substeps
         for left in range(self.substeps if self.targets else 0, 0, -1):
-            for name, target in self.targets.items():
-                body = self.model.body(name)
+            for row, target in self.targets.items():
+                body = self.model.body(row)
                 at, way = self.model.jnt_dofadr[body.jntadr[0]], self.model.jnt_qposadr[body.jntadr[0]]
                 missing = target - body.pos - self.data.qpos[way : way + 3]
                 self.data.qvel[at : at + 3] = missing / (left * self.model.opt.timestep)

@@ -43,6 +43,10 @@ class Simulation:
 
     def add_soft(self, body):
         first, material = len(self.builder.particle_q), body.material
+        if body.swells != 1:
+            raise Unsupported("its soft bodies have no other volume at rest")
+        if material.yield_strain is not None:
+            raise Unsupported("its meshes of tets have no plasticity, only its particles (MPM)")
         mu, lam = material.lame
         if self.kind == "semi-implicit":  # whose energy has the logarithm that Bullet's has
             mu, lam = 4 / 3 * mu, lam + 5 / 6 * mu

@@ -76,6 +76,10 @@ class Simulation:
     def add_soft(self, body):
         if len(np.unique(body.tets)) != len(body.nodes):
             raise Unsupported("pybullet's nodes are those of a file, and all need a tet")
+        if body.swells != 1:
+            raise Unsupported("its soft bodies have no other volume at rest")
+        if body.material.yield_strain is not None:
+            raise Unsupported("its soft bodies have no plasticity")
         path = Path(self.folder.name) / f"{len(self.soft)}.vtk"
         write_vtk(path, body.nodes, body.tets)
         mu, lam = body.material.lame

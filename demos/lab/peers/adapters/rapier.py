@@ -4,7 +4,8 @@
 
 Its world steps once per frame, and divides that by num_solver_iterations, 4 by default. Cells are damped by a ratio at
 a frequency of each cell: damping_ratio_of gives the one with the same Rayleigh damping in the mean, and the constraint
-solver gets at most 1. Its own examples (soft_fem3, soft_meshes3) leave substeps and iterations at the defaults.
+solver gets at most 1. Its own examples (soft_fem3, soft_meshes3) leave substeps and iterations at the defaults. Cells
+yield by the norm of their strain's deviator, and flow at a rate: 50 per second is that of the clay in soft_plasticity3.
 """
 import statistics
 import time
@@ -39,10 +40,10 @@ def damping_ratio_of(body):
 
 class Simulation:
     """substeps: per frame. solver: "constraints" or "fem". iterations: passes of the constraints within a substep, or
-    the maximum of the conjugate gradients. radius: of particles and skin, in contact."""
+    the maximum of the conjugate gradients. radius: of particles and skin, in contact. creep: rate of plastic flow, 1/s."""
 
-    def __init__(self, substeps=4, solver="constraints", iterations=None, radius=0.004, gravity=GRAVITY):
-        self.solver, self.iterations, self.radius = solver, iterations, radius
+    def __init__(self, substeps=4, solver="constraints", iterations=None, radius=0.004, creep=50.0, gravity=GRAVITY):
+        self.solver, self.iterations, self.radius, self.creep = solver, iterations, radius, creep
         self.world = rapier.PhysicsWorld(gravity=tuple(gravity))
         self.world.set_num_threads(1)
         options = self.world.integration_parameters
@@ -66,15 +67,17 @@ class Simulation:
             ratio = min(ratio, 1.0)
         material = rapier.SoftBodyMaterial(young_modulus=body.material.youngs_modulus,
                                            poisson_ratio=body.material.poisson_ratio,
-                                           elastic_damping_ratio=float(ratio))
+                                           elastic_damping_ratio=float(ratio), **self.plasticity_of(body.material))
         kind = rapier.SoftBodySolver.FEM if self.solver == "fem" else rapier.SoftBodySolver.CONSTRAINTS
         builder = rapier.SoftBodyBuilder(body.nodes.astype(np.float32)).masses([float(m) for m in body.masses])
         builder = builder.cells(body.tets.astype(np.uint32)).cell_model(rapier.SoftBodyCellModel.COROTATIONAL)
         builder = builder.material(material).solver(kind)
-        if body.held.any():
-            builder = builder.pinned_particles(np.flatnonzero(body.held).astype(np.uint32))
+        if body.fixed.any():
+            builder = builder.pinned_particles(np.flatnonzero(body.fixed).astype(np.uint32))
         if self.solver == "constraints" and self.iterations:
             builder = builder.additional_pgs_iterations(self.iterations - 1)
+        if body.swells != 1:
+            builder = builder.volume_factor(float(body.swells)).volume_preservation(True)
         if body.contact:
             collider = rapier.Collider.ball(self.radius).friction(body.material.friction)
             collider = collider.friction_combine_rule(rapier.CoefficientCombineRule.MULTIPLY)
@@ -88,6 +91,13 @@ class Simulation:
         handle = self.world.add_soft_body(builder)
         self.kept[handle] = body
         return handle
+
+    def plasticity_of(self, material):
+        """The norm of the strain's deviator in a bar that is pulled to the strain at which it yields."""
+        if material.yield_strain is None:
+            return {}
+        norm = np.sqrt(2 / 3) * (1 + material.poisson_ratio) * material.yield_strain
+        return {"plastic_yield": float(norm), "plastic_creep": self.creep}
 
     def add_rigid(self, rigid):
         if rigid.shape == "box":
@@ -111,6 +121,14 @@ class Simulation:
 
     def move(self, handle, position):
         self.world.rigid_bodies[handle].set_next_kinematic_translation(tuple(map(float, position)))
+
+    def lead(self, handle, positions):
+        for particle, position in zip(np.flatnonzero(self.kept[handle].led), positions):
+            self.world.soft_bodies[handle].set_particle_kinematic_target(int(particle), tuple(map(float, position)))
+
+    def release(self, handle):
+        for particle in np.flatnonzero(self.kept[handle].led):
+            self.world.soft_bodies[handle].set_particle_pinned(int(particle), False)
 
     def set_velocities(self, handle, rows):
         self.world.soft_bodies[handle].particle_velocities = np.asarray(rows, np.float32)

@@ -22,7 +22,7 @@ class Simulation:
         self.tolerance = {} if tolerance is None else {"solver_tolerance": tolerance}
         self.gravity = tuple(gravity)
         self.world = None if self.alone else ts.World(gravity=gravity, record_forces=False)
-        self.body, self.forms = None, {}
+        self.body, self.forms, self.led = None, {}, {}
 
     def add_plane(self, friction=1.0):
         if self.alone:
@@ -38,6 +38,8 @@ class Simulation:
         if self.alone:
             if self.body is not None:
                 raise Unsupported("an ElasticBody is alone")
+            if body.led is not None:
+                raise Unsupported("an ElasticBody has no nodes that are led to places")
             tolerance = {"tolerance": self.tolerance["solver_tolerance"]} if self.tolerance else {}
             self.body = ts.ElasticBody(cage, **options, **tolerance)
             self.body.positions = self.body.positions + place
@@ -45,9 +47,15 @@ class Simulation:
             return self.body
         if self.own_masses:
             options["node_masses"] = body.masses
-        return self.world.add_body(cage, mesh, position=place, pinned=pinned, friction=material.friction,
-                                   soft_contact=mesh is not None, self_contact=body.self_contact, **options,
-                                   **self.tolerance)
+        added = self.world.add_body(cage, mesh, position=place, pinned=pinned, friction=material.friction,
+                                    soft_contact=mesh is not None, self_contact=body.self_contact, **options,
+                                    **self.tolerance)
+        self.led[added] = body.led
+        if material.yield_strain is not None:
+            added.set_plasticity(yield_stress=material.yield_strain * material.youngs_modulus)
+        if body.swells != 1:
+            added.set_growth(body.swells ** (1 / 3))
+        return added
 
     def shared(self, body):
         """The body's cage, and its surface if it has contact, with its first node at the origin; and where that is.
@@ -67,7 +75,7 @@ class Simulation:
     def pinned_of(self, body, cage, place):
         """The pinned nodes of the cage: those of the body and, of second order, those in the middle between two."""
         if not self.quadratic:
-            return body.held
+            return body.fixed
         edges = body.tets[:, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]].reshape(-1, 2)
         edges = edges[body.held[edges].all(1)]
         held = np.concatenate([body.nodes[body.held], body.nodes[edges].mean(1)])
@@ -90,6 +98,12 @@ class Simulation:
 
     def move(self, handle, position):
         handle.position = position
+
+    def lead(self, handle, positions):
+        handle.set_pinned_positions(self.led[handle], positions)
+
+    def release(self, handle):
+        handle.set_pinned(self.led[handle], False)
 
     def set_velocities(self, handle, rows):
         handle.velocities = rows
