@@ -115,17 +115,32 @@ Change flowing(double yieldStrain) {
   return change;
 }
 
+std::vector<int> everyTet(std::size_t tets, std::size_t step) {
+  std::vector<int> some;
+  for (std::size_t t = 0; t < tets; t += step) some.push_back(static_cast<int>(t));
+  return some;
+}
+
 /// Every fourth tet contracts, as far as the frame says.
-Change contracting(std::size_t tets, double (*activation)(int)) {
+Change contracting(std::size_t tets, double (*activation)(int), bool byLength = false) {
   Change change;
-  change.begin = [tets](ElasticBody<float>& body) {
+  change.begin = [tets, byLength](ElasticBody<float>& body) {
     Muscle muscle;
-    for (std::size_t t = 0; t < tets; t += 4) muscle.tets.push_back(static_cast<int>(t));
+    muscle.tets = everyTet(tets, 4);
     muscle.fibres = {Eigen::Vector3d::UnitX()};
     muscle.stress = 0.3 * kChangingYoung;
+    if (byLength) muscle.lengthFactors = {{0.5, 0.0}, {0.9, 1.0}, {1.1, 1.0}, {1.6, 0.0}};
     require(body.addMuscle(muscle).status());
   };
   change.act = [activation](ElasticBody<float>& body, int frame) { require(body.setActivation(0, activation(frame))); };
+  return change;
+}
+
+Change withFibres(const std::vector<int>& tets) {
+  Change change;
+  change.begin = [tets](ElasticBody<float>& body) {
+    require(body.addFibres({tets, {Eigen::Vector3d::UnitX()}, kChangingYoung, false}));
+  };
   return change;
 }
 
@@ -220,6 +235,12 @@ void registerChangingCases() {
   addBar("growth/constant", [](std::size_t) { return growing(); });
   addBar("muscle/constant", [](std::size_t tets) { return contracting(tets, [](int) { return 0.5; }); });
   addBar("muscle/changing", [](std::size_t tets) { return contracting(tets, wave); });
+  addBar("muscle/by_length", [](std::size_t tets) {
+    return contracting(
+        tets, [](int) { return 0.5; }, true);
+  });
+  addBar("fibres/quarter", [](std::size_t tets) { return withFibres(everyTet(tets, 4)); });
+  addBar("fibres/all", [](std::size_t tets) { return withFibres(everyTet(tets, 1)); });
   addBar("pressure/constant", [](std::size_t) { return pressed(false); });
   addBar("pressure/gas", [](std::size_t) { return pressed(true); });
   add("hollow_ball/nothing", [](State& state) { changingBall(state, [](DeformableBody&) { return Status(); }); });
