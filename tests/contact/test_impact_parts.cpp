@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
-#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <tetskin/solver/deformable_body.h>
 #include <tetskin/solver/deformable_world.h>
 
@@ -107,6 +106,43 @@ TEST(ImpactParts, AreNotTakenByWhatLiesOrSlides) {
   for (int k = 0; k < 30; ++k) EXPECT_EQ(cube.frame(), 4) << k;
 }
 
+/// Its box is in that of the ground.
+TEST(ImpactParts, AreNotTakenByWhatRestsOnATiltedBox) {
+  FallingCube cube;
+  const btQuaternion turned(btVector3(0, 0, 1), btScalar(0.2));
+  btRigidBody& ground = cube.rigids.add(cube.rigids.shape<btBoxShape>(btVector3(2, 2, 2)), 0, {0, 0, 0});
+  ground.setWorldTransform(placeAt({0, 0, 0}, turned));
+  cube.world.updateSingleAabb(&ground);
+  ground.setFriction(5);
+  cube.cube->body().m_cfg.kDF = 1;
+  btSoftBody& body = cube.cube->body();
+  body.translate(btVector3(0, btScalar(-kHeight - kSide / 2), 0));
+  body.transform(placeAt({0, 0, 0}, turned));
+  body.translate(quatRotate(turned, btVector3(0, btScalar(2 + kMargin + kSide / 2), 0)));
+  body.setActivationState(DISABLE_DEACTIVATION);
+  for (int k = 0; k < 20; ++k) cube.frame();
+  for (int k = 0; k < 30; ++k) EXPECT_EQ(cube.frame(), 4) << k;
+}
+
+TEST(ImpactParts, AreTakenByTheBodysOwnGravity) {
+  FallingCube falls, hangs;
+  falls.world.setGravity(btVector3(0, 0, 0));
+  for (FallingCube* cube : {&falls, &hangs}) cube->addFloor();
+  ASSERT_TRUE(falls.cube->setGravity(btVector3(0, -10, 0)).ok());
+  ASSERT_TRUE(hangs.cube->setGravity(btVector3(0, 0, 0)).ok());
+  EXPECT_GE(falls.dividedFrames(), 1);
+  EXPECT_EQ(hangs.dividedFrames(), 0);
+}
+
+TEST(ImpactParts, ACallOfNoTimeMakesNoStep) {
+  FallingCube cube;
+  cube.addFloor();
+  for (int k = 0; k < 60; ++k) {
+    EXPECT_EQ(cube.world.stepSimulation(0, 4, btScalar(1) / 240), 0);
+    cube.frame();
+  }
+}
+
 TEST(ImpactParts, AreTakenForObstaclesOfAnyKind) {
   const auto dividedBy = [](const auto& add) {
     FallingCube cube;
@@ -140,6 +176,20 @@ TEST(ImpactParts, AreTakenForObstaclesOfAnyKind) {
   EXPECT_GE(dividedBy(mesh), 1);
   EXPECT_LE(dividedBy(mesh), 2);
   EXPECT_GE(dividedBy(rising), 1);
+  const auto driven = [&](FallingCube& cube) {
+    btRigidBody& body = cube.rigids.add(cube.rigids.shape<btBoxShape>(half), 0, {0, -half.y(), 0});
+    body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  };
+  EXPECT_GE(dividedBy(driven), 1);
+  std::unique_ptr<DeformableBody> below;
+  const auto soft = [&](FallingCube& cube) {
+    below = DeformableBody::add(cube.world, latticeCage(4, 4, 4, kSide / 4)).value();
+    below->body().m_cfg.collisions |= btSoftBody::fCollision::VF_DD;
+    cube.cube->body().m_cfg.collisions |= btSoftBody::fCollision::VF_DD;
+    ASSERT_TRUE(below->setGravity(btVector3(0, 0, 0)).ok());
+  };
+  EXPECT_GE(dividedBy(soft), 1);
+  below.reset();
   EXPECT_EQ(dividedBy([](FallingCube& cube) {  // a slope that it flies along
               cube.cube->body().setVelocity(btVector3(2, 0, 0));
               cube.world.setGravity(btVector3(0, 0, 0));

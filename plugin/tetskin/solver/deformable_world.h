@@ -184,14 +184,17 @@ class TETSKIN_SOLVER_API DeformableWorld : private DeformableWorldObjects, publi
   btDbvtBroadphase& broadphase();                             ///< finds pairs of overlapping boxes; owned by this
   btCollisionDispatcher& dispatcher();                        ///< Bullet's collision dispatcher; owned by this
 
-  /// As in Bullet, but some steps are divided, into at most 64 parts: those in which gravity moves a soft body by more
-  /// than 6 % of its size, after a hitch or with a body of some millimetres; and those of a call in which a body that
-  /// keeps a fifth of its energy in an impact, by its damping, hits something or may do so, if they are too long for
-  /// its rebound (nine should fall within an impact; see `DeformableWorldOptions::impactParts`). All of the world takes
-  /// the shorter steps, so such a call costs up to that many times as much. Tick callbacks are called for each part,
-  /// with its length. Joint limits that are impulses per step (hinges' motors, multibodies' joints, breaking
-  /// thresholds) are divided as well. The world can be neither saved nor restored during the call. A time that is
-  /// negative or not finite, or a fixedTimeStep of 0, changes nothing. Returns  the number of steps, counting each part
+  /// As in Bullet, but some steps are divided, into at most 64 parts. First, those in which gravity moves a soft body
+  /// by more than 6 % of its size: after a hitch, or with a body of some millimetres. Second, all steps of a call in
+  /// which an elastic body hits something, or may do so by its box, if its impact has less than nine of them: see
+  /// `DeformableWorldOptions::impactParts`. Bodies whose damping leaves them less than a fifth of their energy, and
+  /// those that flow, ask for none; links of multibodies count as standing. All of the world takes the shorter steps,
+  /// so such a call costs up to that many times as much.
+  ///
+  /// Tick callbacks are called for each part, with its length. Joint limits that are impulses per step (hinges' motors,
+  /// multibodies' joints, breaking thresholds) are divided as well. The world can be neither saved nor restored during
+  /// the call. A time that is negative or not finite, or a fixedTimeStep of 0, changes nothing.
+  /// Returns  the number of steps, counting each part
   int stepSimulation(btScalar timeStep, int maxSubSteps = 1,
                      btScalar fixedTimeStep = btScalar(1) / btScalar(60)) override;
 

@@ -52,7 +52,6 @@ struct DeformableWorldObjects::Impl {
   DeformableSolver deformableSolver;
   btDeformableMultiBodyConstraintSolver constraintSolver;
   RigidTurns turns;
-  int impactParts = 1;
   std::unique_ptr<RigidForces> forces;  ///< null: Bullet's own treatment
 };
 
@@ -68,7 +67,7 @@ DeformableWorld::DeformableWorld(const DeformableWorldOptions& options)
   impl_->deformableSolver.setThreads(options.threads);
   impl_->deformableSolver.setDeterministic(options.deterministic);
   (void)impl_->deformableSolver.setSleepAfter(options.sleepAfter);
-  impl_->impactParts = std::max(options.impactParts, 1);
+  Access<DeformableSolver>::impl(impl_->deformableSolver).impactParts = std::max(options.impactParts, 1);
   if (options.rigidForces == RigidForceModel::PlainWorld) {
     impl_->forces = std::make_unique<RigidForces>(m_nonStaticRigidBodies);
     Access<DeformableSolver>::impl(impl_->deformableSolver).rigidForces = impl_->forces.get();
@@ -88,9 +87,10 @@ int DeformableWorld::stepSimulation(btScalar timeStep, int maxSubSteps, btScalar
   }
   const btScalar seconds = maxSubSteps > 0 ? fixedTimeStep : timeStep;
   const btScalar more = maxSubSteps > 0 ? std::min(timeStep, static_cast<btScalar>(maxSubSteps - 1) * seconds) : 0;
-  const int parts = Access<DeformableSolver>::impl(impl_->deformableSolver)
-                        .partsOfSteps(*this, seconds, seconds + more, impl_->impactParts);
-  if (parts == 1) return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
+  const int parts =
+      Access<DeformableSolver>::impl(impl_->deformableSolver).partsOfSteps(*this, seconds, seconds + more);
+  if (parts == 1 || timeStep == 0)
+    return btDeformableMultiBodyDynamicsWorld::stepSimulation(timeStep, maxSubSteps, fixedTimeStep);
   const DividedLimits limits(*this, parts);
   // A time of exactly one step must include its last part, although rounding may have made the parts a little too long.
   constexpr btScalar kRounding = 4 * SIMD_EPSILON;

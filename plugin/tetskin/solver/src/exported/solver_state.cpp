@@ -182,6 +182,8 @@ void DeformableSolver::Impl::serializeFlags(WorldStream& stream) {
   stream(solver.m_useProjection);
   stream(solver.m_lineSearch);
   stream(solver.m_implicit);
+  stream(impactParts);
+  if (impactParts < 1) stream.fail();
 }
 
 }  // namespace tetskin

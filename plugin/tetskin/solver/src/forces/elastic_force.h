@@ -35,6 +35,7 @@ class ElasticForce : public InactiveForce {
   void reset();
   /// The world that its body is about to enter.
   void setWorld(btDeformableMultiBodyDynamicsWorld& world);
+  const ElasticMaterial& material() const { return material_; }
   const SolverSettings& settings() const { return settings_; }
   ForcedBody& body() { return body_; }
 

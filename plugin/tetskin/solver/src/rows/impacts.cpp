@@ -18,12 +18,8 @@ constexpr int kQuietSteps = 8;
 /// In fine steps, balls, cubes on an edge or a corner, bars and rings have 0.75 to 0.95 of their energy afterwards.
 constexpr double kMostGivenBack = 0.9;
 
-/// The change of velocity in a step from which on contacts count as an impact: twice what a body at rest takes.
 btScalar leastImpact(const SolvedBody& body, btScalar seconds) {
-  constexpr btScalar kGravities = 2;
-  constexpr btScalar kLeastWay = btScalar(1e-3);  // without gravity: of the body's size, within a step
-  const btScalar falls = body.gravity.length() * seconds;
-  return falls > 0 ? kGravities * falls : kLeastWay * sizeOf(*body.body) / seconds;
+  return bullet_detail::leastImpact(body.gravity, sizeOf(*body.body), seconds);
 }
 
 /// False for joints, loads, rows between rigid bodies, and bodies that nothing elastic moves.
@@ -194,6 +190,13 @@ bool isFelt(const ImpactPair& pair, const btVector3& push, const PushSums& sums,
 }
 
 }  // namespace
+
+btScalar leastImpact(const btVector3& gravity, btScalar size, btScalar seconds) {
+  constexpr btScalar kGravities = 2;
+  constexpr btScalar kLeastWay = btScalar(1e-3);  // without gravity: of the body's size, within a step
+  const btScalar falls = gravity.length() * seconds;
+  return falls > 0 ? kGravities * falls : kLeastWay * size / seconds;
+}
 
 Impact* Impacts::find(const ImpactPair& pair) {
   const auto found = std::find_if(list_.begin(), list_.end(), [&](const Impact& one) { return one.pair == pair; });

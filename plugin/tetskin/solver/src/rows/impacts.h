@@ -30,6 +30,10 @@
 
 namespace tetskin::bullet_detail {
 
+/// The change of velocity in a step from which on contacts count as an impact: twice what a body at rest takes.
+/// gravity, size  of the body
+btScalar leastImpact(const btVector3& gravity, btScalar size, btScalar seconds);
+
 /// A component of a soft body, and what it meets: any object, of a soft body a component.
 struct ImpactPair {
   const btCollisionObject* body = nullptr;

@@ -80,9 +80,13 @@ struct DeformableSolver::Impl {
   void serializeFlags(WorldStream& stream);
 
   // Into how many parts steps of this length are divided, at most 64; implemented in step_parts.cpp.
-  /// ahead  seconds in which impacts may begin;  forImpacts  parts for these at most
-  int partsOfSteps(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds, btScalar ahead, int forImpacts);
+  /// ahead  seconds in which impacts may begin
+  int partsOfSteps(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds, btScalar ahead);
+  template <class Visit>
+  void eachGravity(Visit&& visit);
   double partsForGravity(btScalar seconds);
+  bool hitsSoon(const btDeformableMultiBodyDynamicsWorld& world, const btSoftBody& body, const btVector3& velocity,
+                btScalar seconds, btScalar ahead);
   double partsForImpacts(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds, btScalar ahead,
                          double most);
 
@@ -167,6 +171,7 @@ struct DeformableSolver::Impl {
   btDeformableMultiBodyDynamicsWorld* known = nullptr;  ///< the world; it may have been destroyed
   const btSoftBodyWorldInfo* knownInfo = nullptr;       ///< of this world
   RigidForces* rigidForces = nullptr;                   ///< only in a DeformableWorld, which owns them
+  int impactParts = 1;                                  ///< see DeformableWorldOptions; 1 in any other world
   bool inSimulation = false;                            ///< within `stepSimulation`; only in a DeformableWorld
   Stage stage = Stage::Between;                         ///< until positions have been integrated
   std::weak_ptr<RecordedForces> recorded;               ///< null if there is no record

@@ -31,8 +31,10 @@ constexpr btScalar kMostFall = btScalar(0.06);
 
 /// Parts in an impact. Where there would be less than the other number, it stays unresolved: they would be no better.
 constexpr double kResolved = 9.0, kFewest = 3.6;
-/// The share of its energy that damping must leave a body by estimate, which is a third of what it does leave.
+/// The share of its energy that damping must leave a body by the estimate, which is a third of what measurements show.
 constexpr double kBounces = 0.06;
+/// Seconds of damping in an impact's, from which on the estimate is below this share.
+constexpr double kDamps = 0.28;
 
 /// The longest side of the box around the nodes; stops early once it is at least `enough`.
 btScalar sizeUpTo(const btSoftBody& body, btScalar enough) {
@@ -93,39 +95,51 @@ struct Cloud {
   }
 };
 
-/// A box around the nodes, and around their way beside an obstacle in the next seconds.
-struct Way {
-  Box now, soon;
-  btVector3 velocity;  ///< of the centre of mass, beside the obstacle
-  btScalar least = 0;  ///< speed from which on an impact counts
+/// How a body moves beside an obstacle, in the world's frame.
+struct Approach {
+  const btSoftBody& body;
+  btVector3 velocity;  ///< of the centre of mass
+  btVector3 fall;      ///< by gravity
+  btScalar ahead;      ///< seconds
+  btScalar least;      ///< speed from which on an impact counts
 
-  /// True if the obstacle's box is in the way, and the two come nearer along all axes along which they are apart: what
-  /// slides along the other does not.
-  bool meets(const Box& obstacle) const {
-    constexpr btScalar kTouching = btScalar(0.05);  // of the body's size
-    if (!soon.meets(obstacle)) return false;
-    const btVector3 size = now.high - now.low;
-    for (int k = 0; k < 3; ++k) {
-      const btScalar near = kTouching * size[size.maxAxis()];
-      if (now.low[k] > obstacle.high[k] - near && !(velocity[k] < -least)) return false;
-      if (now.high[k] < obstacle.low[k] + near && !(velocity[k] > least)) return false;
-    }
-    return true;
-  }
+  bool isFast() const { return velocity.length2() > least * least; }
 };
 
-Way wayOf(const btSoftBody& body, const btVector3& gravity, btScalar ahead) {
+/// Boxes around the nodes, and around their way.
+struct Way {
+  Box now, soon;
+};
+
+/// obstacle  velocity of what the body moves beside; `frame`, where boxes are wanted, goes along with it
+Way wayOf(const btSoftBody& body, const btTransform& frame, const btVector3& obstacle, const btVector3& fall,
+          btScalar ahead) {
   const btScalar margin = body.getCollisionShape()->getMargin();
   Way way;
   for (int n = 0; n < body.m_nodes.size(); ++n) {
     const btSoftBody::Node& node = body.m_nodes[n];
-    way.now.add(node.m_x);
-    way.soon.add(node.m_x);
-    way.soon.add(node.m_x + ahead * node.m_v + (ahead * ahead / 2) * gravity);
+    const btVector3 at = frame.invXform(node.m_x);
+    way.now.add(at);
+    way.soon.add(at);
+    way.soon.add(frame.invXform(node.m_x + ahead * (node.m_v - obstacle) + fall));
   }
   way.soon.low -= btVector3(margin, margin, margin);
   way.soon.high += btVector3(margin, margin, margin);
   return way;
+}
+
+/// True if the obstacle's box is in the way, and the two come nearer along all axes along which they are apart: what
+/// slides along the other does not.
+bool comesNear(const Way& way, const btVector3& velocity, btScalar least, const Box& obstacle) {
+  constexpr btScalar kTouching = btScalar(0.05);  // of the body's size
+  if (!way.soon.meets(obstacle)) return false;
+  const btVector3 size = way.now.high - way.now.low;
+  for (int k = 0; k < 3; ++k) {
+    const btScalar near = kTouching * size[size.maxAxis()];
+    if (way.now.low[k] > obstacle.high[k] - near && !(velocity[k] < -least)) return false;
+    if (way.now.high[k] < obstacle.low[k] + near && !(velocity[k] > least)) return false;
+  }
+  return true;
 }
 
 /// Tells whether some triangle is in the way, in its shape's frame.
@@ -153,63 +167,80 @@ class TriangleInWay : public btTriangleCallback {
 };
 
 /// True if some part of a shape is in the way.
-bool isInWay(const btCollisionShape& shape, const btTransform& at, const Way& way) {
+/// obstacle  its velocity
+bool isInWay(const btCollisionShape& shape, const btTransform& at, const btVector3& obstacle, const Approach& body) {
   if (shape.isCompound()) {
     const auto& compound = static_cast<const btCompoundShape&>(shape);
     for (int k = 0; k < compound.getNumChildShapes(); ++k) {
-      if (isInWay(*compound.getChildShape(k), at * compound.getChildTransform(k), way)) return true;
+      if (isInWay(*compound.getChildShape(k), at * compound.getChildTransform(k), obstacle, body)) return true;
     }
     return false;
   }
-  Box box;
+  const Way way = wayOf(body.body, at, obstacle, body.fall, body.ahead);
+  const btVector3 velocity = body.velocity * at.getBasis();
   if (shape.isConcave()) {
-    btTransformAabb(way.soon.low, way.soon.high, 0, at.inverse(), box.low, box.high);
-    TriangleInWay triangles(box, at.invXform((way.now.low + way.now.high) / 2), way.velocity * at.getBasis(),
-                            way.least);
-    static_cast<const btConcaveShape&>(shape).processAllTriangles(&triangles, box.low, box.high);
+    TriangleInWay triangles(way.soon, (way.now.low + way.now.high) / 2, velocity, body.least);
+    static_cast<const btConcaveShape&>(shape).processAllTriangles(&triangles, way.soon.low, way.soon.high);
     return triangles.found();
   }
-  shape.getAabb(at, box.low, box.high);
-  return way.meets(box);
+  Box box;
+  shape.getAabb(btTransform::getIdentity(), box.low, box.high);
+  return comesNear(way, velocity, body.least, box);
 }
 
-/// True if the other object may come into the way of a body.
-bool mayHit(const btCollisionObject& other, Way way, btScalar ahead) {
+/// True if the body may hit the other object. Links of multibodies count as standing.
+/// soon  a box around its way in the world
+bool mayHit(const btCollisionObject& other, Box soon, Approach body) {
   if (const btSoftBody* soft = btSoftBody::upcast(&other)) {
-    way.velocity -= Cloud(*soft).velocity;
-    return way.meets(wayOf(*soft, {0, 0, 0}, ahead).soon);
+    const Box box = wayOf(*soft, btTransform::getIdentity(), {0, 0, 0}, {0, 0, 0}, body.ahead).soon;
+    if (!soon.meets(box)) return false;
+    body.velocity -= Cloud(*soft).velocity;
+    const Way way = wayOf(body.body, btTransform::getIdentity(), {0, 0, 0}, body.fall, body.ahead);
+    return body.isFast() && comesNear(way, body.velocity, body.least, box);
   }
+  btVector3 velocity(0, 0, 0);
   if (const btRigidBody* rigid = btRigidBody::upcast(&other)) {
-    way.velocity -= rigid->getLinearVelocity();
-    way.soon.sweep(-ahead * rigid->getLinearVelocity());
+    velocity = rigid->getVelocityInLocalPoint((soon.low + soon.high) / 2 - rigid->getCenterOfMassPosition());
+    soon.sweep(-body.ahead * velocity);
+    body.velocity -= velocity;
   }
-  return isInWay(*other.getCollisionShape(), other.getWorldTransform(), way);
+  Box box;
+  other.getCollisionShape()->getAabb(other.getWorldTransform(), box.low, box.high);
+  return body.isFast() && soon.meets(box) &&
+         isInWay(*other.getCollisionShape(), other.getWorldTransform(), velocity, body);
 }
 
 }  // namespace
 
 int DeformableSolver::Impl::partsOfSteps(const btDeformableMultiBodyDynamicsWorld& world, btScalar seconds,
-                                         btScalar ahead, int forImpacts) {
+                                         btScalar ahead) {
   if (!(seconds > 0 && seconds < BT_LARGE_FLOAT)) return 1;
-  const double fall = partsForGravity(seconds), most = std::min(static_cast<double>(forImpacts), kMostParts / fall);
+  const double fall = partsForGravity(seconds), most = std::min(static_cast<double>(impactParts), kMostParts / fall);
   return static_cast<int>(fall *
                           partsForImpacts(world, seconds / static_cast<btScalar>(fall), ahead, std::floor(most)));
 }
 
-double DeformableSolver::Impl::partsForGravity(btScalar seconds) {
-  btScalar most = 1;  // squared
+/// Calls a function with each force of gravity and what it adds to a body's velocity in a second, of the next step.
+template <class Visit>
+void DeformableSolver::Impl::eachGravity(Visit&& visit) {
   for (int i = 0; i < forces().size(); ++i) {
     const btDeformableGravityForce* force = gravityForce(forces()[i]);
     const auto* own = asOwn<BodyGravity>(OwnObject::Kind::BodyGravity, forces()[i]);
     for (int b = 0; force && b < force->m_softBodies.size(); ++b) {
       const btSoftBody& body = *force->m_softBodies[b];
-      const btScalar fall =
-          (body.m_gravityFactor * (own ? own->next() : force->m_gravity)).length() * seconds * seconds / kMostFall;
-      if (!body.isActive() || body.m_nodes.size() < 2 || !(fall < BT_LARGE_FLOAT)) continue;
-      const btScalar size = sizeUpTo(body, fall);
-      if (size > 0) most = std::max(most, fall / size);
+      visit(body, body.m_gravityFactor * (own ? own->next() : force->m_gravity));
     }
   }
+}
+
+double DeformableSolver::Impl::partsForGravity(btScalar seconds) {
+  btScalar most = 1;  // squared
+  eachGravity([&](const btSoftBody& body, const btVector3& gravity) {
+    const btScalar fall = gravity.length() * seconds * seconds / kMostFall;
+    if (!body.isActive() || body.m_nodes.size() < 2 || !(fall < BT_LARGE_FLOAT)) return;
+    const btScalar size = sizeUpTo(body, fall);
+    if (size > 0) most = std::max(most, fall / size);
+  });
   return std::min(std::ceil(std::sqrt(static_cast<double>(most))), kMostParts);
 }
 
@@ -222,25 +253,34 @@ double DeformableSolver::Impl::partsForImpacts(const btDeformableMultiBodyDynami
     auto* elastic = dynamic_cast<ElasticForce*>(inactiveForce(forces()[i]));
     if (!elastic || elastic->body().world != &world || !elastic->body().dynamics) continue;
     const btSoftBody& body = *elastic->body().body;
-    if (!body.isActive()) continue;
+    // What is damped needs no look at its nodes: an impact that it survives takes too many steps to be divided.
+    if (!body.isActive() || elastic->material().damping > kDamps * kResolved * static_cast<double>(seconds)) continue;
     const Cloud cloud(body);
     const double takes = elastic->body().dynamics->bounceSeconds(cloud.mass, cloud.radius, kBounces),
                  steps = takes / static_cast<double>(seconds), wanted = std::min(std::ceil(kResolved / steps), most);
     if (!(steps * most >= kFewest && wanted > parts)) continue;
-    Way way = wayOf(body, world.getGravity(), ahead);
-    way.velocity = cloud.velocity;
-    way.least = 2 * world.getGravity().length() * seconds;
-    const auto meets = [&](const btCollisionObject& other) {
-      if (&other == &body || !mayHit(other, way, ahead)) return false;
-      const btSoftBody* soft = btSoftBody::upcast(&other);
-      return soft ? collidesWithSoft(body, *soft) : collidesWithRigid(body, other);
-    };
-    const btCollisionObjectArray& inWorld = world.getCollisionObjectArray();
-    bool divides = impacts.includes(body);
-    for (int k = 0; k < inWorld.size() && !divides; ++k) divides = meets(*inWorld[k]);
-    if (divides) parts = wanted;
+    if (impacts.includes(body) || hitsSoon(world, body, cloud.velocity, seconds, ahead)) parts = wanted;
   }
   return parts;
+}
+
+bool DeformableSolver::Impl::hitsSoon(const btDeformableMultiBodyDynamicsWorld& world, const btSoftBody& body,
+                                      const btVector3& velocity, btScalar seconds, btScalar ahead) {
+  btVector3 gravity(0, 0, 0);
+  eachGravity([&](const btSoftBody& of, const btVector3& by) {
+    if (&of == &body) gravity += by;
+  });
+  const btVector3 fall = (ahead * ahead / 2) * gravity;
+  const Way way = wayOf(body, btTransform::getIdentity(), {0, 0, 0}, fall, ahead);
+  const btVector3 size = way.now.high - way.now.low;
+  const Approach approach{body, velocity, fall, ahead, leastImpact(gravity, size[size.maxAxis()], seconds)};
+  const btCollisionObjectArray& inWorld = world.getCollisionObjectArray();
+  for (int k = 0; k < inWorld.size(); ++k) {
+    const btSoftBody* soft = btSoftBody::upcast(inWorld[k]);
+    if (soft == &body || !(soft ? collidesWithSoft(body, *soft) : collidesWithRigid(body, *inWorld[k]))) continue;
+    if (mayHit(*inWorld[k], way.soon, approach)) return true;
+  }
+  return false;
 }
 
 }  // namespace tetskin
