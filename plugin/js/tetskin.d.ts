@@ -98,7 +98,7 @@ export interface Tetskin {
    * @throws Cancelled, Empty, Degenerate, InvalidOption, OutOfMemory
    */
   createCage(mesh: Mesh, options?: CageOptions): Cage;
-  /** A copy with other maps painted on it: a map of 1 removes that which it has, none leaves it. */
+  /** A copy with other maps painted on it. A map of ones removes what was painted before; without a map it stays. */
   paintCage(cage: Cage, mesh: Mesh, maps: PaintedMaps): Cage;
   /**
    * Spreads any map from the vertices of a mesh over its cage, whose inside has the values of the nearest surface. To

@@ -131,6 +131,8 @@ test("a cage is handed over to another instance by its bytes", async () => {
   assert.equal(copy.report, cage.report);
   assert.throws(() => tetskin.createWorld().addBody(copy, null), failure("InvalidArgument", /another instance/));
   assert.throws(() => tetskin.createWorld({sleepAfter: -1}), failure("InvalidOption", /at least 0/));
+  assert.throws(() => tetskin.createWorld({impactParts: 0}), failure("InvalidOption", /impactParts/));
+  assert.throws(() => tetskin.createWorld({impactParts: 2.5}), failure("InvalidArgument", /impactParts/));
 });
 
 test("the bytes of a mesh keep its groups", () => {
@@ -203,6 +205,12 @@ test("maps are spread over a cage, and painted on it", () => {
   assert.throws(() => tetskin.spreadMap(cage, mesh, zeros, {mean: "geometric"}), failure("InvalidOption"));
   assert.throws(() => tetskin.paintCage(cage, mesh, {density: [1, 2]}), failure("SizeMismatch", /density/));
   assert.throws(() => tetskin.paintCage(cage, mesh, {density: zeros}), failure("InvalidOption", /density/));
+  assert.deepEqual(tetskin.paintCage(cage, mesh, {damping: ones}).toBytes(), before);
+  const damped = tetskin.paintCage(cage, mesh, {damping: zeros});
+  assert.deepEqual([damped.paintedStiffness.length, damped.masses], [0, cage.masses], "damping is painted alone");
+  assert.notDeepEqual(damped.toBytes(), before);
+  assert.throws(() => tetskin.paintCage(cage, mesh, {damping: zeros.map(x => x - 1)}),
+    failure("InvalidOption", /damping/));
   assert.throws(() => tetskin.paintCage(mesh, cage, {}), failure("InvalidArgument", /cage/));
 });
 

@@ -78,6 +78,17 @@ def test_a_muscle_contracts_as_its_activation_says(elastic, world_and_body):
             own.activation = 2
 
 
+def test_fibres_make_a_bar_stiffer_and_muscles_know_their_length(elastic):
+    tets = np.arange(160)
+    elastic.add_fibres(tets, (1, 0, 0), stiffness=9e6)
+    muscle = elastic.add_muscle(tets, (1, 0, 0), stress=1e6, length_factors=[(0.8, 0), (1, 1)])
+    muscle.activation = 1
+    elastic.set_damping_scale(np.full(160, 2.0))
+    for _ in range(240):
+        elastic.step(1 / 60)
+    assert length(elastic.positions) == pytest.approx(1 - 0.2 / 3, abs=6e-3)  # 1e7 (1 - s) = 1e6 (s - 0.8) / 0.2
+
+
 def test_fibres_follow_a_curve(elastic):
     cage = cage_of_box()
     fibres = ts.fibres_along(cage, np.ones(160, bool), [(0, 0.1, 0.1), (1, 0.1, 0.1)])
@@ -127,6 +138,11 @@ def test_yield_stresses_by_tet(world_and_body):
     (lambda b: b.set_growth(np.ones((160, 2))), "matrices"),
     (lambda b: b.set_growth(np.tile([[1, 1, 0], [0, 1, 0], [0, 0, 1]], (160, 1, 1)).astype(float)), "symmetric"),
     (lambda b: b.add_muscle(tets=[], fibres=(1, 0, 0)), "at least one tet"),
+    (lambda b: b.add_muscle([0], (1, 0, 0), length_factors=[(1, 1), (1, 0)]), "lengthFactors"),
+    (lambda b: b.add_fibres([0], (1, 0, 0), stiffness=0), "stiffness of fibres"),
+    (lambda b: b.add_fibres([0], (0, 0, 0), stiffness=1), "longer than 0"),
+    (lambda b: b.set_damping_scale(np.full(160, -1.0)), "0 or more"),
+    (lambda b: b.set_damping_scale(np.ones(3)), "3"),
     (lambda b: b.add_muscle(tets=[0, 0], fibres=(1, 0, 0)), "twice"),
     (lambda b: b.add_muscle(tets=[0], fibres=(0, 0, 0)), "fibre 0"),
     (lambda b: b.add_muscle(tets=[0], fibres=np.ones((2, 3))), "2 values for 1 tets"),

@@ -188,9 +188,8 @@ class Tetskin {
   }
   createWorld(options) {
     const {gravity, deterministic, recordForces, sleepAfter, impactParts} = optionsOf(options, kWorldOptions);
-    return new World(
-      this.hidden.instance,
-      this.core.createWorld(gravity, deterministic, recordForces, sleepAfter, impactParts));
+    return new World(this.hidden.instance, this.core.createWorld(
+      gravity, deterministic, recordForces, sleepAfter, wholeNumberOf(impactParts, "impactParts")));
   }
 
   handle(thing, Type, name) {

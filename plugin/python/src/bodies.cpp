@@ -221,8 +221,7 @@ Class<BodyHandle> bindBodies(nb::module_& module, Class<World>& world) {
           },
           "mesh"_a.none(),
           "Sets the surface on which pressure acts, and whose volume counts: a closed mesh in the cage, rest space, "
-          "such "
-          "as an inner wall. None: the boundary of the tets. A gas keeps its present pressure.")
+          "such as an inner wall. None: the boundary of the tets. A gas keeps its present pressure.")
       .def_prop_ro("volume", number([](DeformableBody& b) { return b.volume(); }),
                    "The volume that pressure fills: of its hollows or, without any, of the body.")
       .def_prop_rw("friction", number([](DeformableBody& b) { return static_cast<double>(b.body().m_cfg.kDF); }),

@@ -176,8 +176,9 @@ void bindCages(nb::module_& module) {
       "Builds a cage of about target_tets tets that contains every vertex of the mesh's triangles. The same input "
       "gives the same cage. Takes about half a second for 60,000 triangles; the GIL is released.\n\n"
       "duplicate_elements: if regions of the mesh are less than a tet apart, each gets its own copy of the tet. fit: "
-      "move boundary nodes towards the surface. stiffness, density, damping: (vertices,) factors above 0, "
-      "painted on the mesh: see paint_cage. progress: called with the fraction done, from 0 to 1; returns False to "
+      "move boundary nodes towards the surface. stiffness, density, damping: (vertices,) factors above 0 (damping: "
+      "or 0), painted on the mesh: see paint_cage. progress: called with the fraction done, from 0 to 1; returns False "
+      "to "
       "cancel, which raises an Error with the code CANCELLED; an exception in it is raised. True: prints a bar. "
       "Ctrl-C, or a notebook's interrupt button, always cancels.");
   module.def(

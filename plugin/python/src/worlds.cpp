@@ -85,8 +85,7 @@ Class<World> bindWorlds(nb::module_& module) {
           "bit. deterministic: the same bits on other processors, at a cost of some percent. record_forces: for "
           "forces_on. sleep_after: seconds at rest until soft bodies, and what they lie on or carry, fall asleep: at "
           "least 0; inf: never. impact_parts: into how many parts steps may be divided while a body with little "
-          "damping "
-          "hits something, 1 to 64; 1: never.")
+          "damping hits something, 1 to 64; 1: never.")
       .def("step", step, "dt"_a = 1.0 / 60.0, nb::kw_only(), "substeps"_a = 4,
            "Advances by dt seconds in `substeps` steps of Bullet, and updates all surfaces; returns the number of "
            "steps made: 0 for 0 seconds. The GIL is released. An Error with the code NON_FINITE is raised after the "

@@ -97,19 +97,20 @@ class TETSKIN_SOLVER_API DeformableBody {
   // (InvalidOption, also within a step, SizeMismatch or IndexOutOfRange) says what is wrong; nothing is changed then.
   // Tets are those of the cage. If the body is scaled, what has flowed is forgotten; if it gets other tets, all of it.
 
-  Status setPlasticity(const Plasticity& plasticity);                               ///< what yields flows
-  Status endPlasticity();                                                           ///< nothing flows any more
-  Status resetPlasticFlow();                                                        ///< back to the first shape
-  std::vector<double> plasticStrains() const;                                       ///< tetCount, 0 or more
-  Status setGrowth(double length);                                                  ///< factor of length, 0.05 to 20
+  Status setPlasticity(const Plasticity& plasticity);  ///< the material flows where it yields; replaces what was set
+  Status endPlasticity();                              ///< nothing flows any more; what has flowed stays
+  Status resetPlasticFlow();                           ///< the body returns to its first shape
+  std::vector<double> plasticStrains() const;          ///< tetCount: how much each tet has flowed in all, 0 or more
+  /// Tets grow to multiples of their first size, 0.05 to 20. In one step a large change is a blow: spread it over some.
+  Status setGrowth(double length);
   Status setGrowth(const std::vector<double>& lengths);                             ///< the same by tet
-  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);  ///< 3 x 3 by rows, by tet
-  Status setStiffnessScale(const std::vector<double>& factors);                     ///< by tet, 1e-6 to 1e6
-  Status setDampingScale(const std::vector<double>& factors);                       ///< by tet, 0 or more
-  Status addFibres(const Fibres& fibres);                                           ///< for good
-  Result<int> addMuscle(const Muscle& muscle);                                      ///< returns its number
-  Status setActivation(int muscle, double activation);                              ///< 0 to 1
-  double activation(int muscle) const;  ///< 0 for a muscle that does not exist
+  Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);  ///< by tet, 3 x 3 by rows
+  Status setStiffnessScale(const std::vector<double>& factors);  ///< tetCount, 1e-6 to 1e6: beside the cage's own
+  Status setDampingScale(const std::vector<double>& factors);    ///< tetCount, 0 or more: beside what is painted
+  Status addFibres(const Fibres& fibres);                        ///< they cannot be removed
+  Result<int> addMuscle(const Muscle& muscle);                   ///< returns its number; it is relaxed
+  Status setActivation(int muscle, double activation);           ///< 0 to 1
+  double activation(int muscle) const;                           ///< 0 for a muscle that does not exist
 
   // ---- Pressure, for ForceModel::Corotated alone; see the page "Pressure and gas".
 
