@@ -51,9 +51,9 @@ inline double yieldStressOf(double norm, double youngsModulus, double poissonRat
 /// With `lengthFactors` it pulls at any length, beside its elasticity, with a tension of a x `stress` x factor on the
 /// area at rest, with the factor at its present stretch s, that along its fibres: free, it shortens to the s where
 ///   E (1 - s) = a stress factor(s)
-/// Where s is below 2 nu / (1 + 2 nu), it pulls less. Each step takes the stretch at its beginning, by tet. Where a
-/// stress x factor falls with the stretch by more than E, a muscle is unstable at any given force, as in an animal:
-/// some of it becomes longer, and the rest shorter.
+/// Where s is below 2 nu / (1 + 2 nu), it pulls less, and with little tension it pushes. Each step takes the stretch at
+/// its beginning, by tet. Where a stress x factor falls with the stretch by more than E, a muscle is unstable at any
+/// given force, as in an animal: some of it becomes longer, and the rest shorter.
 struct Muscle {
   std::vector<int> tets;  ///< of the cage, at least one, each once
   /// Rest space, of any length above 0: one for each tet, or one for all. For growth, see Fibres

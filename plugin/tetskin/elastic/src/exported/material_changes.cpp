@@ -49,7 +49,8 @@ bool isGrowth(const RowMatrix& deformation) {
 
 /// The contraction w, see `contracted`, by which a muscle pulls with a tension beside its elasticity when it is
 /// stretched by s. A tet that is free across its fibres has (1 + 2 nu w) (s (1 + w) - 1) E on its first area. Below a
-/// stretch of 2 nu / (1 + 2 nu), that first falls with w: it pulls less there, so that w has no jump at no tension.
+/// stretch of 2 nu / (1 + 2 nu), that first falls with w. It gets less there: the exact w would jump where the tension
+/// begins.
 /// tension  over Young's modulus
 double contraction(double tension, double poissonRatio, double stretch) {
   if (!(tension > 0.0)) return 0.0;
