@@ -210,8 +210,8 @@ struct DeformableBody::Impl final : BodyOwner {
   Status set(const ElasticMaterial& now) {
     Status status = checkMaterial(now);
     if (status.ok()) {
-      status =
-          checkStiffness(*body, now, corotated() ? corotated()->body().changes : elastic_detail::MaterialChanges());
+      const elastic_detail::MaterialChanges none, &changes = corotated() ? corotated()->body().changes : none;
+      status = checkStiffness(*body, now, changes);
     }
     if (status.ok()) apply(now);
     return status;
