@@ -148,7 +148,14 @@ TEST(DampingByTet, BadFactorsAreRefused) {
   EXPECT_EQ(status.code, StatusCode::InvalidOption);
   EXPECT_NE(status.message.find("tet 5"), std::string::npos) << status.message;
   factors[5] = 1e18;
-  EXPECT_EQ(body.setDampingScale(factors).code, StatusCode::InvalidOption) << "too stiff";
+  const Status tooStiff = body.setDampingScale(factors);
+  EXPECT_EQ(tooStiff.code, StatusCode::InvalidOption);
+  EXPECT_NE(tooStiff.message.find("too stiff"), std::string::npos) << tooStiff.message;
+  factors[5] = std::nan("");
+  bar.paintedDamping.assign(bar.mesh.tetCount(), 2.0);
+  ElasticBody<double> painted = made<double>(bar, ringing(1e-2));
+  EXPECT_EQ(painted.setDampingScale({1.0}).code, StatusCode::SizeMismatch);
+  EXPECT_NE(painted.setDampingScale(factors).message.find("tet 5"), std::string::npos) << "not that it is too stiff";
   bar.paintedDamping.assign(bar.mesh.tetCount(), -1.0);
   EXPECT_EQ(ElasticBody<double>::create(bar, ringing(1e-2)).status().code, StatusCode::InvalidOption);
 }

@@ -184,6 +184,34 @@ TYPED_TEST(MuscleLengthsOf, ATensionThatFallsWithTheLengthSettles) {
   }
 }
 
+/// A tension of nearly 0 changes nearly nothing, also below 2 nu / (1 + 2 nu) of the length.
+TYPED_TEST(MuscleLengthsOf, AShortMuscleHasNoJumpWhereItsTensionBegins) {
+  for (const bool quadratic : {false, true}) {
+    const Cage bar = muscleBar(quadratic);
+    const auto ends = endsOf(bar);
+    const auto pullAt = [&](double activation) {
+      ElasticBody<TypeParam> body = made<TypeParam>(bar, flesh(0.3));
+      Muscle muscle = alongBar(bar, 0.3 * kModulus);
+      muscle.lengthFactors = {{0.2, 1.0}};
+      EXPECT_TRUE(body.addMuscle(muscle).ok());
+      for (std::size_t n = 0; n < body.nodeCount(); ++n) {
+        body.setPinned(n);
+        body.positions()[n][0] = static_cast<TypeParam>(0.3 * bar.mesh.nodes[n].x());
+      }
+      EXPECT_TRUE(body.setActivation(0, activation).ok());
+      body.step(kStep);
+      double force = 0.0;
+      const auto forces = body.forces();
+      for (const std::size_t n : ends[1]) force -= forces[n][0];
+      return force;
+    };
+    const double relaxed = pullAt(0.0), hardly = pullAt(1e-6), flexed = pullAt(1.0);
+    EXPECT_LT(relaxed, -0.5 * kModulus * kArea) << "it is pressed";
+    EXPECT_NEAR(hardly / relaxed, 1.0, 5e-3);
+    EXPECT_GT(std::abs(flexed / relaxed - 1.0), 0.1) << "a tension acts there";
+  }
+}
+
 TEST(MuscleLengths, ACurveMustAscendAndBeFinite) {
   const Cage bar = muscleBar(false);
   ElasticBody<double> body = made<double>(bar, flesh(0.3));

@@ -12,8 +12,10 @@
 #include <tetskin/replay/src/state/snapshot_bytes.h>
 
 #include <cstring>
+#include <random>
 #include <tuple>
 
+#include "solver/deformable_test.h"
 #include "support/replays.h"
 
 namespace tetskin::test {
@@ -109,6 +111,23 @@ TEST_F(RefusedSnapshots, NameADeterministicWorldAndOneThatIsNot) {
   expectRefused(other.world, snapshot, StatusCode::SnapshotMismatch, "it was not deterministic, and this one is");
   scene.world.deformableSolver().setDeterministic(true);
   EXPECT_TRUE(restored(scene.world, deterministic).ok());
+}
+
+/// As many calls of addFibres, for other tets.
+TEST(RefusedSnapshotsOfChangedWorlds, NameOtherFibres) {
+  TetskinWorld worlds[2];
+  std::unique_ptr<DeformableBody> bodies[2];
+  for (const std::size_t k : {0, 1}) {
+    bodies[k] = added(worlds[k], smallCageAbove(1.0));
+    Fibres fibres;
+    fibres.tets = k == 0 ? std::vector<int>{0} : std::vector<int>{0, 1};
+    fibres.directions = {Eigen::Vector3d(1, 0, 0)};
+    fibres.stiffness = 1e4;
+    ASSERT_TRUE(bodies[k]->addFibres(fibres).ok());
+  }
+  const Bytes snapshot = saved(worlds[0].deformable());
+  EXPECT_TRUE(restored(worlds[0].deformable(), snapshot).ok());
+  expectRefused(worlds[1].deformable(), snapshot, StatusCode::SnapshotMismatch, "a soft body has other fibres");
 }
 
 /// A compound's child that has moved; a joint of another class, although Bullet calls both hinges.

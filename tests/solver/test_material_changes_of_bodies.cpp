@@ -232,6 +232,31 @@ TEST(MaterialChangesOfBodies, AMuscleLiftsWhatItsStressTimesItsAreaSays) {
   }
 }
 
+/// What is set later counts the fibres that are there; too few factors are named before what they would do.
+TEST(MaterialChangesOfBodies, FibresAndPaintedDampingCountForTheStiffestBody) {
+  TetskinWorld world;
+  Cage cage = cubeAt(0.0);
+  cage.paintedDamping.assign(cage.mesh.tetCount(), 2.0);
+  const auto body = block(world, cage, 0.0);
+  const double most = (sizeof(btScalar) == sizeof(float) ? 1e12 : 1e16) * 1000.0 * 0.4 * 0.4;
+  const auto refused = [](const Status& status, const std::string& named) {
+    EXPECT_FALSE(status.ok());
+    EXPECT_NE(status.message.find(named), std::string::npos) << status.message;
+  };
+  refused(body->setDampingScale({1.0}), "1 values for " + std::to_string(cage.mesh.tetCount()) + " tets");
+  ASSERT_TRUE(body->setYoungsModulus(0.6 * most).ok());
+  Fibres fibres;
+  fibres.tets = {7};
+  fibres.directions = {Eigen::Vector3d(1, 0, 0)};
+  fibres.stiffness = 0.6 * most;
+  refused(body->addFibres(fibres), "with these fibres");
+  ASSERT_TRUE(body->setYoungsModulus(0.3 * most).ok());
+  ASSERT_TRUE(body->addFibres(fibres).ok());
+  refused(body->setYoungsModulus(0.6 * most), "with these fibres");
+  refused(body->setStiffnessScale(std::vector<double>(cage.mesh.tetCount(), 1.2)), "with these fibres");
+  EXPECT_DOUBLE_EQ(body->youngsModulus(), 0.3 * most);
+}
+
 TEST(MaterialChangesOfBodies, OtherForceModelsRefuseThem) {
   EmptyWorld world;
   SoftBodyOptions options;

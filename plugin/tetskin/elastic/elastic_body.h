@@ -135,10 +135,12 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// body under load.
   /// factors  tetCount, 1e-6 to 1e6; with the largest, the body must not be too stiff, as for `create`
   Status setStiffnessScale(const std::vector<double>& factors);
-  /// Multiplies the damping of each tet, on top of what is painted in the cage.
+  /// Multiplies the damping of each tet, on top of what is painted in the cage. Fibres have that of the least damped
+  /// tet: none where a factor is 0.
   /// factors  tetCount, 0 or more; with the largest, the body must not be too stiff, as for `create`
   Status setDampingScale(const std::vector<double>& factors);
-  /// Adds fibres, for good. Tets may have several. The body must not become too stiff, as for `create`
+  /// Adds fibres, for good. Tets may have several. With the largest sum of their stiffness in a tet, the body must not
+  /// become too stiff, as for `create`
   Status addFibres(const Fibres& fibres);
   Result<int> addMuscle(const Muscle& muscle);  ///< returns its number; it is relaxed
   /// activation  0 to 1, see Muscle. A large change in one step is a blow, as it is in an animal

@@ -51,12 +51,13 @@ inline double yieldStressOf(double norm, double youngsModulus, double poissonRat
 /// With `lengthFactors` it pulls at any length, beside its elasticity, with a tension of a x `stress` x factor on the
 /// area at rest, with the factor at its present stretch s, that along its fibres: free, it shortens to the s where
 ///   E (1 - s) = a stress factor(s)
-/// Each step takes the stretch at its beginning, by tet. Where a stress x factor falls with the stretch by more than E,
-/// a muscle is unstable at any given force, as in an animal: some of it becomes longer, and the rest shorter.
+/// Where s is below 2 nu / (1 + 2 nu), it pulls less, and with little tension it pushes. Each step takes the stretch at
+/// its beginning, by tet. Where a stress x factor falls with the stretch by more than E, a muscle is unstable at any
+/// given force, as in an animal: some of it becomes longer, and the rest shorter.
 struct Muscle {
   std::vector<int> tets;  ///< of the cage, at least one, each once
-  std::vector<Eigen::Vector3d>
-      fibres;           ///< directions, rest space, of any length above 0: one for each tet, or one for all
+  /// Rest space, of any length above 0: one for each tet, or one for all. For growth, see Fibres
+  std::vector<Eigen::Vector3d> fibres;
   double stress = 3e5;  ///< pressure units, above 0: the tension at activation 1; a human muscle has 3e5 Pa
   /// Points (stretch, factor) of a curve of tension over length: stretches above 0, ascending; factors 0 or more.
   /// Linear between them, constant beyond. Empty: no curve. That of a skeletal muscle is about (0.5, 0), (0.9, 1),
@@ -66,12 +67,15 @@ struct Muscle {
 
 /// Fibres that make tets stiffer along them: tendon, the passive part of muscles, a hose's braid, wood. Beside the
 /// elasticity of its tets, what is stretched by a strain e along its fibres has a tension of `stiffness` x e there, on
-/// its area at rest. Neither activation nor plastic flow changes their rest length, but growth does.
+/// its area at rest. Neither activation nor plastic flow changes their rest length, but growth does. All have the
+/// damping of the least damped tet of the body: where a factor of 0 leaves one tet undamped, no fibre is damped.
 struct Fibres {
-  std::vector<int> tets;                    ///< of the cage, at least one, each once
-  std::vector<Eigen::Vector3d> directions;  ///< rest space, of any length above 0: one for each tet, or one for all
-  double stiffness = 0.0;                   ///< pressure units, above 0; a tet's stiffness factor multiplies it, too
-  bool tensionOnly = false;                 ///< as a rope, nothing resists where they become shorter
+  std::vector<int> tets;  ///< of the cage, at least one, each once
+  /// Rest space, of any length above 0: one for each tet, or one for all. In a tet whose growth is not the same along
+  /// all axes, they are directions in its grown shape
+  std::vector<Eigen::Vector3d> directions;
+  double stiffness = 0.0;    ///< pressure units, above 0; a tet's stiffness factor multiplies it, too
+  bool tensionOnly = false;  ///< as a rope, nothing resists where they become shorter
 };
 
 /// Fibres along a curve: for each tet the direction of the nearest piece of it. Of two points: the axis between them.

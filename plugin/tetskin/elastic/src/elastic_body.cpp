@@ -32,8 +32,8 @@ ElasticOptions withCageDefaults(const Cage& cage, ElasticOptions options) {
 
 /// options  completed by the cage's values
 template <class Scalar>
-Status checkOptions(const Cage& wholeCage, const ElasticOptions& options) {
-  const TetMesh& cage = wholeCage.mesh;
+Status checkOptions(const Cage& cage, const ElasticOptions& options) {
+  const TetMesh& mesh = cage.mesh;
   const auto held = [](double value) { return std::isfinite(static_cast<Scalar>(value)); };
   if (Status status =
           elastic_detail::checkMaterial<Scalar>(options.youngsModulus, options.poissonRatio, options.stiffnessDamping);
@@ -48,22 +48,20 @@ Status checkOptions(const Cage& wholeCage, const ElasticOptions& options) {
             "the tolerance must be at least 0 and below 1, and the number of iterations at least 1"};
   }
   const elastic_detail::Lame lame = elastic_detail::lameOf(options.youngsModulus, options.poissonRatio);
-  if (Status status = checkPositive<Scalar>(options.stiffnessScale, cage.tetCount(), "stiffnessScale", "tet",
+  if (Status status = checkPositive<Scalar>(options.stiffnessScale, mesh.tetCount(), "stiffnessScale", "tet",
                                             lame.mu + lame.lambda);
       !status.ok()) {
     return status;
   }
-  if (Status status = checkPositive<Scalar>(options.nodeMasses, cage.nodeCount(), "nodeMasses", "node"); !status.ok()) {
+  if (Status status = checkPositive<Scalar>(options.nodeMasses, mesh.nodeCount(), "nodeMasses", "node"); !status.ok()) {
     return status;
   }
-  const double volume = totalVolume(cage);
+  const double volume = totalVolume(mesh);
   const double mass = options.nodeMasses.empty()
                           ? options.density * volume
                           : std::accumulate(options.nodeMasses.begin(), options.nodeMasses.end(), 0.0);
-  const std::vector<double>& painted = wholeCage.paintedDamping;
-  const double damping =
-      options.stiffnessDamping * (painted.empty() ? 1.0 : *std::max_element(painted.begin(), painted.end()));
-  return elastic_detail::checkStiffness<Scalar>(options.youngsModulus, damping, mass, volume);
+  const elastic_detail::MaterialChanges painted(mesh.tetCount(), cage.paintedDamping);
+  return painted.checkStiffness<Scalar>(options.youngsModulus, options.stiffnessDamping, mass, volume);
 }
 
 Status checkMesh(const TetMesh& cage, const TetMeshReport& report) {
@@ -163,15 +161,17 @@ struct ElasticBody<Scalar>::Impl {
   std::size_t tetCount;
   double youngsModulus, poissonRatio, damping;
 
-  /// scale, ofDamping  the largest factors of stiffness and damping
-  Status checkStiffness(double scale, double ofDamping) const {
-    return elastic_detail::checkStiffness<Scalar>(std::max(scale, 1.0) * youngsModulus, ofDamping * damping, mass(),
-                                                  volume);
-  }
   /// Gives the tets what was set, if it is valid.
   Status change(Status status) {
     if (status.ok()) applyChanges();
     return status;
+  }
+  /// Makes a change by which the body must not become too stiff.
+  template <class Change>
+  Status changeStiffness(Change&& make) {
+    return change(changes.tryChange(make, [this](const elastic_detail::MaterialChanges& changed) {
+      return changed.template checkStiffness<Scalar>(youngsModulus, damping, mass(), volume);
+    }));
   }
   void applyChanges() {
     if (dynamics.tets()) changes.applyTo(dynamics, poissonRatio, youngsModulus, damping);
@@ -308,23 +308,17 @@ Status ElasticBody<Scalar>::setGrowthTensors(const std::vector<std::array<double
 template <class Scalar>
 Status ElasticBody<Scalar>::setStiffnessScale(const std::vector<double>& factors) {
   if (!impl_) return kNoNodes;
-  const double largest = factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
-  Status status = impl_->checkStiffness(largest, impl_->changes.largestDamping());
-  return status.ok() ? impl_->change(impl_->changes.setStiffnessScale(factors)) : status;
+  return impl_->changeStiffness([&](auto& changes) { return changes.setStiffnessScale(factors); });
 }
 template <class Scalar>
 Status ElasticBody<Scalar>::setDampingScale(const std::vector<double>& factors) {
   if (!impl_) return kNoNodes;
-  Status status = impl_->checkStiffness(impl_->changes.largestScale(), impl_->changes.largestDamping(factors));
-  return status.ok() ? impl_->change(impl_->changes.setDampingScale(factors)) : status;
+  return impl_->changeStiffness([&](auto& changes) { return changes.setDampingScale(factors); });
 }
 template <class Scalar>
 Status ElasticBody<Scalar>::addFibres(const Fibres& fibres) {
   if (!impl_) return kNoNodes;
-  const elastic_detail::MaterialChanges& changes = impl_->changes;
-  const double relative = 1.0 + std::max(fibres.stiffness, 0.0) / impl_->youngsModulus;
-  Status status = impl_->checkStiffness(relative * std::max(changes.largestScale(), 1.0), changes.largestDamping());
-  return status.ok() ? impl_->change(impl_->changes.addFibres(fibres)) : status;
+  return impl_->changeStiffness([&](auto& changes) { return changes.addFibres(fibres); });
 }
 template <class Scalar>
 Result<int> ElasticBody<Scalar>::addMuscle(const Muscle& muscle) {

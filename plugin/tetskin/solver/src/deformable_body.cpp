@@ -127,13 +127,6 @@ Status checkSolver(btDeformableBodySolver& solver, const SoftBodyOptions& option
   return refusal("ForceModel::Corotated", changes);
 }
 
-/// The material of the stiffest and most damped tet.
-ElasticMaterial stiffest(ElasticMaterial material, double scale, double ofDamping) {
-  material.youngsModulus *= std::max(scale, 1.0);
-  material.damping *= ofDamping;
-  return material;
-}
-
 /// Rejects gravity that moves bodies farther in a step than numbers of this precision can represent.
 Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
   constexpr double kMaxBodyLengths = 1e6;
@@ -218,7 +211,7 @@ struct DeformableBody::Impl final : BodyOwner {
     Status status = checkMaterial(now);
     if (status.ok()) {
       const elastic_detail::MaterialChanges none, &changes = corotated() ? corotated()->body().changes : none;
-      status = checkStiffness(*body, stiffest(now, changes.largestScale(), changes.largestDamping()));
+      status = checkStiffness(*body, now, changes);
     }
     if (status.ok()) apply(now);
     return status;
@@ -244,6 +237,13 @@ struct DeformableBody::Impl final : BodyOwner {
       Status status = change(elastic.body().changes);
       if (status.ok()) elastic.applyChanges();
       return status;
+    });
+  }
+  /// The same for settings by which the body must not become too stiff.
+  template <class Change>
+  Status changeStiffness(const char* what, Change&& change) {
+    return changeSettings(what, [&](auto& changes) {
+      return changes.tryChange(change, [&](const auto& changed) { return checkStiffness(*body, material, changed); });
     });
   }
   /// The same for the shapes at rest alone.
@@ -314,8 +314,8 @@ Result<std::unique_ptr<DeformableBody>> DeformableBody::add(btDeformableMultiBod
                                      : defaultYoungsModulus(cage.mesh, options, masses, pressure, !corotated),
                                  options.poissonRatio, options.stiffnessDamping};
   if (Status status = checkMaterial(material); !status.ok()) return status;
-  const double ofDamping = elastic_detail::MaterialChanges(cage.mesh.tetCount(), cage.paintedDamping).largestDamping();
-  if (Status status = checkStiffness(*body, stiffest(material, 1.0, ofDamping)); !status.ok()) return status;
+  const elastic_detail::MaterialChanges painted(cage.mesh.tetCount(), cage.paintedDamping);
+  if (Status status = checkStiffness(*body, material, painted); !status.ok()) return status;
   if (Status status = checkGravity(world.getGravity(), *body); !status.ok()) return status;
 
   auto impl = std::make_unique<Impl>(world, solver, std::move(body));
@@ -532,28 +532,15 @@ Status DeformableBody::setGrowthTensors(const std::vector<std::array<double, 9>>
 }
 
 Status DeformableBody::setStiffnessScale(const std::vector<double>& factors) {
-  return impl_->changeSettings("stiffness by tet", [&](auto& changes) {
-    const double largest = factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
-    Status status = checkStiffness(body(), stiffest(impl_->material, largest, changes.largestDamping()));
-    return status.ok() ? changes.setStiffnessScale(factors) : status;
-  });
+  return impl_->changeStiffness("stiffness by tet", [&](auto& changes) { return changes.setStiffnessScale(factors); });
 }
 
 Status DeformableBody::setDampingScale(const std::vector<double>& factors) {
-  return impl_->changeSettings("damping by tet", [&](auto& changes) {
-    Status status =
-        checkStiffness(body(), stiffest(impl_->material, changes.largestScale(), changes.largestDamping(factors)));
-    return status.ok() ? changes.setDampingScale(factors) : status;
-  });
+  return impl_->changeStiffness("damping by tet", [&](auto& changes) { return changes.setDampingScale(factors); });
 }
 
 Status DeformableBody::addFibres(const Fibres& fibres) {
-  return impl_->changeSettings("fibres", [&](auto& changes) {
-    ElasticMaterial material = stiffest(impl_->material, changes.largestScale(), changes.largestDamping());
-    material.youngsModulus *= 1.0 + std::max(fibres.stiffness, 0.0) / impl_->material.youngsModulus;
-    Status status = checkStiffness(body(), material);
-    return status.ok() ? changes.addFibres(fibres) : status;
-  });
+  return impl_->changeStiffness("fibres", [&](auto& changes) { return changes.addFibres(fibres); });
 }
 
 Result<int> DeformableBody::addMuscle(const Muscle& muscle) {

@@ -85,7 +85,7 @@ bool GroupMotions::assemble(const TetStiffness& stiffness, const std::vector<dou
     const Eigen::Index at = kMotions * groupOf_[slot];
     sums.block<kMotions, kMotions>(at, at) += masses[slot] * own.transpose().lazyProduct(own);
   }
-  for (std::size_t p = 0; p < stiffness.pointCount(); ++p) addStiffness(stiffness, stiffness.point(p), sums);
+  stiffness.forPoints([&](const StiffnessPoint& at) { addStiffness(stiffness, at, sums); });
   for (Eigen::Index k = 0; k < size; k += kMotions) {
     auto own = sums.block<kMotions, kMotions>(k, k);
     const double shift = kShift * own.trace();

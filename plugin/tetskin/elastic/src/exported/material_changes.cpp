@@ -48,11 +48,13 @@ bool isGrowth(const RowMatrix& deformation) {
 }
 
 /// The contraction w, see `contracted`, by which a muscle pulls with a tension beside its elasticity when it is
-/// stretched by s. A tet that is free across its fibres has (1 + 2 nu w) (s (1 + w) - 1) E on its first area.
+/// stretched by s. A tet that is free across its fibres has (1 + 2 nu w) (s (1 + w) - 1) E on its first area. Below a
+/// stretch of 2 nu / (1 + 2 nu), that first falls with w. It gets less there: the exact w would jump where the tension
+/// begins.
 /// tension  over Young's modulus
 double contraction(double tension, double poissonRatio, double stretch) {
   if (!(tension > 0.0)) return 0.0;
-  const double slope = stretch + 2.0 * poissonRatio * (stretch - 1.0);
+  const double slope = std::max(stretch + 2.0 * poissonRatio * (stretch - 1.0), 0.0);
   return std::min(2.0 * tension / (slope + std::sqrt(slope * slope + 8.0 * poissonRatio * stretch * tension)),
                   1.0 / kLeastGrowth - 1.0);
 }
@@ -195,15 +197,16 @@ Status MaterialChanges::setDampingScale(const std::vector<double>& factors) {
 }
 
 /// By tet of the cage; empty: 1.
-std::vector<double> MaterialChanges::dampingFactors(const std::vector<double>& scale) const {
-  if (paintedDamping_.empty() || scale.empty()) return paintedDamping_.empty() ? scale : paintedDamping_;
+std::vector<double> MaterialChanges::dampingFactors() const {
+  if (paintedDamping_.empty() || dampingScale_.empty())
+    return paintedDamping_.empty() ? dampingScale_ : paintedDamping_;
   std::vector<double> factors = paintedDamping_;
-  for (std::size_t t = 0; t < factors.size(); ++t) factors[t] *= scale[t];
+  for (std::size_t t = 0; t < factors.size(); ++t) factors[t] *= dampingScale_[t];
   return factors;
 }
 
-double MaterialChanges::largestDamping(const std::vector<double>& scale) const {
-  const std::vector<double> factors = dampingFactors(scale);
+double MaterialChanges::largestDamping() const {
+  const std::vector<double> factors = dampingFactors();
   return factors.empty() ? 1.0 : *std::max_element(factors.begin(), factors.end());
 }
 
@@ -214,6 +217,27 @@ Status MaterialChanges::addFibres(const Fibres& fibres) {
   }
   fibres_.push_back(fibres);
   return {};
+}
+
+std::size_t MaterialChanges::fibreTetCount() const {
+  std::size_t count = 0;
+  for (const Fibres& fibres : fibres_) count += fibres.tets.size();
+  return count;
+}
+
+double MaterialChanges::largestFibreStiffness() const {
+  if (fibres_.empty()) return 0.0;
+  std::vector<double> sums(tetCount_, 0.0);
+  for (const Fibres& fibres : fibres_) {
+    for (const int tet : fibres.tets) sums[static_cast<std::size_t>(tet)] += fibres.stiffness;
+  }
+  return *std::max_element(sums.begin(), sums.end());
+}
+
+template <class S>
+Status MaterialChanges::checkStiffness(double youngsModulus, double damping, double mass, double volume) const {
+  const double stiffest = std::max(largestScale(), 1.0) * (youngsModulus + largestFibreStiffness());
+  return elastic_detail::checkStiffness<S>(stiffest, largestDamping() * damping, mass, volume, !fibres_.empty());
 }
 
 /// By the order of their calls, and tet of the cage, with the growth of now.
@@ -328,7 +352,7 @@ void MaterialChanges::applyShapesTo(BodyDynamics<S>& body, double poissonRatio, 
 template <class S>
 void MaterialChanges::applyTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus, double damping) const {
   if (body.tets()->setStiffnessScale(stiffnessScale_)) body.setMaterial(lameOf(youngsModulus, poissonRatio));
-  body.setDamping(damping, dampingFactors(dampingScale_));
+  body.setDamping(damping, dampingFactors());
   applyShapesTo(body, poissonRatio, youngsModulus);
   body.tets()->setPlasticity(plasticity_ ? &*plasticity_ : nullptr);
 }
@@ -363,6 +387,7 @@ void MaterialChanges::serialize(StateStream& stream) {
 }
 
 #define TETSKIN_INSTANTIATE(Scalar)                                                                  \
+  template Status MaterialChanges::checkStiffness<Scalar>(double, double, double, double) const;     \
   template void MaterialChanges::applyShapesTo<Scalar>(BodyDynamics<Scalar>&, double, double) const; \
   template void MaterialChanges::applyTo<Scalar>(BodyDynamics<Scalar>&, double, double, double) const;
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)

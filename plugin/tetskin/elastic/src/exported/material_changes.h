@@ -11,6 +11,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace tetskin::elastic_detail {
@@ -32,16 +33,24 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   Status setDampingScale(const std::vector<double>& factors);
   Status addFibres(const Fibres& fibres);
   std::size_t fibresCount() const { return fibres_.size(); }
+  std::size_t fibreTetCount() const;  ///< over all of them
   Result<int> addMuscle(const Muscle& muscle);
   Status setActivation(int muscle, double activation);
   double activation(int muscle) const;  ///< 0 for one that does not exist
   std::size_t muscleCount() const { return muscles_.size(); }
 
-  double largestScale() const;  ///< the largest factor of the stiffness; 1 without any
-  /// The same of the damping.
-  /// scale  in place of that which is set
-  double largestDamping(const std::vector<double>& scale) const;
-  double largestDamping() const { return largestDamping(dampingScale_); }
+  /// Ok unless a body becomes too stiff, or too strongly damped, by them: see elastic_detail::checkStiffness.
+  template <class S>
+  Status checkStiffness(double youngsModulus, double damping, double mass, double volume) const;
+  /// Makes change(these) if it succeeds, and check(these) after it; otherwise nothing is changed. Cost O(T)
+  template <class Change, class Check>
+  Status tryChange(Change&& change, Check&& check) {
+    MaterialChanges changed = *this;
+    Status status = change(changed);
+    if (status.ok()) status = check(static_cast<const MaterialChanges&>(changed));
+    if (status.ok()) *this = std::move(changed);
+    return status;
+  }
   /// Gives the shapes at which they are at rest to a body's tets: growth and muscles. The body refers to this while
   /// muscles depend on their length.
   template <class S>
@@ -58,7 +67,10 @@ class TETSKIN_ELASTIC_API MaterialChanges {
     double activation = 0.0;
     double steepest = 0.0;  ///< the largest slope of its curve of tension over length; at least 0
   };
-  std::vector<double> dampingFactors(const std::vector<double>& scale) const;
+  double largestScale() const;           ///< the largest factor of the stiffness; 1 without any
+  double largestDamping() const;         ///< the same of the damping
+  double largestFibreStiffness() const;  ///< the largest sum over the fibres of a tet
+  std::vector<double> dampingFactors() const;
   std::vector<std::vector<TetFibre>> fibresByTet() const;
   bool givesShapes() const;
   bool dependsOnLengths() const;

@@ -70,8 +70,7 @@ Eigen::Matrix3d TetStiffness::stress(const Eigen::Matrix3d& gradient, std::size_
 /// Plain numbers, which compilers keep in registers.
 void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector<double>& impulses) const {
   assert(velocities.size() == impulses.size());
-  for (std::size_t p = 0; p < pointCount(); ++p) {
-    const StiffnessPoint at = point(p);
+  forPoints([&](const StiffnessPoint& at) {
     double g[9] = {};
     for (std::size_t n = 0; n < at.nodes; ++n) {
       const double *v = &velocities[3 * at.slots[n]], *a = at.vectors[n].data();
@@ -81,7 +80,7 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
     }
     if (at.layer > 0) {
       addFibres(at, Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(g), impulses);
-      continue;
+      return;
     }
     const double bulk = ratio_ * (g[0] + g[4] + g[8]), more = spread_ - 1.0;
     const double xx = 2.0 * g[0] + bulk, yy = 2.0 * g[4] + bulk, zz = 2.0 * g[8] + bulk;
@@ -96,7 +95,7 @@ void TetStiffness::addProduct(const std::vector<double>& velocities, std::vector
         to[i] += more * (g[3 * i] * a[0] + g[3 * i + 1] * a[1] + g[3 * i + 2] * a[2]);
       }
     }
-  }
+  });
 }
 
 void TetStiffness::addFibres(const StiffnessPoint& at, const Eigen::Matrix3d& gradient,

@@ -13,8 +13,8 @@
 namespace tetskin::elastic_detail {
 
 /// An integration point of a tet: a linear tet has one, a quadratic tet four. A motion v of the nodes has the gradient
-/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + spread G + G^T) a_n. Fibres have points of their own:
-/// those of even layers get tr(G) a_n, of odd ones G a_n.
+/// G = sum_n v_n a_n^T there, and node n gets (ratio tr(G) + spread G + G^T) a_n. Fibres have points of their own, in
+/// layers after that of the tets, which is 0: those of odd layers get tr(G) a_n, of even ones G a_n.
 struct StiffnessPoint {
   const std::uint32_t* slots = nullptr;      ///< of the tet's nodes
   const Eigen::Vector3d* vectors = nullptr;  ///< a, by node
@@ -45,10 +45,15 @@ class TetStiffness {
   /// The impulses per gradient G at a point of a layer: ratio tr(G) + spread G + G^T.
   Eigen::Matrix3d stress(const Eigen::Matrix3d& gradient, std::size_t layer = 0) const;
 
-  std::size_t pointCount() const { return counts_.size() * layers_; }
-  StiffnessPoint point(std::size_t k) const {
-    const std::size_t layer = k / counts_.size(), own = k % counts_.size();
-    return {&slots_[firstSlots_[own]], &vectors_[layer * perLayer_ + firstVectors_[own]], counts_[own], layer};
+  /// Calls visit(point) for all points, layer by layer.
+  template <class Visit>
+  void forPoints(Visit&& visit) const {
+    for (std::size_t layer = 0; layer < layers_; ++layer) {
+      const Eigen::Vector3d* const vectors = vectors_.data() + layer * perLayer_;
+      for (std::size_t k = 0; k < counts_.size(); ++k) {
+        visit(StiffnessPoint{&slots_[firstSlots_[k]], vectors + firstVectors_[k], counts_[k], layer});
+      }
+    }
   }
 
  private:

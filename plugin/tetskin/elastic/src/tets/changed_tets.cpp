@@ -162,7 +162,7 @@ void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet,
   makeChanges();
   forBoth([&](auto& packed) {
     packed.given.resize(9 * packed.flowed.size(), S(0));
-    packed.stiffenings.resize(kGroup * packed.packs.size(), 1.0);
+    packed.stiffenings.resize(kGroup * packed.packs.size(), {1.0, 3.0});
   });
   const bool known = isGiven_ && !byTet.empty() && given_.size() == byTet.size();
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
@@ -188,7 +188,7 @@ void CorotatedTets<S>::setGiven(Tets& packed, std::size_t tet, const Eigen::Matr
   using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
   const Matrix inverse = given.inverse();
   const double volume = given.determinant();
-  packed.stiffenings[tet] = volume * inverse.squaredNorm() / 3.0;
+  packed.stiffenings[tet] = {volume, inverse.squaredNorm()};
   for (std::size_t point = 0; point < Pack::kPoints; ++point) {
     const std::size_t at = Pack::kPoints * (tet / kGroup) + point, lane = tet % kGroup;
     S* const change = &packed.changes[kChange * at + lane];
@@ -228,7 +228,8 @@ void CorotatedTets<S>::findStiffening() {
     for (std::size_t tet = 0; tet < packed.stiffenings.size(); ++tet) {
       const auto volume = static_cast<double>(packed.packs[tet / kGroup].shear[tet % kGroup]);
       whole += volume;
-      now += (packed.stiffer.empty() ? 1.0 : packed.stiffer[tet]) * volume * packed.stiffenings[tet];
+      const auto& [grown, squared] = packed.stiffenings[tet];
+      now += (packed.stiffer.empty() ? 1.0 : packed.stiffer[tet]) * volume * grown * squared / 3.0;
     }
   });
   stiffening_ = now / whole;

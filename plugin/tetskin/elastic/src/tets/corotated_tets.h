@@ -116,8 +116,9 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     AlignedVector<S> alphas;                ///< by pack and point, see TetWork; empty until some tet may be flat
     AlignedVector<S> changes, assembledChanges, given, yields, flowed;  ///< see TetWork; empty until they are needed
     std::vector<double> stiffer, extraDamping;                          ///< by tet in the packs; empty: 1, 0
-    std::vector<double> stiffenings;  ///< by tet in the packs: the stiffness of its given shape over the first
-    AlignedVector<S> factors;         ///< see TetWork; empty: 1
+    /// By tet in the packs: the volume of its given shape, and the squared norm of its inverse
+    std::vector<std::array<double, 2>> stiffenings;
+    AlignedVector<S> factors;  ///< see TetWork; empty: 1
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };

@@ -23,7 +23,7 @@ Eigen::Vector3d turnedBy(const S* quaternion, const Eigen::Vector3d& v) {
 
 /// That of a tet, of its parts in the cage.
 template <class Parts>
-TetFibre meanOf(const std::vector<TetFibre>& family, const Parts& parts) {
+TetFibre meanFibre(const std::vector<TetFibre>& family, const Parts& parts) {
   TetFibre mean;
   const double share = 1.0 / static_cast<double>(parts.size());
   for (const auto part : parts) {
@@ -57,11 +57,11 @@ FibreTets<S>::FibreTets(const RestTets& rest, const std::vector<std::uint32_t>& 
   std::vector<std::size_t> layers(rest.count() + rest.quadratic.size(), 0);  // by tet: the next free one
   for (const std::vector<TetFibre>& family : families) {
     for (std::size_t t = 0; t < rest.count(); ++t) {
-      const TetFibre fibre = meanOf(family, std::array<std::uint32_t, 1>{rest.cageTets[t]});
+      const TetFibre fibre = meanFibre(family, std::array<std::uint32_t, 1>{rest.cageTets[t]});
       if (fibre.stiffness > 0.0) addLinear(rest, slotOf, t, fibre, layers[t]++);
     }
     for (std::size_t q = 0; q < rest.quadratic.size(); ++q) {
-      const TetFibre fibre = meanOf(family, rest.quadratic[q].cageTets);
+      const TetFibre fibre = meanFibre(family, rest.quadratic[q].cageTets);
       if (fibre.stiffness > 0.0) addQuadratic(rest, slotOf, q, fibre, layers[rest.count() + q]++);
     }
   }
@@ -150,7 +150,10 @@ void FibreTets<S>::addForces(const S* points, const S* frames, const std::uint32
   for (Spring& spring : springs_) {
     const Stretch stretch = stretchOf(spring, points, frames, partOf);
     const bool taut = stretch.strain > 0.0, pulls = taut || !spring.tensionOnly;
-    if (!(stretch.length > kShortest)) continue;
+    if (!(stretch.length > kShortest)) {
+      if (keeps) spring.now = spring.assembled;  // a snapshot has no other direction
+      continue;
+    }
     const Eigen::Vector3d d = stretch.carried / stretch.length;
     if (keeps) spring.now = {d, taut ? stretch.strain / stretch.length : 0.0};
     if (!pulls) continue;

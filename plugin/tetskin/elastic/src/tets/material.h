@@ -62,9 +62,10 @@ template <class Scalar>
 constexpr double kMaxStiffness = sizeof(Scalar) == sizeof(float) ? 1e12 : 1e16;
 
 /// True if a body with this ratio of stiffness to mass can be simulated.
-/// volume  at rest; its cube root counts as the size
+/// youngsModulus  with what fibres add to it
+/// volume         at rest; its cube root counts as the size
 template <class Scalar>
-Status checkStiffness(double youngsModulus, double damping, double mass, double volume) {
+Status checkStiffness(double youngsModulus, double damping, double mass, double volume, bool withFibres = false) {
   // Seconds. Damping adds stiffness times damping over the step to the matrix; the limit was tested in steps of this
   // length.
   constexpr double kLongStep = 1.0 / 60.0;
@@ -72,10 +73,12 @@ Status checkStiffness(double youngsModulus, double damping, double mass, double 
   const double maximum = kMaxStiffness<Scalar> * density * size * size / (1.0 + damping / kLongStep);
   if (!(mass > 0.0 && volume > 0.0) || youngsModulus <= maximum) return {};
   char text[256];
-  std::snprintf(text, sizeof text,
-                "a Young's modulus of %.3g with damping of %.3g s is too stiff for a mass of %.3g in a volume of %.3g, "
-                "in %s: at most %.3g",
-                youngsModulus, damping, mass, volume, sizeof(Scalar) == sizeof(float) ? "float" : "double", maximum);
+  std::snprintf(
+      text, sizeof text,
+      "a Young's modulus of %.3g with %sdamping of %.3g s is too stiff for a mass of %.3g in a volume of %.3g, "
+      "in %s: at most %.3g",
+      youngsModulus, withFibres ? "these fibres and " : "", damping, mass, volume,
+      sizeof(Scalar) == sizeof(float) ? "float" : "double", maximum);
   return {StatusCode::InvalidOption, text};
 }
 

@@ -69,7 +69,8 @@ void ElasticForce::checkState(WorldStream& stream) {
   stream.same(quadratic + (faces << 32), "a soft body has other quadratic tets, or another surface of its pressure");
   stream.same(body_.dynamics->componentCount(), "a soft body has another number of parts");
   stream.same(body_.changes.muscleCount(), "a soft body has another number of muscles");
-  stream.same(body_.changes.fibresCount(), "a soft body has other fibres");
+  const std::uint64_t fibres = body_.changes.fibresCount(), fibreTets = body_.changes.fibreTetCount();
+  stream.same(fibres + (fibreTets << 32), "a soft body has other fibres");
   stream.same(restMeasureOf(*body_.body), "a soft body has another shape at rest, or was scaled");
 }
 

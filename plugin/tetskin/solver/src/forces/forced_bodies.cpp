@@ -148,9 +148,10 @@ Matter matterOf(const btSoftBody& body) {
 
 }  // namespace
 
-Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material) {
+Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material,
+                      const elastic_detail::MaterialChanges& changes) {
   const Matter matter = matterOf(body);
-  return elastic_detail::checkStiffness<btScalar>(material.youngsModulus, material.damping, matter.mass, matter.volume);
+  return changes.checkStiffness<btScalar>(material.youngsModulus, material.damping, matter.mass, matter.volume);
 }
 
 Status checkPressure(const btSoftBody& body, double pressure) {

@@ -52,8 +52,9 @@ void readNodes(const btSoftBody& body, Dynamics& dynamics);
 /// Errors  Degenerate: says why the tets cannot be simulated
 Result<elastic_detail::RestTets> restTetsOf(const btSoftBody& body);
 Status checkMaterial(const ElasticMaterial& material);
-/// Ok unless the material is too stiff for the body's mass: see elastic_detail::checkStiffness.
-Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material);
+/// Ok unless the material, with its changes, is too stiff for the body's mass: see elastic_detail::checkStiffness.
+Status checkStiffness(const btSoftBody& body, const ElasticMaterial& material,
+                      const elastic_detail::MaterialChanges& changes);
 /// Ok unless it is not finite, or too large for the body's mass and size: see elastic_detail::checkPressure.
 Status checkPressure(const btSoftBody& body, double pressure);
 Status checkGas(const btSoftBody& body, double pressure, double outside);
