@@ -184,7 +184,7 @@ double BodyComponents<S>::largestRadius() const {
 
 template <class S>
 double BodyComponents<S>::impactFrequency(std::size_t component) const {
-  constexpr double kPi = 3.14159265358979324;
+  constexpr double kPi = 3.14159265358979324;  // half a period is a phase of it
   const ComponentMotion& motion = motions_[component];
   const double length = kImpactLength * motion.radius();
   if (!(length > 0.0)) return 0.0;

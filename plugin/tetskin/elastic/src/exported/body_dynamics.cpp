@@ -587,7 +587,7 @@ double BodyDynamics<S>::keptInImpact(std::size_t component, double energy) const
 
 template <class S>
 double BodyDynamics<S>::bounceSeconds(double mass, double radius, double leastKept) const {
-  constexpr double kPi = 3.14159265358979324;
+  constexpr double kPi = 3.14159265358979324;  // half a period is a phase of it
   const double seconds = tets_ && !tets_->flows() ? components_.impactSeconds(mass, radius) : 0.0;
   return seconds > 0.0 && keptInHalfPeriod(meanDamping_, kPi / seconds) >= leastKept ? seconds : 0.0;
 }

@@ -192,7 +192,7 @@ bool isFelt(const ImpactPair& pair, const btVector3& push, const PushSums& sums,
 }  // namespace
 
 btScalar leastImpact(const btVector3& gravity, btScalar size, btScalar seconds) {
-  constexpr btScalar kGravities = 2;
+  constexpr btScalar kGravities = 2;              // steps of falling: a body at rest takes one
   constexpr btScalar kLeastWay = btScalar(1e-3);  // without gravity: of the body's size, within a step
   const btScalar falls = gravity.length() * seconds;
   return falls > 0 ? kGravities * falls : kLeastWay * size / seconds;

@@ -25,6 +25,7 @@
 namespace tetskin {
 namespace {
 
+/// Of a step, for both reasons together.
 constexpr double kMostParts = 64.0;
 /// Of a body's size, by which gravity may move it in a step.
 constexpr btScalar kMostFall = btScalar(0.06);
