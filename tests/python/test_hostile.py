@@ -219,7 +219,7 @@ NAMES = {
     "a word near to none": (
         lambda t: ts.create_cage(t.m, xyz=3),
         "create_cage() got an unexpected keyword argument 'xyz'; there are: mesh, target_tets, duplicate_elements, "
-        "fit, stiffness, density, progress",
+        "fit, stiffness, density, damping, progress",
     ),
     "of a class": (lambda t: ts.Skin(t.c, t.m, normal=1), "Skin() got an unexpected keyword argument 'normal'; did"),
     "of a static method": (lambda t: ts.Shape.box(radius=1), "Shape.box() got an unexpected keyword argument 'radius'"),

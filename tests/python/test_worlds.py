@@ -157,7 +157,7 @@ def test_the_surface_under_pressure_is_the_visible_one_another_one_or_that_of_th
     body.set_pressure_surface(mesh)
     assert body.volume == pytest.approx(visible, rel=1e-5)
     with pytest.raises(ts.Error, match="not closed"):
-        body.set_pressure_surface((mesh.positions, mesh.triangles[1:]))
+        body.set_pressure_surface(ts.TriangleMesh(mesh.positions, mesh.triangles[1:]))
     with pytest.raises(TypeError):
         body.set_pressure_surface()
     assert body.volume == pytest.approx(visible, rel=1e-5)
