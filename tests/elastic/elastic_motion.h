@@ -9,14 +9,23 @@
 #include <tetskin/elastic/elastic_body.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "elastic_fixtures.h"
+#include "support/bars.h"
 
 namespace tetskin::test {
+
+/// A box that starts at the origin, of linear tets, or of quadratic ones in cubes of twice the size.
+/// cubes  even numbers, of the linear one
+inline Cage boxCage(const std::array<int, 3>& cubes, const Eigen::Vector3d& size, bool quadratic) {
+  if (!quadratic) return Cage(makeBox(cubes, size));
+  return refineQuadratic(Cage(makeBox({cubes[0] / 2, cubes[1] / 2, cubes[2] / 2}, size))).value();
+}
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

@@ -19,8 +19,7 @@ TYPED_TEST_SUITE(DampingByTetOf, Scalars);
 constexpr double kHalfTurn = 3.14159265358979324, kSpeedOfSound = 10.0;  // of a bar with E 1e5 and a density of 1000
 
 Cage dampedBar(bool quadratic) {
-  Cage bar(makeBox(quadratic ? std::array<int, 3>{10, 1, 1} : std::array<int, 3>{20, 2, 2}, Vector3d(1.0, 0.1, 0.1)));
-  return quadratic ? refineQuadratic(bar).value() : bar;
+  return boxCage({20, 2, 2}, Vector3d(1.0, 0.1, 0.1), quadratic);
 }
 
 ElasticOptions ringing(double damping) {

@@ -22,8 +22,7 @@ TYPED_TEST_SUITE(FibresOf, Scalars);
 
 /// A bar along x, of 1 x 0.25 x 0.25 m.
 Cage fibreBar(bool quadratic) {
-  Cage bar(makeBox(quadratic ? std::array<int, 3>{4, 1, 1} : std::array<int, 3>{8, 2, 2}, Vector3d(1.0, 0.25, 0.25)));
-  return quadratic ? refineQuadratic(bar).value() : bar;
+  return boxCage({8, 2, 2}, Vector3d(1.0, 0.25, 0.25), quadratic);
 }
 
 Fibres throughout(const Cage& bar, const Vector3d& direction, double stiffness, bool tensionOnly = false) {

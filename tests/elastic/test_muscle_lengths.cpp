@@ -29,8 +29,7 @@ TYPED_TEST_SUITE(MuscleLengthsOf, Scalars);
 
 /// A bar along x, of 1 x 0.25 x 0.25 m.
 Cage muscleBar(bool quadratic) {
-  Cage bar(makeBox(quadratic ? std::array<int, 3>{4, 1, 1} : std::array<int, 3>{8, 2, 2}, Vector3d(1.0, 0.25, 0.25)));
-  return quadratic ? refineQuadratic(bar).value() : bar;
+  return boxCage({8, 2, 2}, Vector3d(1.0, 0.25, 0.25), quadratic);
 }
 
 /// All of it along x.
