@@ -99,6 +99,7 @@ int run(CageCommand command) {
   PaintedMaps maps = mapsOf(command);
   options.stiffness = std::move(maps.stiffness);
   options.density = std::move(maps.density);
+  options.damping = std::move(maps.damping);
   announceCage(options.targetTets, command.model);
   Cage cage = cageFor(surface, options, &report);
   CalibrationReport calibration;
