@@ -217,6 +217,8 @@ int DeformableSolver::Impl::partsOfSteps(const btDeformableMultiBodyDynamicsWorl
                                          btScalar ahead) {
   if (!(seconds > 0 && seconds < BT_LARGE_FLOAT)) return 1;
   const double fall = partsForGravity(seconds), most = std::min(static_cast<double>(impactParts), kMostParts / fall);
+  // A callback may make a step within a step: the bodies are then being solved, and cannot be asked.
+  if (inStep()) return static_cast<int>(fall);
   return static_cast<int>(fall *
                           partsForImpacts(world, seconds / static_cast<btScalar>(fall), ahead, std::floor(most)));
 }
