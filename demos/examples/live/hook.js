@@ -80,8 +80,13 @@ window.tetskinLive = {
   async step(frames = 1) {
     const {live} = window;
     await quietly(live);
-    for (let left = frames; left > 0; left -= FRAMES_AT_ONCE) {
-      await live.ask('step', {frames: Math.min(left, FRAMES_AT_ONCE)});
+    live.draws = false;
+    try {
+      for (let left = frames; left > 0; left -= FRAMES_AT_ONCE) {
+        await live.ask('step', {frames: Math.min(left, FRAMES_AT_ONCE)});
+      }
+    } finally {
+      live.draws = true;
     }
     return this.state();
   },

@@ -54,6 +54,7 @@ class Live {
     this.tool = 'hold';
     this.playing = true;
     this.due = 0;
+    this.draws = true;  // false: frames to come will replace this one
     this.errors = [];
     this.opened = 0;
     this.data = JSON.parse(element('model').textContent);
@@ -551,7 +552,7 @@ class Live {
   }
 
   draw() {
-    if (!this.stage) return;
+    if (!this.stage || !this.draws) return;
     if (this.stage.controls.update()) this.changed = true;
     if (!this.changed) return;
     this.changed = false;
