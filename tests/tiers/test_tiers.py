@@ -430,7 +430,7 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^full$ --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
+        self.assertIn("--label-exclude ^full$|^single$ -C programs --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
                       "live[.]driver|(core|demos|io)[.].*)$", self.ctest_call(calls))
         self.assertIn("tests of core, demos, io: nothing that they use has changed", done.stdout)
         self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
@@ -473,23 +473,24 @@ class Script(InASmallProject):
         self.write("demos/examples/live/page.js")
         done, calls = self.run_script("--change")
         self.assertIn("|js[.]module|live[.]one_scene)$", self.ctest_call(calls))
-        self.assertIn("--label-exclude ^full$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^full$|^single$", self.ctest_call(calls))
 
     def test_change_is_all_where_everything_counts_as_changed(self):
         self.note("0" * 40)
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("Everything counts as changed", done.stdout)
-        self.assertIn("--label-exclude ^change$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^change$|^single$ -C programs", self.ctest_call(calls))
 
     def test_all_notes_that_it_has_passed(self):
         done, calls = self.run_script("--all")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^change$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^change$|^single$ -C programs", self.ctest_call(calls))
         self.assertIn("Noted in tests/last_full_run", done.stdout)
         self.setUp()
-        done, _ = self.run_script("--all", "-R", "Weld")
+        done, calls = self.run_script("--all", "-R", "Weld")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("--label-exclude ^change$ -R Weld", self.ctest_call(calls), "one by one")
         self.assertNotIn("Noted", done.stdout, "a part has passed, not all")
 
     def test_change_takes_no_arguments(self):
