@@ -55,7 +55,7 @@ endif()
 function(tetskin_test_sanitized name label folders_from)
   tetskin_test_configuration(${name} FOLDER sanitized_in_double LABELS ${label} TARGET unit_tests
     TESTS "^(core|threads|cage|elastic|io|bullet|solver|contact|touch|reduced|replay|world)[.]"
-    LEAVE_OUT "^(replay[.](heap|drag|twist|pit|Deterministic|RecordedCallsFromAllBeginnings)|solver[.]EveryNumberInAllCells)"
+    LEAVE_OUT "^(replay[.](heap|drag|twist|pit|changing|Deterministic|RecordedCallsFromAllBeginnings)|solver[.]EveryNumberInAllCells)"
     OPTIONS ${sanitizing_compiler} -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O2 -g1"
     -DTETSKIN_SANITIZE=address,undefined -DTETSKIN_DOUBLE_PRECISION=ON -DTETSKIN_DEMOS=OFF
     -DTETSKIN_TEST_FOLDERS_FROM=${folders_from})
