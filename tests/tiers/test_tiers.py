@@ -430,8 +430,8 @@ class Script(InASmallProject):
         self.write("plugin/tetskin/contact/contact.cpp")
         done, calls = self.run_script("--change")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("--label-exclude ^full$|^single$ -C programs --exclude-regex ^(consumer[.]readme_changes|python[.]beside_others|live[.]page|"
-                      "live[.]driver|(core|demos|io)[.].*)$", self.ctest_call(calls))
+        self.assertIn("--label-exclude ^full$|^single$ -C programs --exclude-regex ^(consumer[.]readme_changes|"
+                      "python[.]beside_others|live[.]page|live[.]driver|(core|demos|io)[.].*)$", self.ctest_call(calls))
         self.assertIn("tests of core, demos, io: nothing that they use has changed", done.stdout)
         self.assertIn("consumer.shared: part of tests/run --all alone", done.stdout)
         self.assertIn("consumer.readme: the first page has not changed", done.stdout)
