@@ -108,6 +108,15 @@ TEST(QuadraticTets, HaveTheMassOfTheCageAndTheFractionsOfTheirParts) {
   EXPECT_EQ(refineQuadratic(cage).status().code, StatusCode::SizeMismatch);
 }
 
+TEST(QuadraticTets, ANodeThatNoTetUsesHasMassToo) {
+  Cage cage(test::singleTet());
+  cage.mesh.nodes.push_back({5, 5, 5});
+  cage.masses = {1, 2, 3, 4, 5};
+  const Cage quadratic = refineQuadratic(cage).value();
+  EXPECT_TRUE(validate(quadratic).ok()) << validate(quadratic).message;
+  EXPECT_NEAR(std::accumulate(quadratic.masses.begin(), quadratic.masses.end(), 0.0), 15.0, 1e-12);
+}
+
 TEST(QuadraticTets, AreNotMadeOfDuplicates) {
   Cage cage(test::singleTet());
   cage.mesh.tets.push_back(cage.mesh.tets[0]);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -56,7 +57,7 @@ std::vector<double> eightfold(const std::vector<double>& values) {
 }
 
 /// Distributes masses by the tets' filled volumes and densities, so that their sum stays the same; an empty tet gets a
-/// share that holds its nodes.
+/// share that holds its nodes, a node that no tet uses the least of all.
 void refineMasses(const Cage& linear, Cage& refined) {
   if (linear.masses.empty()) return;
   refined.masses.assign(refined.mesh.nodeCount(), 0.0);
@@ -68,6 +69,9 @@ void refineMasses(const Cage& linear, Cage& refined) {
       refined.masses[n] += 0.25 * volume * std::max(fraction, Limits::kMinVolumeFraction);
     }
   }
+  double least = std::numeric_limits<double>::infinity();
+  for (const double mass : refined.masses) least = mass > 0.0 ? std::min(least, mass) : least;
+  for (double& mass : refined.masses) mass = std::max(mass, least);
   const double before = std::accumulate(linear.masses.begin(), linear.masses.end(), 0.0);
   const double after = std::accumulate(refined.masses.begin(), refined.masses.end(), 0.0);
   for (double& mass : refined.masses) mass *= before / after;
