@@ -91,6 +91,30 @@ TYPED_TEST(FibresOf, ABarIsAsMuchStifferAlongThemAsTheyAre) {
   }
 }
 
+/// Strains count from the grown shape, forces on its area; the factor of a tet's stiffness is that of its fibres, too.
+TYPED_TEST(FibresOf, AGrownAndScaledBarIsAsMuchStiffer) {
+  const double digits = sizeof(TypeParam) == sizeof(float) ? 1e-3 : 1e-9;
+  constexpr double kFibre = 7.0 * kMatrix, kScale = 3.0, kNu = 0.3;
+  for (const bool quadratic : {false, true}) {
+    const Cage bar = fibreBar(quadratic);
+    for (const Vector3d& growth : {Vector3d(1.2, 1.0, 1.0), Vector3d(1.0, 1.3, 0.9), Vector3d(0.8, 1.1, 1.1)}) {
+      for (const double strain : {-0.1, 0.05, 0.3}) {
+        ElasticBody<TypeParam> body = made<TypeParam>(bar, matrixOfFibres(kNu));
+        ASSERT_TRUE(body.addFibres(throughout(bar, {1, 0, 0}, kFibre)).ok());
+        const std::array<double, 9> grown{growth.x(), 0, 0, 0, growth.y(), 0, 0, 0, growth.z()};
+        ASSERT_TRUE(body.setGrowthTensors(std::vector<std::array<double, 9>>(bar.mesh.tetCount(), grown)).ok());
+        ASSERT_TRUE(body.setStiffnessScale(std::vector<double>(bar.mesh.tetCount(), kScale)).ok());
+        const Vector3d stretches(1.0 + strain, 1.0 - kNu * strain, 1.0 - kNu * strain);
+        const Pulled found = pulled(body, bar, growth.cwiseProduct(stretches).asDiagonal());
+        const double pull = kScale * (kMatrix + kFibre) * strain * kSection * growth.y() * growth.z();
+        EXPECT_NEAR(found.along / pull, 1.0, digits);
+        EXPECT_NEAR(found.across / (kScale * kMatrix * 0.25), 0.0, digits);
+        EXPECT_NEAR(body.energy() / (0.5 * pull * strain * growth.x()), 1.0, 3.0 * digits);
+      }
+    }
+  }
+}
+
 /// Across them, only Poisson's ratio makes them felt.
 TYPED_TEST(FibresOf, ABarIsHardlyStifferAcrossThem) {
   const double digits = sizeof(TypeParam) == sizeof(float) ? 5e-4 : 1e-9;

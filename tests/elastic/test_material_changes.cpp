@@ -211,6 +211,23 @@ TYPED_TEST(MaterialChangesOf, NoMorePlasticStrainRemainsThanAllowed) {
   for (const double strain : body.plasticStrains()) EXPECT_NEAR(strain, 0.3, 1e-2);
 }
 
+/// Large ones, too; and without a limit a stretch by 20.
+TYPED_TEST(MaterialChangesOf, ATetIsDrawnOutAsFarAsAllowed) {
+  Cage cube;
+  cube.mesh = makeBox({1, 1, 1}, Vector3d(0.2, 0.2, 0.2));
+  for (const double largest : {0.02, 0.5, 1.0, 2.0, 3.0, kInfinity}) {
+    Plasticity plasticity = yielding(0.01);
+    plasticity.largestStrain = largest;
+    ElasticBody<TypeParam> body = made<TypeParam>(cube, material());
+    ASSERT_TRUE(body.setPlasticity(plasticity).ok());
+    for (std::size_t n = 0; n < body.nodeCount(); ++n) body.setPinned(n);
+    const double remains = std::min(largest, 3.0), last = remains + 0.1;
+    for (int k = 1; k <= 100; ++k) leadTo(body, cube.mesh, std::exp(0.01 * k * last), 1e-3);
+    leadTo(body, cube.mesh, std::exp(last), 1e-3);
+    for (const double strain : body.plasticStrains()) EXPECT_NEAR(strain / remains, 1.0, 0.05) << largest;
+  }
+}
+
 TYPED_TEST(MaterialChangesOf, ARigidMotionLetsNothingFlow) {
   const Cage bar = barOf(Order::Linear);
   ElasticBody<TypeParam> body = made<TypeParam>(bar, material());

@@ -227,6 +227,43 @@ TEST(MuscleLengths, ACurveMustAscendAndBeFinite) {
   EXPECT_FALSE(body.addMuscle(muscle).ok());
 }
 
+/// From step to step, the shapes of its own tets alone are found anew: with the bits that they all would have.
+TYPED_TEST(MuscleLengthsOf, AMuscleOfSomeTetsIsFoundAloneAsWithAll) {
+  for (const bool quadratic : {false, true}) {
+    const Cage bar = muscleBar(quadratic);
+    Muscle muscle = alongBar(bar, 0.3 * kModulus);
+    muscle.tets.clear();
+    for (std::size_t t = 3; t < bar.mesh.tetCount(); t += 5) muscle.tets.push_back(static_cast<int>(t));
+    Muscle other = muscle;  // of some of the same tets, in another order, and without a curve
+    other.tets = {13, 8, 7, 3};
+    other.lengthFactors.clear();
+    std::vector<double> growth(bar.mesh.tetCount(), 1.0);
+    for (std::size_t t = 0; t < growth.size(); t += 3) growth[t] = 1.1;
+    const auto grow = [&](ElasticBody<TypeParam>& body) { ASSERT_TRUE(body.setGrowth(growth).ok()); };
+    ElasticBody<TypeParam> alone = made<TypeParam>(bar, flesh(0.3)), all = made<TypeParam>(bar, flesh(0.3));
+    for (ElasticBody<TypeParam>* body : {&alone, &all}) {
+      Plasticity yields;
+      yields.yieldStress = 0.05 * kModulus;
+      ASSERT_TRUE(body->addMuscle(muscle).ok() && body->addMuscle(other).ok() && body->setPlasticity(yields).ok());
+      grow(*body);
+    }
+    for (int step = 0; step < 20; ++step) {
+      for (ElasticBody<TypeParam>* body : {&alone, &all}) {
+        if (step % 4 == 0) {
+          ASSERT_TRUE(body->setActivation(0, 0.04 * step).ok() && body->setActivation(1, 0.3).ok());
+        }
+        if (body == &all) grow(*body);
+        body->step(kStep, {0, -9.81, 0});
+      }
+      for (std::size_t n = 0; n < alone.nodeCount(); ++n) {
+        for (int k = 0; k < 3; ++k) ASSERT_EQ(alone.positions()[n][k], all.positions()[n][k]) << "step " << step;
+      }
+    }
+    const auto box = boundingBox(pointsOf(alone.positions()));
+    EXPECT_GT(std::abs(box.sizes().x() - 1.0), 0.01) << "it moves";
+  }
+}
+
 /// A curve counts from the grown length.
 TEST(MuscleLengths, AGrownMuscleIsAtItsRestLength) {
   const Cage bar = muscleBar(false);

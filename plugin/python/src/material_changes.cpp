@@ -142,7 +142,7 @@ void bind(Class<Body>& type) {
            "Lets the material flow where it yields. yield_stress: pressure units, above 0: the von Mises stress, which "
            "is that of a pulled bar; a number, or one by tet; None: nothing flows any more. hardening: pressure units: "
            "by how much it grows per plastic strain. flow_rate: per second, at which what is beyond it flows; None: at "
-           "once. largest: the largest plastic strain that may remain; None: any.")
+           "once. largest: the largest plastic strain that may remain, logarithmic; None: 3, a stretch by 20.")
       .def(
           "reset_plastic_flow", [](Body& b) { guarded(b, [&] { check(changeable(b).resetPlasticFlow()); }); },
           "The body returns to its first shape; it flows again when it has been there, below its yield stress, for "

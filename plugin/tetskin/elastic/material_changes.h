@@ -30,7 +30,7 @@ struct Plasticity {
   /// Per second, above 0: the rate at which what is beyond the yield stress flows; infinite: at once
   double flowRate = std::numeric_limits<double>::infinity();
   /// Above 0: the largest plastic strain that a tet may keep; from there on it is elastic. As a logarithmic strain: 0.1
-  /// is a stretch by 1.105
+  /// is a stretch by 1.105. Above 3, a stretch by 20, it counts as 3
   double largestStrain = std::numeric_limits<double>::infinity();
 };
 

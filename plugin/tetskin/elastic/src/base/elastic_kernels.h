@@ -77,7 +77,7 @@ struct TetWork {
   const S* yields = nullptr;
   S* flowed = nullptr;  ///< the equivalent plastic strain, wide, by pack and point
   S flowShare = 1;      ///< share of what is beyond the yield surface that flows in this step; 0: none
-  S largestStrain = 0;  ///< the largest plastic strain that may remain; 0: any
+  S largestStrain = 0;  ///< the largest plastic strain that may remain: see rest_change.h
 };
 
 /// Scalars of a pack's changes at one point.

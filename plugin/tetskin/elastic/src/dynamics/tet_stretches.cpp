@@ -27,28 +27,21 @@ double TetStretches::length(std::size_t tet, const Eigen::Vector3d& v) const {
   const bool linear = number < rest.count();
   const RestQuadraticTet* const quadratic = linear ? nullptr : &rest.quadratic[number - rest.count()];
   const std::array<double, 9>& gradients = linear ? rest.gradients[number] : quadratic->gradients;
-  std::array<double, 4> slopes{}, weights = {1.0, 0.0, 0.0, 0.0};  // along v, and at the mean of the points
-  for (std::size_t k = 0; k < 3; ++k) {
-    slopes[k + 1] = Eigen::Vector3d::Map(&gradients[3 * k]).dot(v);
-    slopes[0] -= slopes[k + 1];
-    for (std::size_t point = 0; point < kQuadraticPoints && !linear; ++point) {
-      weights[k + 1] += quadratic->points[3 * point + k] / static_cast<double>(kQuadraticPoints);
-    }
-    weights[0] -= weights[k + 1];
-  }
+  const std::array<double, 4> slopes = weightSlopes(gradients, v);
   Eigen::Vector3d carried = Eigen::Vector3d::Zero();
   const auto add = [&](int node, double slope) {
     carried += slope * Eigen::Vector3d::Map(&places[3 * slotOf[static_cast<std::size_t>(node)]]);
   };
-  std::size_t edge = 4;
-  for (std::size_t a = 0; a < 4; ++a) {
-    if (linear) add(rest.tets[number][a], slopes[a]);
-    if (linear) continue;
-    add(quadratic->nodes[a], (4.0 * weights[a] - 1.0) * slopes[a]);
-    for (std::size_t b = a + 1; b < 4; ++b) {
-      add(quadratic->nodes[edge++], 4.0 * (weights[a] * slopes[b] + weights[b] * slopes[a]));
-    }
+  if (linear) {
+    for (std::size_t a = 0; a < 4; ++a) add(rest.tets[number][a], slopes[a]);
+    return carried.norm();
   }
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t point = 0; point < kQuadraticPoints; ++point) {
+    mean += Eigen::Vector3d::Map(&quadratic->points[3 * point]) / static_cast<double>(kQuadraticPoints);
+  }
+  const std::array<double, kQuadraticNodes> all = quadraticSlopes(slopes, mean);
+  for (std::size_t n = 0; n < kQuadraticNodes; ++n) add(quadratic->nodes[n], all[n]);
   return carried.norm();
 }
 

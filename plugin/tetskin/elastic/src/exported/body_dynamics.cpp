@@ -146,8 +146,8 @@ void BodyDynamics<S>::setFibres(const std::vector<std::vector<TetFibre>>& famili
 
 template <class S>
 void BodyDynamics<S>::setShapeLaw(ShapeLaw law) {
-  assert(tets_ || !law);
-  if (law && tetNumbers_.empty()) tetNumbers_ = tetNumbers(tets_->rest());
+  assert(tets_ || !law.find);
+  if (law.find && tetNumbers_.empty()) tetNumbers_ = tetNumbers(tets_->rest());
   shapeLaw_ = std::move(law);
 }
 
@@ -278,10 +278,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
     assembleIfNeeded(1.0, threads);
     return begin();
   }
-  if (shapeLaw_) {
-    shapeLaw_({tets_->rest(), tetNumbers_, matrix_.pattern().slotOf, places_.at(0)}, given_);
-    tets_->setGiven(given_.shapes, given_.stiffer);
-  }
+  if (shapeLaw_.find) giveShapes();
   components_.find(nodes(), pinned_ > 0, seconds);
   if (changed_) stiffnessOverInertia_ = components_.stiffnessOverInertia();
   stiffnessNumber_ = seconds * (seconds + meanDamping_) * stiffnessPerInertia();
@@ -294,6 +291,17 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   assembleIfNeeded(allowedTurn(), threads);
   setGasStiffness();
   beginElastic(threads);
+}
+
+template <class S>
+void BodyDynamics<S>::giveShapes() {
+  const bool ofAll = !tets_->knowsGiven() || shapeLaw_.number != givenNumber_;
+  shapeLaw_.find({tets_->rest(), tetNumbers_, matrix_.pattern().slotOf, places_.at(0)}, ofAll, given_);
+  if (ofAll)
+    tets_->setGiven(given_);
+  else
+    tets_->changeGiven(shapeLaw_.tets, tetNumbers_, given_);
+  givenNumber_ = shapeLaw_.number;
 }
 
 /// At the points that the rigid motion reaches, as the other forces.

@@ -45,13 +45,14 @@ struct StepStart {
 /// What has changed the solution of a step.
 enum class SolvedWith { ElasticityAlone, Others };
 
-/// Shapes at rest that depend on how the body is deformed: see CorotatedTets::setGiven.
-struct GivenShapes {
-  std::vector<std::array<double, 9>> shapes;
-  std::vector<double> stiffer;
+/// Shapes at rest that depend on how the body is deformed. Called at the beginning of each step, at the positions of
+/// its forces.
+struct ShapeLaw {
+  /// Finds the shapes of all tets of the cage, or of `tets` alone: see CorotatedTets::setGiven and changeGiven.
+  std::function<void(const TetStretches& stretches, bool ofAll, GivenShapes& given)> find;
+  std::vector<int> tets;     ///< of the cage; those whose shapes change from step to step
+  std::uint64_t number = 0;  ///< laws with the same number give the same shapes to all other tets
 };
-/// Called at the beginning of each step, at the positions of its forces.
-using ShapeLaw = std::function<void(const TetStretches& stretches, GivenShapes& given)>;
 
 /// Positions of a body's nodes, and the elastic forces there: a question that leaves the body's state as it is.
 template <class S>
@@ -94,7 +95,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   void setDamping(double damping, const std::vector<double>& factors = {});
   /// See FibreTets; empty: none.
   void setFibres(const std::vector<std::vector<TetFibre>>& families);
-  /// What gives the tets their shapes at rest from now on; empty: they keep those that they have.
+  /// What gives the tets their shapes at rest from now on; without `find`, they keep those that they have.
   void setShapeLaw(ShapeLaw law);
   /// The pressure in the body, and where it acts; null: the body has none. Its forces, stiffness and energy count as
   /// elastic ones everywhere.
@@ -292,6 +293,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// Of the present rest shapes.
   double stiffnessPerInertia() const { return stiffnessOverInertia_ * (tets_ ? tets_->stiffening() : 1.0); }
   double flowsInImpact(std::size_t component, double energy, double seconds) const;
+  void giveShapes();
   void findPressure(ParallelFor* threads);
   void setGasStiffness();
   void findMaterialVolume();
@@ -323,6 +325,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::vector<std::vector<TetFibre>> fibres_;  ///< see `setFibres`
   ShapeLaw shapeLaw_;
   GivenShapes given_;                      ///< by it
+  std::uint64_t givenNumber_ = 0;          ///< of the law that has given all tets their shapes
   std::vector<std::uint32_t> tetNumbers_;  ///< see TetStretches; empty until there is such a law
   PressureLaw pressure_;
   std::shared_ptr<PressureSurface> pressureSurface_;  ///< null: no pressure

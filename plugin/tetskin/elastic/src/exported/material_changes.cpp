@@ -19,6 +19,8 @@ using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 /// The range of factors of length: beyond it, a tet's stiffness leaves that of its neighbours far behind.
 constexpr double kLeastGrowth = 0.05, kLargestGrowth = 20.0;
 
+constexpr std::uint32_t kNoMuscle = 0xffffffff;  ///< of a tet that no muscle has
+
 /// The least factor of stiffness, and the inverse of the largest.
 constexpr double kLeastStiffness = 1e-6;
 
@@ -152,6 +154,7 @@ Status MaterialChanges::setGrowth(const std::vector<double>& lengths) {
     if (!isGrowth(lengths[t])) return badGrowth(t);
   }
   const bool none = std::all_of(lengths.begin(), lengths.end(), [](double length) { return length == 1.0; });
+  ++shapesNumber_;
   growth_.clear();
   for (std::size_t t = 0; t < tetCount_ && !none; ++t) {
     const double length = lengths[t];
@@ -166,6 +169,7 @@ Status MaterialChanges::setGrowthTensors(const std::vector<std::array<double, 9>
     if (!isGrowth(Eigen::Map<const RowMatrix>(deformations[t].data()))) return badGrowth(t);
   }
   growth_ = deformations;
+  ++shapesNumber_;
   return {};
 }
 
@@ -267,6 +271,14 @@ Result<int> MaterialChanges::addMuscle(const Muscle& muscle) {
   }
   if (Status status = checkCurve(muscle.lengthFactors); !status.ok()) return status;
   muscles_.push_back({muscle, 0.0, steepestOf(muscle.lengthFactors)});
+  muscleTetAt_.resize(tetCount_, kNoMuscle);
+  for (const int tet : muscle.tets) {
+    std::uint32_t& at = muscleTetAt_[static_cast<std::size_t>(tet)];
+    if (at != kNoMuscle) continue;
+    at = static_cast<std::uint32_t>(muscleTets_.size());
+    muscleTets_.push_back(tet);
+  }
+  ++shapesNumber_;
   return static_cast<int>(muscles_.size()) - 1;
 }
 
@@ -299,19 +311,23 @@ bool MaterialChanges::dependsOnLengths() const {
 /// By tet of the cage; where several muscles share a tet, their tensions are summed by their axes. Forces of a muscle
 /// whose tension grows with its length are stiffer than its tets by (1 + slope / E) over what these have along it.
 /// stretches  null: no muscle depends on its length
-void MaterialChanges::findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches,
+/// ofAll      false: of `muscleTets_`, in their order
+void MaterialChanges::findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches, bool ofAll,
                                  GivenShapes& given) const {
   if (!givesShapes()) return;
-  given.shapes = growth_;
-  if (given.shapes.empty()) given.shapes.assign(tetCount_, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
-  if (stretches) given.stiffer.assign(tetCount_, 1.0);
+  const std::size_t count = ofAll ? tetCount_ : muscleTets_.size();
+  given.shapes.assign(count, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+  for (std::size_t k = 0; k < count && !growth_.empty(); ++k)
+    given.shapes[k] = growth_[ofAll ? k : static_cast<std::size_t>(muscleTets_[k])];
+  given.stiffer.assign(stretches ? count : 0, 1.0);
   for (const Group& group : muscles_) {
     if (!(group.activation > 0.0)) continue;
     const Muscle& muscle = group.muscle;
     const double tension = group.activation * muscle.stress / youngsModulus;
     for (std::size_t k = 0; k < muscle.tets.size(); ++k) {
       const auto tet = static_cast<std::size_t>(muscle.tets[k]);
-      Eigen::Map<RowMatrix> shape(given.shapes[tet].data());
+      const std::size_t at = ofAll ? tet : muscleTetAt_[tet];
+      Eigen::Map<RowMatrix> shape(given.shapes[at].data());
       const Eigen::Vector3d& fibre = muscle.fibres[muscle.fibres.size() == 1 ? 0 : k];
       const Eigen::Vector3d unit = fibre / std::sqrt(fibre.squaredNorm());
       double w = 0.0;
@@ -324,7 +340,7 @@ void MaterialChanges::findShapes(double poissonRatio, double youngsModulus, cons
         const double stretch = std::clamp(stretches->length(tet, grown), kLeastGrowth, kLargestGrowth);
         w = contraction(tension * valueOf(muscle.lengthFactors, stretch), poissonRatio, stretch);
         const double own = (1.0 + w) * (1.0 + 2.0 * poissonRatio * w);
-        given.stiffer[tet] = std::max(given.stiffer[tet], (1.0 + tension * group.steepest) / own);
+        given.stiffer[at] = std::max(given.stiffer[at], (1.0 + tension * group.steepest) / own);
       }
       shape = (contracted(unit, w, poissonRatio) * shape).eval();
     }
@@ -339,14 +355,16 @@ template <class S>
 void MaterialChanges::applyShapesTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus) const {
   body.setFibres(fibresByTet());
   if (dependsOnLengths()) {
-    return body.setShapeLaw([this, poissonRatio, youngsModulus](const TetStretches& stretches, GivenShapes& given) {
-      findShapes(poissonRatio, youngsModulus, &stretches, given);
-    });
+    return body.setShapeLaw(
+        {[this, poissonRatio, youngsModulus](const TetStretches& stretches, bool ofAll, GivenShapes& given) {
+           findShapes(poissonRatio, youngsModulus, &stretches, ofAll, given);
+         },
+         muscleTets_, shapesNumber_});
   }
   body.setShapeLaw({});
   GivenShapes given;
-  findShapes(poissonRatio, youngsModulus, nullptr, given);
-  body.tets()->setGiven(given.shapes);
+  findShapes(poissonRatio, youngsModulus, nullptr, true, given);
+  body.tets()->setGiven(given);
 }
 
 template <class S>
@@ -363,6 +381,7 @@ void MaterialChanges::serialize(StateStream& stream) {
   if (stream.restoring()) growth_.resize(count == tetCount_ ? count : 0);
   if (count != growth_.size()) return stream.fail();
   for (std::array<double, 9>& shape : growth_) stream.plain(shape.data(), shape.size());
+  if (stream.restoring()) ++shapesNumber_;
   for (std::vector<double>* scale : {&stiffnessScale_, &dampingScale_}) {
     stream.array(*scale);
     if (scale->empty() || scale->size() == tetCount_) continue;

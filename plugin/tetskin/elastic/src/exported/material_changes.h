@@ -10,6 +10,7 @@
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -74,13 +75,17 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   std::vector<std::vector<TetFibre>> fibresByTet() const;
   bool givesShapes() const;
   bool dependsOnLengths() const;
-  void findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches, GivenShapes& given) const;
+  void findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches, bool ofAll,
+                  GivenShapes& given) const;
 
   std::size_t tetCount_ = 0;
   std::optional<Plasticity> plasticity_;
   std::vector<std::array<double, 9>> growth_;  ///< by tet; empty: none
   std::vector<double> stiffnessScale_, paintedDamping_, dampingScale_;
   std::vector<Group> muscles_;
+  std::vector<int> muscleTets_;             ///< those of all muscles, each once
+  std::vector<std::uint32_t> muscleTetAt_;  ///< by tet: its place among them
+  std::uint64_t shapesNumber_ = 1;          ///< of growth and muscles; activations do not count
   std::vector<Fibres> fibres_;
 };
 

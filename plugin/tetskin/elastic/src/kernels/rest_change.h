@@ -115,7 +115,8 @@ TETSKIN_INLINE void noteChange(const WideChange<S, W>& change, const S* assemble
   findings.turned += turn;
 }
 
-/// The square of the plastic strain that remains, as a logarithmic one: |log P|^2 times 2/3, up to its fourth power.
+/// The square of the plastic strain that remains: that of a logarithmic one, |log P|^2 times 2/3, up to its fourth
+/// power. CorotatedTets::setPlasticity gives its limit in this measure.
 /// inverse  of P, whose volume is 1
 template <class S, int W>
 TETSKIN_INLINE Lanes<S, W> squaredPlasticStrain(const WideMatrix<S, W>& inverse) {
@@ -211,18 +212,23 @@ TETSKIN_NOINLINE void flow(const Work& work, std::size_t at, int lane, const Lan
   const V safeNorm = flows ? norm : all<S, W>(1), safeVolume = flows ? volume : all<S, W>(1);
   V part = kRoot * amount / safeNorm;
   WideFlow<S, W> next = flowBy<S, W>(part, strain, safeVolume, change);
-  if (work.largestStrain > S(0)) {
+  S* const flowed = work.flowed + kGroup * at + static_cast<std::size_t>(lane);
+  const V before = wide<S, W>(flowed);
+  // So much flow leaves less strain than is allowed, in any directions and down to the least volume.
+  constexpr S kCertain = S(0.12);
+  if (anyAbove<S, W>(before + amount - kCertain * work.largestStrain, S(0))) {
     const S* given = work.given ? work.given + 9 * kGroup * at + static_cast<std::size_t>(lane) : nullptr;
     const V allowed = allowedPart<S, W>(work.largestStrain, plasticInverse<S, W>(given, change.inverse),
                                         plasticInverse<S, W>(given, next.inverse));
-    part *= allowed;
-    amount *= allowed;
-    next = flowBy<S, W>(part, strain, safeVolume, change);
+    if (anyAbove<S, W>(S(1) - allowed, S(0))) {
+      part *= allowed;
+      amount *= allowed;
+      next = flowBy<S, W>(part, strain, safeVolume, change);
+    }
   }
   // Where a tet is pressed nearly flat, keeping the volume would cost more than the flow releases.
   flows &= !(twiceEnergyOf<S, W>(next.strain, shear, bulk) > twiceEnergyOf<S, W>(strain, shear, bulk));
-  S* const flowed = work.flowed + kGroup * at + static_cast<std::size_t>(lane);
-  put<S, W>(wide<S, W>(flowed) + (flows ? amount : V{}), flowed);
+  put<S, W>(before + (flows ? amount : V{}), flowed);
   S* const to = work.changes + kChange * at + static_cast<std::size_t>(lane);
   for (int k = 0; k < 9; ++k) {
     strain.at[k] = flows ? next.strain.at[k] : strain.at[k];

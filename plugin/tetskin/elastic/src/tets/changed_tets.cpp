@@ -28,6 +28,18 @@ double shareIn(double x) {
   return x < 1e-3 ? x * (1.0 - 0.5 * x) : 1.0 - kept;
 }
 
+/// cosh(x) - 1 for x up to 6, by Taylor's series, whose bits are the same everywhere.
+double coshMinus1(double x) {
+  double sum = 0.0;
+  for (int k = 20; k >= 1; --k) sum = x * x / (2.0 * k * (2.0 * k - 1.0)) * (1.0 + sum);
+  return sum;
+}
+
+/// The plastic strain of kernels/rest_change.h of what is drawn out by this logarithmic strain.
+double squaredPlasticStrain(double logarithmic) {
+  return (coshMinus1(2.0 * logarithmic) + 2.0 * coshMinus1(logarithmic)) / 3.0;
+}
+
 /// A matrix that is stored wide, by rows.
 template <class S>
 Matrix narrowMatrix(const S* from) {
@@ -65,11 +77,23 @@ double meanOf(const std::vector<double>& byTet, const Tets& tets) {
 template <class S>
 template <class Visit>
 void CorotatedTets<S>::forTets(Visit&& visit) {
-  for (std::size_t k = 0; k < kGroup * linear_.packs.size(); ++k) {
-    visit(linear_, k, std::array<std::uint32_t, 1>{rest_.cageTets[std::min(k, rest_.count() - 1)]});
-  }
-  for (std::size_t k = 0; k < kGroup * quadratic_.packs.size(); ++k) {
-    visit(quadratic_, k, rest_.quadratic[std::min(k, rest_.quadratic.size() - 1)].cageTets);
+  for (std::size_t number = 0; number < rest_.count() + rest_.quadratic.size(); ++number) forTet(number, visit);
+}
+
+/// The same for one tet, and what repeats it.
+/// number  see `tetNumbers`
+template <class S>
+template <class Visit>
+void CorotatedTets<S>::forTet(std::size_t number, Visit&& visit) {
+  const auto visitAll = [&](auto& packed, std::size_t first, std::size_t count, const auto& cageTets) {
+    const std::size_t end = first + 1 < count ? first + 1 : kGroup * packed.packs.size();
+    for (std::size_t k = first; k < end; ++k) visit(packed, k, cageTets);
+  };
+  if (number < rest_.count()) {
+    visitAll(linear_, number, rest_.count(), std::array<std::uint32_t, 1>{rest_.cageTets[number]});
+  } else {
+    const std::size_t q = number - rest_.count();
+    visitAll(quadratic_, q, rest_.quadratic.size(), rest_.quadratic[q].cageTets);
   }
 }
 
@@ -157,35 +181,59 @@ bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet) {
 }
 
 template <class S>
-void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer) {
-  if (byTet.empty() && !isGiven_) return;
+void CorotatedTets<S>::setGiven(const GivenShapes& byTet) {
+  const std::vector<std::array<double, 9>>& shapes = byTet.shapes;
+  if (shapes.empty() && !isGiven_) return;
   makeChanges();
   forBoth([&](auto& packed) {
     packed.given.resize(9 * packed.flowed.size(), S(0));
     packed.stiffenings.resize(kGroup * packed.packs.size(), {1.0, 3.0});
   });
-  const bool known = isGiven_ && !byTet.empty() && given_.size() == byTet.size();
+  const bool known = isGiven_ && !shapes.empty() && given_.shapes.size() == shapes.size();
   forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
     const bool stays = known && std::all_of(cageTets.begin(), cageTets.end(), [&](auto own) {
                          const auto k = static_cast<std::size_t>(own);
-                         return given_[k] == byTet[k];
+                         return given_.shapes[k] == shapes[k];
                        });
-    if (stays) return;
-    // Rounded as it is stored: what has flowed is found again exactly.
-    setGiven(packed, tet,
-             byTet.empty() ? Matrix(Matrix::Identity())
-                           : Matrix(meanOf(byTet, cageTets).template cast<S>().template cast<double>()));
+    if (!stays) setGiven(packed, tet, shapes.empty() ? Matrix(Matrix::Identity()) : meanOf(shapes, cageTets));
   });
   given_ = byTet;
-  isGiven_ = !byTet.empty();
-  setStiffer(stiffer);
+  isGiven_ = !shapes.empty();
+  setStiffer();
+  findStiffening();
+}
+
+template <class S>
+void CorotatedTets<S>::changeGiven(const std::vector<int>& cageTets, const std::vector<std::uint32_t>& numbers,
+                                   const GivenShapes& given) {
+  assert(isGiven_ && knowsGiven() && given.shapes.size() == cageTets.size());
+  const bool wereStiffer = !given_.stiffer.empty();
+  if (!wereStiffer) given_.stiffer.assign(given_.shapes.size(), 1.0);
+  for (std::size_t k = 0; k < cageTets.size(); ++k) {
+    const auto tet = static_cast<std::size_t>(cageTets[k]);
+    given_.shapes[tet] = given.shapes[k];
+    given_.stiffer[tet] = given.stiffer[k];
+  }
+  if (!wereStiffer) setStiffer();
+  std::uint32_t last = 0xffffffff;
+  for (const int cageTet : cageTets) {
+    const std::uint32_t number = numbers[static_cast<std::size_t>(cageTet)];
+    if (number == last) continue;  // another part of the same quadratic tet
+    last = number;
+    forTet(number, [&](auto& packed, std::size_t tet, const auto& own) {
+      setGiven(packed, tet, meanOf(given_.shapes, own));
+      setStiffer(packed, tet, own);
+    });
+  }
   findStiffening();
 }
 
 template <class S>
 template <class Tets>
-void CorotatedTets<S>::setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& given) {
+void CorotatedTets<S>::setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& exact) {
   using Pack = typename std::decay_t<decltype(packed.packs)>::value_type;
+  // Rounded as it is stored: what has flowed is found again exactly.
+  const Matrix given = exact.template cast<S>().template cast<double>();
   const Matrix inverse = given.inverse();
   const double volume = given.determinant();
   packed.stiffenings[tet] = {volume, inverse.squaredNorm()};
@@ -208,15 +256,20 @@ void CorotatedTets<S>::setGiven(Tets& packed, std::size_t tet, const Eigen::Matr
 }
 
 template <class S>
-void CorotatedTets<S>::setStiffer(const std::vector<double>& byTet) {
+void CorotatedTets<S>::setStiffer() {
+  const bool none = given_.stiffer.empty();
+  forBoth([&](auto& packed) { packed.stiffer.assign(none ? 0 : kGroup * packed.packs.size(), 1.0); });
+  if (none) return;
+  forTets([&](auto& packed, std::size_t tet, const auto& cageTets) { setStiffer(packed, tet, cageTets); });
+}
+
+template <class S>
+template <class Packs, class Tets>
+void CorotatedTets<S>::setStiffer(Packs& packed, std::size_t tet, const Tets& cageTets) {
   constexpr double kStale = 1.25;  // forces may be this much stiffer than the matrix
-  forBoth([&](auto& packed) { packed.stiffer.assign(byTet.empty() ? 0 : kGroup * packed.packs.size(), 1.0); });
-  if (byTet.empty()) return;
-  forTets([&](auto& packed, std::size_t tet, const auto& cageTets) {
-    const double own = packed.stiffer[tet] = meanOf(byTet, cageTets);
-    const double counted = packed.factors.empty() ? 1.0 : static_cast<double>(packed.factors[tet]);
-    isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
-  });
+  const double own = packed.stiffer[tet] = meanOf(given_.stiffer, cageTets);
+  const double counted = packed.factors.empty() ? 1.0 : static_cast<double>(packed.factors[tet]);
+  isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
 }
 
 template <class S>
@@ -244,10 +297,10 @@ void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity) {
   makeChanges();
   everFlowed_ = true;
   flowRate_ = plasticity->flowRate;
-  largestStrain_ = S(0);
-  if (std::isfinite(plasticity->largestStrain)) {
-    largestStrain_ = std::max(static_cast<S>(plasticity->largestStrain), std::numeric_limits<S>::min());
-  }
+  // A tet that is drawn out farther, to 20 times its length, is badly conditioned: in float its forces explode.
+  constexpr double kLargestStrain = 3.0;
+  const double largest = std::sqrt(squaredPlasticStrain(std::min(plasticity->largestStrain, kLargestStrain)));
+  largestStrain_ = std::max(static_cast<S>(largest), std::numeric_limits<S>::min());
   const double perStress = 1.0 / (std::sqrt(6.0) * mu_);
   forBoth([&](auto& packed) { packed.yields.assign(2 * kGroup * packed.packs.size(), S(0)); });
   yieldEnergy_ = 0.0;
@@ -328,14 +381,14 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
       packed.stiffer.clear();
       packed.stiffenings.clear();
     });
-    given_.clear();
+    given_ = {};
     isStiffer_ = isGiven_ = everFlowed_ = returns_ = yields_ = false;
     stiffening_ = 1.0;
     return changed;
   }
   bool changed = false;
   makeChanges();
-  if (stream.restoring()) given_.clear();
+  if (stream.restoring()) given_ = {};
   stream(isGiven_);
   stream(everFlowed_);
   stream(returns_);
@@ -356,19 +409,20 @@ bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix) {
   return changed;
 }
 
-#define TETSKIN_INSTANTIATE(S)                                                              \
-  template void CorotatedTets<S>::setGiven(const std::vector<std::array<double, 9>>& byTet, \
-                                           const std::vector<double>& stiffer);             \
-  template bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet);      \
-  template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);              \
-  template void CorotatedTets<S>::forgetFlow();                                             \
-  template void CorotatedTets<S>::setExtraDamping(const std::vector<double>& byTet);        \
-  template void CorotatedTets<S>::findFactors(double perSecond);                            \
-  template std::vector<double> CorotatedTets<S>::extraShares();                             \
-  template void CorotatedTets<S>::flowFor(double seconds);                                  \
-  template double CorotatedTets<S>::flowShare(double seconds) const;                        \
-  template std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets);      \
-  template bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix);     \
+#define TETSKIN_INSTANTIATE(S)                                                                                      \
+  template void CorotatedTets<S>::setGiven(const GivenShapes& byTet);                                               \
+  template void CorotatedTets<S>::changeGiven(const std::vector<int>& cageTets,                                     \
+                                              const std::vector<std::uint32_t>& numbers, const GivenShapes& given); \
+  template bool CorotatedTets<S>::setStiffnessScale(const std::vector<double>& byTet);                              \
+  template void CorotatedTets<S>::setPlasticity(const Plasticity* plasticity);                                      \
+  template void CorotatedTets<S>::forgetFlow();                                                                     \
+  template void CorotatedTets<S>::setExtraDamping(const std::vector<double>& byTet);                                \
+  template void CorotatedTets<S>::findFactors(double perSecond);                                                    \
+  template std::vector<double> CorotatedTets<S>::extraShares();                                                     \
+  template void CorotatedTets<S>::flowFor(double seconds);                                                          \
+  template double CorotatedTets<S>::flowShare(double seconds) const;                                                \
+  template std::vector<double> CorotatedTets<S>::plasticStrains(std::size_t cageTets);                              \
+  template bool CorotatedTets<S>::serializeChanges(StateStream& stream, bool ofMatrix);                             \
   template bool CorotatedTets<S>::serializeFactors(StateStream& stream);
 TETSKIN_FOR_SCALARS(TETSKIN_INSTANTIATE)
 #undef TETSKIN_INSTANTIATE

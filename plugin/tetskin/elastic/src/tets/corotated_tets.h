@@ -13,11 +13,20 @@
 #include <tetskin/elastic/src/tets/material.h>
 #include <tetskin/elastic/src/tets/rest_tets.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace tetskin::elastic_detail {
+
+/// Shapes at which tets are at rest beside their plastic flow.
+struct GivenShapes {
+  std::vector<std::array<double, 9>> shapes;  ///< deformation gradients from the first ones, by rows; empty: these
+  /// Factors of the matrix, at least 1, where a shape that follows the deformation makes forces stiffer than the tet
+  /// is; empty: 1
+  std::vector<double> stiffer;
+};
 
 template <class S>
 class TETSKIN_ELASTIC_API CorotatedTets {
@@ -68,11 +77,15 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// Factors of the tets' stiffness beside those with which they were made, by tet of the cage; empty: 1. True if they
   /// are other ones than before: `setMaterial` must follow. Cost O(T)
   bool setStiffnessScale(const std::vector<double>& byTet);
-  /// Shapes at which the tets are at rest beside their plastic flow: deformation gradients from the first ones, by rows
-  /// and tet of the cage; empty: the first ones. Plastic strains stay. Cost O(T)
-  /// stiffer  factors of the matrix by tet of the cage, at least 1, where a shape that follows the deformation makes
-  ///          forces stiffer than the tet is; empty: 1
-  void setGiven(const std::vector<std::array<double, 9>>& byTet, const std::vector<double>& stiffer = {});
+  /// Gives shapes to all tets of the cage; none: the first ones. Plastic strains stay. Cost O(T)
+  void setGiven(const GivenShapes& byTet);
+  /// The same for some of them, once all are known.
+  /// cageTets  these
+  /// numbers   see `tetNumbers`
+  /// given     in their order
+  void changeGiven(const std::vector<int>& cageTets, const std::vector<std::uint32_t>& numbers,
+                   const GivenShapes& given);
+  bool knowsGiven() const { return !given_.shapes.empty(); }
   /// Some tet's forces are stiffer, by such a factor, than the matrix counts.
   bool isStiffer() const { return isStiffer_ || (fibres_ && fibres_->outdated().stiffer); }
   /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
@@ -135,6 +148,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   }
   template <class Visit>
   void forTets(Visit&& visit);
+  template <class Visit>
+  void forTet(std::size_t number, Visit&& visit);
   /// By how much extra damping makes a tet count more in the matrix.
   template <class Packed>
   double dampedFactor(const Packed& packed, std::size_t tet) const {
@@ -144,8 +159,10 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   void makeChanges();
   bool serializeFactors(StateStream& stream);
   template <class Tets>
-  void setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& given);
-  void setStiffer(const std::vector<double>& byTet);
+  void setGiven(Tets& packed, std::size_t tet, const Eigen::Matrix3d& exact);
+  void setStiffer();
+  template <class Packs, class Tets>
+  void setStiffer(Packs& packed, std::size_t tet, const Tets& cageTets);
   void findStiffening();
   bool serializeChanges(StateStream& stream, bool ofMatrix);
   void listCorners(const std::vector<std::uint32_t>& slotOf);
@@ -165,7 +182,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double cornerForces(const S* points, S* sums, bool energy, ParallelFor* threads);
 
   RestTets rest_;
-  std::vector<std::array<double, 9>> given_;  ///< by the last `setGiven`; empty: not known
+  GivenShapes given_;  ///< by tet of the cage, since the last `setGiven`; empty: not known
   std::optional<FibreTets<S>> fibres_;
   std::vector<double> madeVolumes_;  ///< of `rest_` as it was made, linear and quadratic; empty: it is as it was made
   Linear linear_;

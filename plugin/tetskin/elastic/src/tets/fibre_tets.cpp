@@ -38,16 +38,6 @@ TetFibre meanFibre(const std::vector<TetFibre>& family, const Parts& parts) {
   return mean;
 }
 
-/// The derivatives of a tet's barycentric weights along a direction.
-std::array<double, 4> slopesAlong(const std::array<double, 9>& gradients, const Eigen::Vector3d& along) {
-  std::array<double, 4> slopes{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    slopes[k + 1] = Eigen::Vector3d::Map(&gradients[3 * k]).dot(along);
-    slopes[0] -= slopes[k + 1];
-  }
-  return slopes;
-}
-
 }  // namespace
 
 template <class S>
@@ -85,7 +75,7 @@ template <class S>
 void FibreTets<S>::addLinear(const RestTets& rest, const std::vector<std::uint32_t>& slotOf, std::size_t tet,
                              const TetFibre& fibre, std::size_t layer) {
   Spring& spring = add(fibre, rest.volumes[tet]);
-  const std::array<double, 4> slopes = slopesAlong(rest.gradients[tet], fibre.along);
+  const std::array<double, 4> slopes = weightSlopes(rest.gradients[tet], fibre.along);
   for (std::size_t n = 0; n < 4; ++n) {
     spring.slots[n] = slotOf[static_cast<std::size_t>(rest.tets[tet][n])];
     spring.weights[n] = slopes[n];
@@ -98,24 +88,14 @@ template <class S>
 void FibreTets<S>::addQuadratic(const RestTets& rest, const std::vector<std::uint32_t>& slotOf, std::size_t number,
                                 const TetFibre& fibre, std::size_t layer) {
   const RestQuadraticTet& tet = rest.quadratic[number];
-  const std::array<double, 4> slopes = slopesAlong(tet.gradients, fibre.along);
+  const std::array<double, 4> slopes = weightSlopes(tet.gradients, fibre.along);
   for (std::size_t point = 0; point < kQuadraticPoints; ++point) {
     Spring& spring = add(fibre, tet.volume / static_cast<double>(kQuadraticPoints));
     spring.nodes = kQuadraticNodes;
     spring.toNode = 12;
     spring.toComponent = 4;
     spring.corner = 2 * layer * layerSize_ + 4 * rest.quadraticCorner(number) + point;
-    std::array<double, 4> weights = {1.0, 0.0, 0.0, 0.0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      weights[k + 1] = tet.points[3 * point + k];
-      weights[0] -= weights[k + 1];
-    }
-    std::size_t edge = 4;
-    for (std::size_t a = 0; a < 4; ++a) {
-      spring.weights[a] = (4.0 * weights[a] - 1.0) * slopes[a];
-      for (std::size_t b = a + 1; b < 4; ++b)
-        spring.weights[edge++] = 4.0 * (weights[a] * slopes[b] + weights[b] * slopes[a]);
-    }
+    spring.weights = quadraticSlopes(slopes, Eigen::Vector3d::Map(&tet.points[3 * point]));
     for (std::size_t n = 0; n < kQuadraticNodes; ++n) {
       spring.slots[n] = slotOf[static_cast<std::size_t>(tet.nodes[n])];
     }

@@ -30,6 +30,33 @@ struct RestQuadraticTet {
   std::array<int, kSubTets> cageTets{};  ///< the tets of the cage that it is
 };
 
+/// The slopes of the four barycentric weights along a vector.
+/// gradients  by rows: of the weights of corners 1, 2 and 3
+inline std::array<double, 4> weightSlopes(const std::array<double, 9>& gradients, const Eigen::Vector3d& along) {
+  std::array<double, 4> slopes{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    slopes[k + 1] = Eigen::Vector3d::Map(&gradients[3 * k]).dot(along);
+    slopes[0] -= slopes[k + 1];
+  }
+  return slopes;
+}
+
+/// The slopes of the ten shape functions of a quadratic tet along a vector, at a point; see `QuadraticTet` for its
+/// nodes.
+/// slopes  see `weightSlopes`
+/// point   its weights of corners 1, 2 and 3
+inline std::array<double, kQuadraticNodes> quadraticSlopes(const std::array<double, 4>& slopes,
+                                                           const Eigen::Vector3d& point) {
+  const std::array<double, 4> weights = {1.0 - point[0] - point[1] - point[2], point[0], point[1], point[2]};
+  std::array<double, kQuadraticNodes> all{};
+  std::size_t edge = 4;
+  for (std::size_t a = 0; a < 4; ++a) {
+    all[a] = (4.0 * weights[a] - 1.0) * slopes[a];
+    for (std::size_t b = a + 1; b < 4; ++b) all[edge++] = 4.0 * (weights[a] * slopes[b] + weights[b] * slopes[a]);
+  }
+  return all;
+}
+
 /// The quadratic tets of a cage, none of them flat.
 /// cage            if it stores volume fractions, and no stiffnessScale is given, these determine where the material is
 /// tets            see `quadraticTets`
