@@ -34,7 +34,7 @@ foreach(library core bullet cage contact elastic io reduced replay solver thread
   set(shown " [TWVDRBu] ([a-z ]+ for )?([A-Za-z:]+ )?tetskin::")
   # Bodies in Bullet's worlds are stepped by these.
   if(library STREQUAL elastic)
-    string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|restTets|restQuadraticTets|findRestNodes|takeRestShapes)[^\n]*" ""
+    string(REGEX REPLACE "[^\n]*elastic_detail::(BlockMatrix|BodyDynamics|ConjugateGradient|CorotatedTets|MaterialChanges|PressureSurface|restTets|restQuadraticTets|findRestNodes|takeRestShapes)[^\n]*" ""
       names "${names}")
   endif()
   # A class that solver derives from: its type information is repeated there.
