@@ -3,10 +3,26 @@
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/dynamics/extra_damping.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace tetskin::elastic_detail {
+
+DampingParts dampingParts(double damping, const std::vector<double>& factors) {
+  assert(damping >= 0.0);
+  if (factors.empty()) return {damping, damping, {}};
+  const auto [first, last] = std::minmax_element(factors.begin(), factors.end());
+  DampingParts parts{*first * damping, *first * damping, {}};
+  for (const double factor : factors) {
+    if (damping * (*last - *first) > 0.0) parts.more.push_back(damping * (factor - *first));
+  }
+  if (parts.more.empty()) return parts;
+  const double sum = std::accumulate(factors.begin(), factors.end(), 0.0);
+  parts.mean = sum / static_cast<double>(factors.size()) * damping;
+  return parts;
+}
 
 template <class S>
 void ExtraDamping<S>::take(const RestTets& rest, const S* corners, S ratio, S spread, const std::vector<double>& shares,

@@ -13,6 +13,15 @@
 
 namespace tetskin::elastic_detail {
 
+/// The damping of a body's tets, seconds.
+struct DampingParts {
+  double least = 0.0, mean = 0.0;
+  std::vector<double> more;  ///< beside the least, by tet of the cage; empty: all have the same
+};
+
+/// factors  of `damping` by tet of the cage, 0 or more; empty: 1
+DampingParts dampingParts(double damping, const std::vector<double>& factors);
+
 template <class S>
 class ExtraDamping {
  public:

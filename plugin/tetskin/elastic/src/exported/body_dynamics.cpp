@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/core/src/base/instantiate.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
+#include <tetskin/elastic/src/matrix/wide_vectors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,29 +41,8 @@ constexpr double kFeelsTurns = 1.0;
 /// by sixty of its sizes per second; with 25, by one. What nothing presses comes back faster without.
 constexpr double kFlatAlpha = 200.0;
 
-/// Tension in the material of a body under pressure p in a volume V is p V over the material's, on the average of all
-/// directions, and up to half as much again along thin walls. It resists bending of thin walls more than the material
-/// does; without it in the matrix, those of light balloons would flutter. In the matrix it resists rotations of the
-/// whole body, too, which the pressure in fact undoes: see `isStretched`.
-constexpr double kTension = 2.0;
-
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
 constexpr double kNear = 1e-4;
-
-/// Sums side by side, none of which waits for the one before.
-struct LaneSums {
-  double lanes[kGroup] = {};
-
-  double total() const { return std::accumulate(lanes, lanes + kGroup, 0.0); }
-};
-
-/// A vector in the wide layout as points, 4 scalars per slot.
-template <class S>
-void toPoints(const S* wide, AlignedVector<S>& points) {
-  bySlots(points.size() / 4, [&](std::size_t slot, std::size_t first) {
-    for (std::size_t k = 0; k < 3; ++k) points[4 * slot + k] = wide[first + k * kGroup];
-  });
-}
 
 /// The share of its energy that damping leaves a vibration in half a period.
 /// damping  in seconds: the damping ratio is half of this times the circular frequency
@@ -113,22 +93,11 @@ void BodyDynamics<S>::findMaterialVolume() {
 
 template <class S>
 void BodyDynamics<S>::setDamping(double damping, const std::vector<double>& factors) {
-  double least = 1.0, mean = 1.0;
-  std::vector<double> more;
-  if (!factors.empty()) {
-    const auto [first, last] = std::minmax_element(factors.begin(), factors.end());
-    least = mean = *first;
-    for (const double factor : factors) {
-      if (damping * (*last - least) > 0.0) more.push_back(damping * (factor - least));
-    }
-    if (!more.empty()) {
-      mean = std::accumulate(factors.begin(), factors.end(), 0.0) / static_cast<double>(factors.size());
-    }
-  }
-  changed_ |= least * damping != damping_ || more != moreDamped_;
-  damping_ = least * damping;
-  meanDamping_ = mean * damping;
-  moreDamped_ = std::move(more);
+  DampingParts parts = dampingParts(damping, factors);
+  changed_ |= parts.least != damping_ || parts.more != moreDamped_;
+  damping_ = parts.least;
+  meanDamping_ = parts.mean;
+  moreDamped_ = std::move(parts.more);
   if (tets_) tets_->setExtraDamping(moreDamped_);
   if (moreDamped_.empty()) return extraDamping_.reset();
   if (!extraDamping_) extraDamping_.emplace(tets_->rest(), matrix_.nodeCount());
@@ -154,18 +123,8 @@ void BodyDynamics<S>::setShapeLaw(ShapeLaw law) {
 template <class S>
 void BodyDynamics<S>::setPressure(const PressureLaw& law, std::shared_ptr<PressureSurface> surface) {
   assert(tets_ || !surface);
-  pressure_ = law;
-  if (surface != pressureSurface_) {
-    pressureSlots_.clear();
-    matrix_.setOuter({}, {});
-    if (surface) {
-      for (const std::uint32_t n : surface->nodes()) {
-        pressureSlots_.push_back(static_cast<std::uint32_t>(matrix_.slotOf(n)));
-      }
-    }
-  }
-  pressureSurface_ = std::move(surface);
-  changed_ |= !pressureSurface_ && spread_ != 1.0;
+  pressure_.set(law, std::move(surface), matrix_);
+  changed_ |= !pressure_.acts() && spread_ != 1.0;
 }
 
 template <class S>
@@ -286,10 +245,10 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
   tets_->flowFor(seconds);
   tets_->forces(moved_.data(), forces_.data(), threads);
-  findPressure(threads);
+  pressure_.addForces(moved_, shearModulus_, materialVolume_, matrix_, places_, forces_, threads);
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
-  setGasStiffness();
+  pressure_.stiffen(matrix_, matrixAlpha());
   beginElastic(threads);
 }
 
@@ -304,51 +263,11 @@ void BodyDynamics<S>::giveShapes() {
   givenNumber_ = shapeLaw_.number;
 }
 
-/// At the points that the rigid motion reaches, as the other forces.
-template <class S>
-void BodyDynamics<S>::findPressure(ParallelFor* threads) {
-  gasStiffness_.clear();
-  gasFrequency_ = 0.0;
-  stretched_ = 1.0;
-  if (!pressureSurface_) return;
-  double* to = pressureSurface_->positions();
-  for (const std::uint32_t slot : pressureSlots_) {
-    places_.fromDisplacement(slot, &moved_[4 * slot], to);
-    to += 3;
-  }
-  const double volume = pressureSurface_->evaluate(true, threads), pressure = pressure_.at(volume);
-  const double slope = pressure_.slope(volume), root = std::sqrt(slope);
-  const double tension = kTension * std::abs(pressure * volume) / materialVolume_;
-  if (pressure > 0.0 && pressureSurface_->isHollow()) stretched_ += tension / shearModulus_;
-  const double* by = pressureSurface_->derivative();
-  for (std::size_t n = 0; n < pressureSlots_.size(); ++n) {
-    double squared = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double d = by[3 * n + k];
-      S& force = forces_[4 * pressureSlots_[n] + k];
-      force = static_cast<S>(static_cast<double>(force) + pressure * d);
-      squared += d * d;
-      if (slope > 0.0) gasStiffness_.push_back(root * d);
-    }
-    const auto mass = static_cast<double>(matrix_.massAt(pressureSlots_[n]));
-    if (mass > 0.0) gasFrequency_ += slope * squared / mass;
-  }
-}
-
 /// Within a tenth.
 template <class S>
 bool BodyDynamics<S>::isSpread() const {
   constexpr double kShare = 0.1;
-  return std::abs(stretched_ - spread_) <= kShare * (std::max(stretched_, spread_) - 1.0);
-}
-
-template <class S>
-void BodyDynamics<S>::setGasStiffness() {
-  if (gasStiffness_.empty()) return matrix_.setOuter({}, {});
-  std::vector<double> u = gasStiffness_;
-  const double root = std::sqrt(matrixAlpha());
-  for (double& value : u) value *= root;
-  matrix_.setOuter(pressureSlots_, u);
+  return std::abs(pressure_.stretch() - spread_) <= kShare * (std::max(pressure_.stretch(), spread_) - 1.0);
 }
 
 /// A deviation from rigid motion does not last for a step of a stiff body, so that there is nothing to remember.
@@ -367,7 +286,7 @@ void BodyDynamics<S>::chooseScheme() {
 template <class S>
 double BodyDynamics<S>::carriedShare() const {
   constexpr double kLasting = 0.5, kLeastInImpact = 0.8;
-  const double number = lastSeconds_ * lastSeconds_ * std::max(stiffnessPerInertia(), gasFrequency_);
+  const double number = lastSeconds_ * lastSeconds_ * std::max(stiffnessPerInertia(), pressure_.gasFrequency());
   if (lasts()) return kLasting * std::min(1.0, kResolvable / number);
   return std::max(std::min(1.0, kResolvableImpact / number), kLeastInImpact);
 }
@@ -412,7 +331,7 @@ void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
   const auto flatAlpha = static_cast<S>(flat);
   changed_ = true;  // until it is done: memory may run out
   alpha_ = alpha;
-  spread_ = stretched_;
+  spread_ = pressure_.stretch();
   if (tets_) tets_->findFactors(forceSeconds_ / alpha);
   assembleFrom(tets_ ? tets_->cornersForMatrix(static_cast<S>(alpha), threads, flatAlpha) : nullptr, threads);
   changed_ = false;
@@ -518,7 +437,7 @@ void BodyDynamics<S>::beTouched(bool impact, ParallelFor* threads) {
   for (std::size_t k = 0; k < carried_.size(); ++k) rightSide_[k] -= carried_[k];
   chooseScheme();
   assembleIfNeeded(allowedTurn(), threads);
-  setGasStiffness();
+  pressure_.stiffen(matrix_, matrixAlpha());
   carry(threads);
 }
 
@@ -639,47 +558,19 @@ void BodyDynamics<S>::rightSide(std::size_t node, S out[3]) const {
 template <class S>
 double BodyDynamics<S>::squaredSolution() const {
   assert(stage_ != Stage::Between);
-  const S* solution = matrix_.solution();
-  double sum = 0.0;
-  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const S v = solution[wide + k * kGroup];
-      sum += static_cast<double>(matrix_.massAt(slot) * v * v);
-    }
-  });
-  return sum;
+  return squaredByMasses(matrix_, matrix_.solution());
 }
 
 template <class S>
 double BodyDynamics<S>::squaredChange() const {
   assert(stage_ != Stage::Between);
-  const S* solution = matrix_.solution();
-  LaneSums sums;
-  for (std::size_t chunk = 0; chunk < matrix_.slotCount() / kGroup; ++chunk) {
-    for (std::size_t lane = 0; lane < kGroup; ++lane) {
-      double squared = 0.0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t at = kernels::kWideVector * chunk + k * kGroup + lane;
-        const auto change = static_cast<double>(solution[at] - began_[at]);
-        squared += change * change;
-      }
-      sums.lanes[lane] += static_cast<double>(matrix_.massAt(kGroup * chunk + lane)) * squared;
-    }
-  }
-  return sums.total();
+  return squaredDifferenceByMasses(matrix_, matrix_.solution(), began_.data());
 }
 
 template <class S>
 double BodyDynamics<S>::squaredByMatrix() const {
   assert(stage_ == Stage::Solvable);
-  const S* solution = matrix_.solution();
-  LaneSums sums;
-  for (std::size_t k = 0; k < image_.size(); k += kGroup) {
-    for (std::size_t lane = 0; lane < kGroup; ++lane) {
-      sums.lanes[lane] += static_cast<double>(solution[k + lane]) * static_cast<double>(image_[k + lane]);
-    }
-  }
-  return std::max(sums.total(), 0.0);
+  return std::max(dot(matrix_.solution(), image_.data(), image_.size()), 0.0);
 }
 
 template <class S>
@@ -711,36 +602,21 @@ void BodyDynamics<S>::findForces(BodyProbe<S>& probe, ParallelFor* threads) {
   AlignedVector<S> moved = probe.points_;
   places_.displacePoints(moved);
   tets_->probeForces(moved.data(), probe.forces_.data(), threads);
-  if (!pressureSurface_) return;
-  const double pressure = pressure_.at(volumeIn(*pressureSurface_, probe));
-  for (std::size_t n = 0; n < pressureSlots_.size(); ++n) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      S& force = probe.forces_[4 * pressureSlots_[n] + k];
-      force = static_cast<S>(static_cast<double>(force) + pressure * pressureSurface_->derivative()[3 * n + k]);
-    }
-  }
+  pressure_.addForcesAt(probe.points_, matrix_, places_, probe.forces_);
 }
 
 template <class S>
 double BodyDynamics<S>::energy(BodyProbe<S> probe, ParallelFor* threads) {
   assert(&probe.matrix_ == &matrix_);
   if (!tets_) return 0.0;
-  const double ofPressure = pressureSurface_ ? pressure_.energy(volumeIn(*pressureSurface_, probe)) : 0.0;
+  const double ofPressure = pressure_.energyAt(probe.points_, matrix_, places_);
   places_.displacePoints(probe.points_);
   return tets_->energy(probe.points_.data(), threads) + ofPressure;
 }
 
-/// Positions that are still the nodes' own get all of their digits.
 template <class S>
 double BodyDynamics<S>::volumeIn(PressureSurface& surface, const BodyProbe<S>& probe) const {
-  double* to = surface.positions();
-  for (const std::uint32_t n : surface.nodes()) {
-    const std::size_t slot = matrix_.slotOf(n);
-    const S* x = &probe.points_[4 * slot];
-    const bool own = places_.isAt(slot, x, S(0));
-    for (std::size_t k = 0; k < 3; ++k) *to++ = own ? places_.at(slot)[k] : static_cast<double>(x[k]);
-  }
-  return surface.evaluate(true, nullptr);
+  return EnclosedPressure<S>::volumeAt(probe.points_, surface, matrix_, places_);
 }
 
 // ---- between steps
@@ -784,8 +660,8 @@ void BodyDynamics<S>::serialize(StateStream& stream, bool outdated, bool continu
   stream(known);
   stream(solved);
   stream(alpha);
-  double spread = pressureSurface_ ? spread_ : 1.0;
-  if (pressureSurface_) stream(spread);
+  double spread = pressure_.acts() ? spread_ : 1.0;
+  if (pressure_.acts()) stream(spread);
   stream(stiffnessOverInertia_);
   stream(untouched_);
   stream(lastSeconds_);

@@ -15,11 +15,10 @@
 #pragma once
 
 #include <tetskin/elastic/src/dynamics/body_components.h>
+#include <tetskin/elastic/src/dynamics/enclosed_pressure.h>
 #include <tetskin/elastic/src/dynamics/extra_damping.h>
 #include <tetskin/elastic/src/dynamics/impulse_history.h>
 #include <tetskin/elastic/src/dynamics/lone_solve.h>
-#include <tetskin/elastic/src/dynamics/pressure_law.h>
-#include <tetskin/elastic/src/dynamics/pressure_surface.h>
 #include <tetskin/elastic/src/dynamics/tet_stretches.h>
 
 #include <array>
@@ -294,8 +293,6 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   double stiffnessPerInertia() const { return stiffnessOverInertia_ * (tets_ ? tets_->stiffening() : 1.0); }
   double flowsInImpact(std::size_t component, double energy, double seconds) const;
   void giveShapes();
-  void findPressure(ParallelFor* threads);
-  void setGasStiffness();
   void findMaterialVolume();
   bool isSpread() const;
   void chooseScheme();
@@ -327,14 +324,9 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   GivenShapes given_;                      ///< by it
   std::uint64_t givenNumber_ = 0;          ///< of the law that has given all tets their shapes
   std::vector<std::uint32_t> tetNumbers_;  ///< see TetStretches; empty until there is such a law
-  PressureLaw pressure_;
-  std::shared_ptr<PressureSurface> pressureSurface_;  ///< null: no pressure
-  std::vector<std::uint32_t> pressureSlots_;          ///< by node of the surface
-  std::vector<double> gasStiffness_;                  ///< u of BlockMatrix::setOuter over the root of alpha
-  double gasFrequency_ = 0.0;                         ///< square of that of the gas alone, 1 / s^2
+  EnclosedPressure<S> pressure_;
   double shearModulus_ = 1.0;
   double materialVolume_ = 0.0;  ///< of the tets, times their stiffness factors
-  double stretched_ = 1.0;       ///< see BlockMatrix::assemble, by the pressure of this step
   double spread_ = 1.0;          ///< of the last assembly
   ImpulseHistory<S> history_;
   AlignedVector<S> points_, moved_, velocities_, relative_,

@@ -7,6 +7,7 @@
 #include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/solver/src/base/row_source.h>
 #include <tetskin/solver/src/rows/contact_row.h>
+#include <tetskin/solver/src/rows/row_stiffness.h>
 #include <tetskin/solver/src/rows/solver_bodies.h>
 
 #include <vector>
@@ -22,12 +23,14 @@ class ContactRows {
   void add(PointContacts& contacts, SolverBodies& bodies, btScalar seconds);
   void add(std::vector<PointJoint>& joints, SolverBodies& bodies, RigidUnknowns& rigids, btScalar seconds);
   /// Call it when all rows have been added.
-  void setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds);
+  void setStiffness(const SolverBodies& bodies, const RigidUnknowns& rigids, btScalar seconds) {
+    stiffness_.set(rows_, origins_, bodies, rigids, seconds);
+  }
   /// The factor on a contact's D with which its load gives way as in a step of usual length; known after
   /// `setStiffness`.
-  btScalar likeUsual(btScalar seconds) const;
+  btScalar likeUsual(btScalar seconds) const { return stiffness_.likeUsual(seconds); }
   /// Writes or reads the state that is not in the bodies.
-  void serialize(StateStream& stream) { stream(usualStep_); }
+  void serialize(StateStream& stream) { stiffness_.serialize(stream); }
   /// Adds any other row, such as one between rigid bodies.
   void add(const ContactRow& row, const RowOrigin& origin);
   /// Stores what the next step starts with, and reports the impulses to the contacts.
@@ -44,15 +47,7 @@ class ContactRows {
   void addBody(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
   void addAnchors(SolverBodies& bodies, std::size_t index, RigidUnknowns& rigids, btScalar seconds);
 
-  void followStep(btScalar seconds);
-  bool mayTouch(const SolverBodies& bodies, const ContactRow& row, btScalar seconds) const;
-  void listLoads(const SolverBodies& bodies, btScalar seconds);
-  btScalar sharing(std::size_t row) const;
-
-  /// A step's usual length in seconds, which slowly follows the steps; 0: none so far. A supported weight gives way as
-  /// in a step of this length, whatever the present one is: otherwise each change of the step would act as a push.
-  double usualStep_ = 0.0;
-  std::vector<std::vector<btScalar>> loads_;  ///< by body and node: weights of the rows that may touch in this step
+  RowStiffness stiffness_;
   std::vector<ContactRow> rows_;
   std::vector<RowOrigin> origins_;  ///< by row
 };

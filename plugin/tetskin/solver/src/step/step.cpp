@@ -12,6 +12,10 @@
 //                               finishContacts  reports the impulses of contacts
 //                               writeBack       velocities
 //   applyTransforms             positions, by Bullet, and then in double: see step_positions.cpp
+// The way of a contact: a search (search/, or a RowSource of another library) leaves it in the body's channel
+// (base/body_channel.h); `assemble` makes it a row (rows/contact_rows.h); the system linearises and eliminates the row
+// (system/system_solve.h); ContactRows::finish writes its impulse, and where it sticks, for the next step; rigid bodies
+// get theirs in rows/rigid_rows.h, and records of forces in step/recorded_forces.h.
 #include <BulletSoftBody/btDeformableContactProjection.h>
 #include <tetskin/core/src/base/run_by_size.h>
 #include <tetskin/solver/src/base/body_channel.h>
