@@ -26,6 +26,20 @@ void checkMesh(const TriangleMesh& mesh) {
   checkCount(mesh.texcoords.size(), "texcoords");
 }
 
+ElasticLaw::Kind valueOf(const Choice<ElasticLaw::Kind>& law) {
+  if (law.name == "corotated") return ElasticLaw::Kind::Corotated;
+  if (law.name == "neo-hookean") return ElasticLaw::Kind::NeoHookean;
+  if (law.name == "yeoh") return ElasticLaw::Kind::Yeoh;
+  throw std::invalid_argument("law: 'corotated', 'neo-hookean' or 'yeoh'");
+}
+
+Loading valueOf(const Choice<Loading>& loading) {
+  if (loading.name == "uniaxial") return Loading::Uniaxial;
+  if (loading.name == "equibiaxial") return Loading::Equibiaxial;
+  if (loading.name == "planar") return Loading::Planar;
+  throw std::invalid_argument("loading: 'uniaxial', 'equibiaxial' or 'planar'");
+}
+
 Interpolation valueOf(const Choice<Interpolation>& interpolation) {
   if (interpolation.name == "linear") return Interpolation::Linear;
   if (interpolation.name == "quadratic") return Interpolation::Quadratic;

@@ -58,6 +58,8 @@ struct Choice {
 const Vec3& finite(const Vec3& vector, const char* name);
 
 /// The value that a word stands for; throw for another word.
+ElasticLaw::Kind valueOf(const Choice<ElasticLaw::Kind>& law);
+Loading valueOf(const Choice<Loading>& loading);
 Interpolation valueOf(const Choice<Interpolation>& interpolation);
 Normals valueOf(const Choice<Normals>& normals);
 OutsideRule valueOf(const Choice<OutsideRule>& outside);

@@ -591,6 +591,13 @@ export interface Body extends Thing {
    */
   setDampingScale(factors: Numbers): void;
   /**
+   * How stress follows from large strains. Small strains are the same with each law. Yeoh's stiffens when it is pulled,
+   * as rubber and flesh do, with C20 / C10 = c2 and C30 / C10 = c3.
+   * @param tets  of the cage; null: all
+   */
+  setElasticLaw(law: "corotated" | "neo-hookean" | "yeoh", coefficients?: {c2?: number, c3?: number},
+                tets?: Numbers | null): void;
+  /**
    * Adds fibres that make tets stiffer along them, for good.
    * @param tets         of the cage
    * @param directions   rest space: one, or one for each of these tets, three numbers each

@@ -635,6 +635,13 @@ test("tets grow, contract and flow", () => {
   refused(() => body.setDampingScale(new Float64Array(tets).fill(-1)), "InvalidOption", /0 or more/);
   refused(() => body.addFibres([0], [1, 0, 0], 0), "InvalidOption", /stiffness of fibres/);
   body.addFibres([0, 1], [1, 0, 0], 1e5, true);
+  body.setElasticLaw("yeoh", {c2: 0.1, c3: 0.01});
+  body.setElasticLaw("neo-hookean", {}, [0, 1]);
+  body.setElasticLaw("corotated", {}, []);
+  steps(world, 2);
+  refused(() => body.setElasticLaw("yeoh", {c2: -1}), "InvalidOption", /at least 0.05/);
+  refused(() => body.setElasticLaw("rubber"), "InvalidArgument", /neo-hookean/);
+  refused(() => body.setElasticLaw("yeoh", {c4: 1}), "InvalidArgument", /no c4/);
   refused(() => body.addMuscle([0], [1, 0, 0], 1e4, [1, 1, 1, 1]), "InvalidOption", /lengthFactors/);
   refused(() => body.setGrowth(0), "InvalidOption", /0.05 to 20/);
   refused(() => body.setPlasticity({yieldStress: 1, speed: 2}), "InvalidArgument", /no speed/);

@@ -89,6 +89,29 @@ def test_fibres_make_a_bar_stiffer_and_muscles_know_their_length(elastic):
     assert length(elastic.positions) == pytest.approx(1 - 0.2 / 3, abs=6e-3)  # 1e7 (1 - s) = 1e6 (s - 0.8) / 0.2
 
 
+def test_a_law_stiffens_and_a_fit_finds_it(elastic, world_and_body):
+    stretched = np.array(elastic.positions) * (2, 0.5 ** 0.5, 0.5 ** 0.5)
+    elastic.positions = stretched
+    linear = elastic.energy
+    elastic.set_elastic_law("yeoh", c2=0.5, c3=0.5)
+    elastic.positions = stretched
+    k = 2.0  # 4 + 2 / 2 - 3
+    # The volume stays: mu / 2 (K + c2 K^2 + c3 K^3) in 0.0625 m^3.
+    assert elastic.energy == pytest.approx(0.0625 * 1e6 / 2.6 / 2 * (k + 0.5 * k**2 + 0.5 * k**3), rel=1e-5)
+    elastic.set_elastic_law("corotated", tets=np.ones(160, bool))
+    elastic.set_elastic_law("neo-hookean", tets=[])
+    elastic.positions = stretched
+    assert elastic.energy == pytest.approx(linear, rel=1e-6)
+    world, body = world_and_body
+    body.set_elastic_law("neo-hookean", tets=[0, 1])
+    world.step(1 / 60)
+    stretches = np.array([1.2, 1.5, 2, 2.5])
+    yeoh = (stretches - stretches**-2) * (1 + 0.2 * (stretches**2 + 2 / stretches - 3)) * 1e5
+    fit = ts.fit_elastic_law("yeoh", np.column_stack([stretches, yeoh]))
+    assert fit["youngs_modulus"] == pytest.approx(3e5) and fit["c2"] == pytest.approx(0.1) and fit["error"] < 1e-6
+    assert ts.fit_elastic_law("neo-hookean", np.column_stack([stretches, yeoh]), loading="uniaxial")["error"] > 0.05
+
+
 def test_fibres_follow_a_curve(elastic):
     cage = cage_of_box()
     fibres = ts.fibres_along(cage, np.ones(160, bool), [(0, 0.1, 0.1), (1, 0.1, 0.1)])
@@ -139,6 +162,9 @@ def test_yield_stresses_by_tet(world_and_body):
     (lambda b: b.set_growth(np.tile([[1, 1, 0], [0, 1, 0], [0, 0, 1]], (160, 1, 1)).astype(float)), "symmetric"),
     (lambda b: b.add_muscle(tets=[], fibres=(1, 0, 0)), "at least one tet"),
     (lambda b: b.add_muscle([0], (1, 0, 0), length_factors=[(1, 1), (1, 0)]), "lengthFactors"),
+    (lambda b: b.set_elastic_law("yeoh", c2=-1), "at least 0.05"),
+    (lambda b: b.set_elastic_law("neo-hookean", c2=1), "only Yeoh"),
+    (lambda b: b.set_elastic_law("yeoh", tets=[1, 1]), "twice"),
     (lambda b: b.add_fibres([0], (1, 0, 0), stiffness=0), "stiffness of fibres"),
     (lambda b: b.add_fibres([0], (0, 0, 0), stiffness=1), "longer than 0"),
     (lambda b: b.set_damping_scale(np.full(160, -1.0)), "0 or more"),

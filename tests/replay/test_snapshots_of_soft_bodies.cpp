@@ -308,6 +308,10 @@ TEST(SnapshotsOfSoftBodies, OfBodiesWhoseRestShapesChange) {
         factors[4] = frame;
         EXPECT_TRUE(body.setDampingScale(factors).ok());
       }
+      if (frame == 10 || frame == 26) {
+        EXPECT_TRUE(
+            body.setElasticLaw(frame == 10 ? ElasticLaw::yeoh(0.5, 0.2) : ElasticLaw::neoHookean(), {0, 1, 2}).ok());
+      }
       if (frame % 4 == 0) {
         EXPECT_TRUE(body.setActivation(0, 0.02 * frame).ok());
         EXPECT_TRUE(body.setActivation(1, frame == 16 ? 0.0 : 0.5).ok());

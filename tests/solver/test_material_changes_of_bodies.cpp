@@ -4,6 +4,7 @@
 // Plastic flow, growth and muscles of bodies in a world. The laws themselves: see elastic/test_material_changes.cpp.
 #include "deformable_test.h"
 #include "support/bars.h"
+#include "support/rigids.h"
 
 namespace tetskin::test {
 namespace {
@@ -67,6 +68,25 @@ Fallen dropped(bool isClay, double speed, int substeps) {
   result.height = heightOf(body);
   result.asleep = !body.isActive();
   return result;
+}
+
+/// Height to which a cube of 2e5 Pa is pressed by a box on it, in contact.
+double pressedTo(const ElasticLaw& law, double mass) {
+  TetskinWorld world;
+  const auto cube = block(world, cubeAt(0.0), 0.02);
+  EXPECT_TRUE(cube->setElasticLaw(law).ok());
+  const Rigid weight(world.deformable(), std::make_unique<btBoxShape>(btVector3(0.5, 0.1, 0.5)),
+                     static_cast<btScalar>(mass), btVector3(0.2, 0.52, 0.2));
+  for (int frame = 0; frame < 300; ++frame) world.deformable().stepSimulation(btScalar(1) / 60, 4, btScalar(1) / 240);
+  return heightOf(cube->body());
+}
+
+TEST(MaterialChangesOfBodies, WhatStiffensIsPressedLess) {
+  const double mass = 0.6 * kStiff * 0.16 / 9.81;  // a linear law without friction: pressed by 60 %
+  const double linear = pressedTo(ElasticLaw(), mass), neoHookean = pressedTo(ElasticLaw::neoHookean(), mass);
+  EXPECT_LT(linear, 0.24);
+  EXPECT_GT(neoHookean, 0.25);
+  EXPECT_GT(pressedTo(ElasticLaw::yeoh(0.5, 0.2), mass), neoHookean + 0.01);
 }
 
 TEST(MaterialChangesOfBodies, ClayKeepsItsDentAndHardlyRebounds) {

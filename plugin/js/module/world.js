@@ -304,6 +304,12 @@ class Body extends Member {
   setDampingScale(factors) {
     this.withMemory([doubles(numbersOf(factors, "factors"))], at => this.core.setDampingScale(own(this), at));
   }
+  setElasticLaw(law, coefficients = {}, tets = null) {
+    const {c2, c3} = optionsOf(coefficients, {c2: 0, c3: 0});
+    const some = tets === null ? [] : numbersOf(tets, "tets");
+    if (tets !== null && some.length === 0) return;
+    this.withMemory([indices(some)], at => this.core.setElasticLaw(own(this), String(law), c2, c3, at));
+  }
   addFibres(tets, directions, stiffness, tensionOnly = false) {
     const arrays = [indices(numbersOf(tets, "tets")), doubles(numbersOf(directions, "directions", 3))];
     this.withMemory(arrays, (...places) => this.core.addFibres(own(this), ...places, numberOf(stiffness, "stiffness"),

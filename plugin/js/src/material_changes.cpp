@@ -70,6 +70,11 @@ void addFibres(BodyHandle& body, Indices tets, Doubles directions, double stiffn
   check(alive(*body.state)
             .addFibres({std::vector<int>(tets.begin(), tets.end()), directionsOf(directions), stiffness, tensionOnly}));
 }
+/// tets  none: all
+void setElasticLaw(BodyHandle& body, std::string name, double c2, double c3, Indices tets) {
+  const ElasticLaw law{facade::valueOf(facade::Choice<ElasticLaw::Kind>{std::move(name)}), c2, c3};
+  check(alive(*body.state).setElasticLaw(law, std::vector<int>(tets.begin(), tets.end())));
+}
 void setActivation(BodyHandle& body, int muscle, double activation) {
   check(alive(*body.state).setActivation(muscle, activation));
 }
@@ -87,6 +92,7 @@ EMSCRIPTEN_BINDINGS(material_changes) {
   expose<&setGrowth>("setGrowth");
   expose<&setStiffnessScale>("setStiffnessScale");
   expose<&setDampingScale>("setDampingScale");
+  expose<&setElasticLaw>("setElasticLaw");
   expose<&addFibres>("addFibres");
   expose<&addMuscle>("addMuscle");
   expose<&setActivation>("setActivation");

@@ -122,6 +122,36 @@ void addFibres(Body& body, const ArrayLike& tets, const ArrayLike& directions, d
   guarded(body, [&] { check(changeable(body).addFibres(fibres)); });
 }
 
+ElasticLaw lawOf(const std::string& name, double c2, double c3) {
+  return {facade::valueOf(facade::Choice<ElasticLaw::Kind>{name}), c2, c3};
+}
+
+template <class Body>
+void setElasticLaw(Body& body, const std::string& law, double c2, double c3, const std::optional<ArrayLike>& tets) {
+  const ElasticLaw wanted = lawOf(law, c2, c3);
+  std::vector<int> some;
+  if (tets) {
+    some = indicesOf(*tets, "tets", tetCount(body));
+    if (some.empty()) return check(checkElasticLaw(wanted));
+  }
+  guarded(body, [&] { check(changeable(body).setElasticLaw(wanted, some)); });
+}
+
+nb::dict fitted(const std::string& law, const ArrayLike& points, const std::string& loading) {
+  const Numbers<double> numbers(points, "points", 2);
+  const Loading how = facade::valueOf(facade::Choice<Loading>{loading});
+  std::vector<StressPoint> curve;
+  for (std::size_t k = 0; k < numbers.rows(); ++k)
+    curve.push_back({numbers.data()[2 * k], numbers.data()[2 * k + 1], how});
+  const FittedLaw fit = take(fitElasticLaw(lawOf(law, 0.0, 0.0).kind, curve));
+  nb::dict found;
+  found["youngs_modulus"] = fit.youngsModulus;
+  found["c2"] = fit.law.c2;
+  found["c3"] = fit.law.c3;
+  found["error"] = fit.error;
+  return found;
+}
+
 template <class Body>
 void bindMuscle(nb::module_& module, const char* name) {
   Class<MuscleOf<Body>>(module, name, "Tets of a body that contract along their fibres. Made by add_muscle.")
@@ -170,6 +200,10 @@ void bind(Class<Body>& type) {
             guarded(b, [&] { check(changeable(b).setDampingScale(byTet)); });
           },
           "factors"_a, "Multiplies the damping of each tet, on top of what is painted in its cage: (tets,), 0 or more.")
+      .def("set_elastic_law", setElasticLaw<Body>, "law"_a, "c2"_a = 0.0, "c3"_a = 0.0, "tets"_a.none() = nb::none(),
+           "How stress follows from large strains: 'corotated' (linear in the strain), 'neo-hookean', or 'yeoh', which "
+           "stiffens when it is pulled, as rubber and flesh do, with C20 / C10 = c2 and C30 / C10 = c3: see "
+           "fit_elastic_law. Small strains are the same with each. tets: a mask or indices; None: all.")
       .def("add_fibres", addFibres<Body>, "tets"_a, "directions"_a, "stiffness"_a, "tension_only"_a = false,
            "Adds fibres that make tets stiffer along them, for good. tets: a mask or indices. directions: rest space: "
            "one (3,), or one for each of these tets (n, 3). stiffness: pressure units: their tension on the area at "
@@ -200,6 +234,11 @@ void bindMaterialChanges(nb::module_& module, Class<BodyHandle>& body, Class<Ela
       "fibres_along", fibresOf, "cage"_a, "tets"_a, "curve"_a,
       "(n, 3) float64 fibres for add_muscle: for each of n tets (a mask or indices) the direction of the nearest "
       "piece of a curve of points (m, 3), rest space. Of two points: the axis between them. A new array.");
+  module.def(
+      "fit_elastic_law", fitted, "law"_a, "points"_a, "loading"_a = "uniaxial",
+      "The law that meets a measured curve best, by relative errors, as a dict: youngs_modulus, c2, c3 and error, "
+      "the root mean square. points: (n, 2) stretches (length over length at rest) and nominal stresses (force "
+      "over area at rest), of one loading: 'uniaxial', 'equibiaxial' or 'planar'.");
   bindMuscle<BodyHandle>(module, "Muscle");
   bindMuscle<ElasticModel>(module, "ElasticMuscle");
   bind(body);

@@ -15,11 +15,11 @@
 from ._core import (AppliedForces, Body, BonePalette, Cage, Contacts, ElasticBody, ElasticMuscle, Error, GlbWriter, Hit,
                     ImpulseResult, Joint, Muscle, Recorder, Replay, RigidBody, Shape, Skin, Spring, StatusCode,
                     SurfacePoint, TriangleMesh, Weld, World, Wrench, __version__, calibrate, create_cage, fibres_along,
-                    load_cage, load_mesh, load_vertex_map, paint_cage, refine_quadratic, spread_map)
+                    fit_elastic_law, load_cage, load_mesh, load_vertex_map, paint_cage, refine_quadratic, spread_map)
 from .page import Film
 
 __all__ = ["AppliedForces", "Body", "BonePalette", "Cage", "Contacts", "ElasticBody", "ElasticMuscle", "Error", "Film",
            "GlbWriter", "Hit", "ImpulseResult", "Joint", "Muscle", "Recorder", "Replay", "RigidBody", "Shape", "Skin",
            "Spring", "StatusCode", "SurfacePoint", "TriangleMesh", "Weld", "World", "Wrench", "__version__",
-           "calibrate", "create_cage", "fibres_along", "load_cage", "load_mesh", "load_vertex_map", "paint_cage",
-           "refine_quadratic", "spread_map"]
+           "calibrate", "create_cage", "fibres_along", "fit_elastic_law", "load_cage", "load_mesh", "load_vertex_map",
+           "paint_cage", "refine_quadratic", "spread_map"]

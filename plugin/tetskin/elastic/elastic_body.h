@@ -6,6 +6,7 @@
 
 #include <tetskin/core/cage.h>
 #include <tetskin/core/types.h>
+#include <tetskin/elastic/elastic_law.h>
 #include <tetskin/elastic/material_changes.h>
 
 #include <array>
@@ -139,6 +140,10 @@ class TETSKIN_ELASTIC_API ElasticBody {
   /// tet: none where a factor is 0.
   /// factors  tetCount, 0 or more; with the largest, the body must not be too stiff, as for `create`
   Status setDampingScale(const std::vector<double>& factors);
+  /// The law of elasticity of some tets, or of all: see ElasticLaw. Muscles and plastic flow count strains as with the
+  /// corotated one.
+  /// tets  of the cage, each once; none: all
+  Status setElasticLaw(const ElasticLaw& law, const std::vector<int>& tets = {});
   /// Adds fibres, for good. Tets may have several. With the largest sum of their stiffness in a tet, the body must not
   /// become too stiff, as for `create`
   Status addFibres(const Fibres& fibres);

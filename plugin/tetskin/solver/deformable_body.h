@@ -5,6 +5,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <tetskin/bullet/soft_body.h>
 #include <tetskin/core/embedding.h>
+#include <tetskin/elastic/elastic_law.h>
 #include <tetskin/elastic/material_changes.h>
 
 #include <memory>
@@ -107,10 +108,11 @@ class TETSKIN_SOLVER_API DeformableBody {
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);  ///< by tet, 3 x 3 by rows
   Status setStiffnessScale(const std::vector<double>& factors);  ///< tetCount, 1e-6 to 1e6: beside the cage's own
   Status setDampingScale(const std::vector<double>& factors);    ///< tetCount, 0 or more: beside what is painted
-  Status addFibres(const Fibres& fibres);                        ///< they cannot be removed
-  Result<int> addMuscle(const Muscle& muscle);                   ///< returns its number; it is relaxed
-  Status setActivation(int muscle, double activation);           ///< 0 to 1
-  double activation(int muscle) const;                           ///< 0 for a muscle that does not exist
+  Status setElasticLaw(const ElasticLaw& law, const std::vector<int>& tets = {});  ///< of these tets; none: of all
+  Status addFibres(const Fibres& fibres);                                          ///< they cannot be removed
+  Result<int> addMuscle(const Muscle& muscle);          ///< returns its number; it is relaxed
+  Status setActivation(int muscle, double activation);  ///< 0 to 1
+  double activation(int muscle) const;                  ///< 0 for a muscle that does not exist
 
   // ---- Pressure, for ForceModel::Corotated alone; see the page "Pressure and gas".
 

@@ -316,6 +316,10 @@ Status ElasticBody<Scalar>::setDampingScale(const std::vector<double>& factors) 
   return impl_->changeStiffness([&](auto& changes) { return changes.setDampingScale(factors); });
 }
 template <class Scalar>
+Status ElasticBody<Scalar>::setElasticLaw(const ElasticLaw& law, const std::vector<int>& tets) {
+  return impl_ ? impl_->change(impl_->changes.setElasticLaw(law, tets)) : kNoNodes;
+}
+template <class Scalar>
 Status ElasticBody<Scalar>::addFibres(const Fibres& fibres) {
   if (!impl_) return kNoNodes;
   return impl_->changeStiffness([&](auto& changes) { return changes.addFibres(fibres); });

@@ -105,6 +105,15 @@ void BodyDynamics<S>::setDamping(double damping, const std::vector<double>& fact
 }
 
 template <class S>
+void BodyDynamics<S>::setLaws(const std::vector<ElasticLaw>& laws) {
+  assert(tets_);
+  if (laws == laws_) return;
+  laws_ = laws;
+  tets_->setLaws(laws_);
+  changed_ = true;
+}
+
+template <class S>
 void BodyDynamics<S>::setFibres(const std::vector<std::vector<TetFibre>>& families) {
   assert(tets_);
   if (families == fibres_) return;

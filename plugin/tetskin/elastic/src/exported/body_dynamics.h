@@ -92,6 +92,8 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   /// damping  seconds
   /// factors  of it by tet of the cage, 0 or more; empty: 1
   void setDamping(double damping, const std::vector<double>& factors = {});
+  /// See CorotatedTets::setLaws.
+  void setLaws(const std::vector<ElasticLaw>& laws);
   /// See FibreTets; empty: none.
   void setFibres(const std::vector<std::vector<TetFibre>>& families);
   /// What gives the tets their shapes at rest from now on; without `find`, they keep those that they have.
@@ -320,6 +322,7 @@ class TETSKIN_ELASTIC_API BodyDynamics {
   std::optional<CorotatedTets<S>> tets_;
   LoneSolve<S> loneSolve_;
   std::vector<std::vector<TetFibre>> fibres_;  ///< see `setFibres`
+  std::vector<ElasticLaw> laws_;               ///< see `setLaws`
   ShapeLaw shapeLaw_;
   GivenShapes given_;                      ///< by it
   std::uint64_t givenNumber_ = 0;          ///< of the law that has given all tets their shapes

@@ -95,11 +95,9 @@ Status checkCurve(const std::vector<std::array<double, 2>>& curve) {
   return {};
 }
 
-/// Directions of tets of the cage.
+/// Tets of the cage, each once.
 /// what  has them
-Status checkFibres(const std::string& what, const std::vector<int>& tets,
-                   const std::vector<Eigen::Vector3d>& directions, std::size_t tetCount) {
-  if (tets.empty()) return invalidChange(what + ": needs at least one tet");
+Status checkTets(const std::string& what, const std::vector<int>& tets, std::size_t tetCount) {
   std::vector<char> used(tetCount, 0);
   for (const int tet : tets) {
     if (tet < 0 || static_cast<std::size_t>(tet) >= tetCount) {
@@ -111,6 +109,14 @@ Status checkFibres(const std::string& what, const std::vector<int>& tets,
       return invalidChange(what + ": tet " + std::to_string(tet) + " is listed twice");
     }
   }
+  return {};
+}
+
+/// Directions of tets of the cage.
+Status checkFibres(const std::string& what, const std::vector<int>& tets,
+                   const std::vector<Eigen::Vector3d>& directions, std::size_t tetCount) {
+  if (tets.empty()) return invalidChange(what + ": needs at least one tet");
+  if (Status status = checkTets(what, tets, tetCount); !status.ok()) return status;
   if (directions.size() != 1 && directions.size() != tets.size()) {
     return sizeMismatch("fibres", directions.size(), tets.size());
   }
@@ -197,6 +203,18 @@ Status MaterialChanges::setDampingScale(const std::vector<double>& factors) {
   }
   const bool none = std::all_of(factors.begin(), factors.end(), [](double factor) { return factor == 1.0; });
   dampingScale_ = none ? std::vector<double>() : factors;
+  return {};
+}
+
+Status MaterialChanges::setElasticLaw(const ElasticLaw& law, const std::vector<int>& tets) {
+  if (Status status = checkElasticLaw(law); !status.ok()) return status;
+  if (Status status = checkTets("an elastic law", tets, tetCount_); !status.ok()) return status;
+  std::vector<ElasticLaw> laws = laws_;
+  laws.resize(tetCount_);
+  if (tets.empty()) laws.assign(tetCount_, law);
+  for (const int tet : tets) laws[static_cast<std::size_t>(tet)] = law;
+  const bool none = std::all_of(laws.begin(), laws.end(), [](const ElasticLaw& own) { return own == ElasticLaw(); });
+  laws_ = none ? std::vector<ElasticLaw>() : std::move(laws);
   return {};
 }
 
@@ -371,6 +389,7 @@ template <class S>
 void MaterialChanges::applyTo(BodyDynamics<S>& body, double poissonRatio, double youngsModulus, double damping) const {
   if (body.tets()->setStiffnessScale(stiffnessScale_)) body.setMaterial(lameOf(youngsModulus, poissonRatio));
   body.setDamping(damping, dampingFactors());
+  body.setLaws(laws_);
   applyShapesTo(body, poissonRatio, youngsModulus);
   body.tets()->setPlasticity(plasticity_ ? &*plasticity_ : nullptr);
 }
@@ -388,6 +407,7 @@ void MaterialChanges::serialize(StateStream& stream) {
     scale->clear();
     return stream.fail();
   }
+  serializeLaws(stream);
   for (Group& group : muscles_) {
     stream(group.activation);
     if (!(group.activation >= 0.0 && group.activation <= 1.0)) stream.fail();
@@ -403,6 +423,17 @@ void MaterialChanges::serialize(StateStream& stream) {
   stream.array(now.yieldStresses);
   if (!now.yieldStresses.empty() && now.yieldStresses.size() != tetCount_) return stream.fail();
   if (stream.restoring()) plasticity_ = now;
+}
+
+void MaterialChanges::serializeLaws(StateStream& stream) {
+  std::size_t count = laws_.size();
+  stream(count);
+  if (stream.restoring()) laws_.resize(count == tetCount_ ? count : 0);
+  if (count != laws_.size()) return stream.fail();
+  for (ElasticLaw& law : laws_) {
+    stream(law.kind, law.c2, law.c3);
+    if (law.kind > ElasticLaw::Kind::Yeoh || !checkElasticLaw(law).ok()) law = {}, stream.fail();
+  }
 }
 
 #define TETSKIN_INSTANTIATE(Scalar)                                                                  \

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <tetskin/core/src/base/state/state_stream.h>
+#include <tetskin/elastic/elastic_law.h>
 #include <tetskin/elastic/material_changes.h>
 #include <tetskin/elastic/src/exported/body_dynamics.h>
 
@@ -32,6 +33,8 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   Status setGrowthTensors(const std::vector<std::array<double, 9>>& deformations);
   Status setStiffnessScale(const std::vector<double>& factors);
   Status setDampingScale(const std::vector<double>& factors);
+  /// tets  none: all
+  Status setElasticLaw(const ElasticLaw& law, const std::vector<int>& tets);
   Status addFibres(const Fibres& fibres);
   std::size_t fibresCount() const { return fibres_.size(); }
   std::size_t fibreTetCount() const;  ///< over all of them
@@ -73,6 +76,7 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   double largestFibreStiffness() const;  ///< the largest sum over the fibres of a tet
   std::vector<double> dampingFactors() const;
   std::vector<std::vector<TetFibre>> fibresByTet() const;
+  void serializeLaws(StateStream& stream);
   bool givesShapes() const;
   bool dependsOnLengths() const;
   void findShapes(double poissonRatio, double youngsModulus, const TetStretches* stretches, bool ofAll,
@@ -87,6 +91,7 @@ class TETSKIN_ELASTIC_API MaterialChanges {
   std::vector<std::uint32_t> muscleTetAt_;  ///< by tet: its place among them
   std::uint64_t shapesNumber_ = 1;          ///< of growth and muscles; activations do not count
   std::vector<Fibres> fibres_;
+  std::vector<ElasticLaw> laws_;  ///< by tet; empty: all are corotated
 };
 
 }  // namespace tetskin::elastic_detail

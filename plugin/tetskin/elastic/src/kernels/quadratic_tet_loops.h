@@ -213,7 +213,8 @@ TetFindings<S> quadraticForces(const TetWork<S, QuadraticPack<S>>& work, bool wi
           shear *= change.volume;
           bulk *= change.volume;
         }
-        RotatedStress<S, W> stress{at[point].r, stressOf<S, W>(strain, trace, shear, bulk, withEnergy, findings)};
+        RotatedStress<S, W> stress{at[point].r, stressByLaw<S, W>(work, p, point == 0, lane, lost, strain, trace, shear,
+                                                                  bulk, withEnergy, findings)};
         if (work.changes) stress.stress = plusTransposedProduct<S, W>(stress.stress, change.inverse);
         byShapeGradients<S, W>(pack, lane, weights[point], stress, [&](int a, const WideVector<S, W>& v) {
           force[a] = {force[a].x - v.x, force[a].y - v.y, force[a].z - v.z};

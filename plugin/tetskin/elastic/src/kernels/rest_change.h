@@ -16,7 +16,7 @@
 //   Deformation", SCA 2004, doi 10.1145/1028523.1028541 (multiplicative plasticity)
 #pragma once
 
-#include <tetskin/elastic/src/kernels/corotation.h>
+#include <tetskin/elastic/src/kernels/hyperelasticity.h>
 
 namespace tetskin::kernels::TETSKIN_KERNELS {
 
@@ -277,6 +277,29 @@ TETSKIN_INLINE void changeRest(const Work& work, std::size_t at, int lane, WideM
   mu *= change.volume;
 }
 
+/// The stress of strains E by the law of each tet.
+/// first  no point of this pack was asked before in this pass
+/// lost   1 for tets that are corotated at present, whatever their law
+template <class S, int W, class Work>
+TETSKIN_INLINE WideMatrix<S, W> stressByLaw(const Work& work, std::size_t pack, bool first, int lane,
+                                            const Lanes<S, W>& lost, const WideMatrix<S, W>& strain,
+                                            const Lanes<S, W>& trace, const Lanes<S, W>& shear, const Lanes<S, W>& bulk,
+                                            bool withEnergy, WideFindings<S, W>& findings) {
+  using V = Lanes<S, W>;
+  if (!work.laws) return stressOf<S, W>(strain, trace, shear, bulk, withEnergy, findings);
+  const S* from = work.laws + kLaw * pack + static_cast<std::size_t>(lane);
+  const auto other = (wide<S, W>(from) > S(0)) & !(lost > S(0));
+  const WideLaw<S, W> law{other ? shear : V{}, other ? bulk : V{}, wide<S, W>(from + kGroup),
+                          wide<S, W>(from + 2 * kGroup)};
+  WideMatrix<S, W> stress =
+      stressOf<S, W>(strain, trace, other ? V{} : shear, other ? V{} : bulk, withEnergy, findings);
+  const V stiffer = addLaw<S, W>(law, strain, withEnergy, stress, findings);
+  if (!work.stiffer) return stress;
+  S* const to = work.stiffer + kGroup * pack + static_cast<std::size_t>(lane);
+  put<S, W>(first ? stiffer : larger(stiffer, wide<S, W>(to)), to);
+  return stress;
+}
+
 /// Updates the rotations of W points, and what flows there.
 /// pack, at     number of the pack, and of its point
 /// g            gradients of points
@@ -303,7 +326,8 @@ TETSKIN_INLINE RotatedStress<S, W> rotatedStress(const Work& work, std::size_t p
     shear *= change.volume;
     bulk *= change.volume;
   }
-  RotatedStress<S, W> stress{r, stressOf<S, W>(strain, traceOf<S, W>(strain), shear, bulk, withEnergy, findings)};
+  RotatedStress<S, W> stress{r, stressByLaw<S, W>(work, pack, true, lane, Lanes<S, W>{}, strain, traceOf<S, W>(strain),
+                                                  shear, bulk, withEnergy, findings)};
   if (work.changes) stress.stress = plusTransposedProduct<S, W>(stress.stress, change.inverse);
   return stress;
 }

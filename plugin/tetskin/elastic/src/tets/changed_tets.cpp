@@ -72,31 +72,6 @@ double meanOf(const std::vector<double>& byTet, const Tets& tets) {
 
 }  // namespace
 
-/// Calls visit(packed tets, index of a tet in its packs, tets of the cage that it is). The rest of the last pack
-/// repeats the last tet.
-template <class S>
-template <class Visit>
-void CorotatedTets<S>::forTets(Visit&& visit) {
-  for (std::size_t number = 0; number < rest_.count() + rest_.quadratic.size(); ++number) forTet(number, visit);
-}
-
-/// The same for one tet, and what repeats it.
-/// number  see `tetNumbers`
-template <class S>
-template <class Visit>
-void CorotatedTets<S>::forTet(std::size_t number, Visit&& visit) {
-  const auto visitAll = [&](auto& packed, std::size_t first, std::size_t count, const auto& cageTets) {
-    const std::size_t end = first + 1 < count ? first + 1 : kGroup * packed.packs.size();
-    for (std::size_t k = first; k < end; ++k) visit(packed, k, cageTets);
-  };
-  if (number < rest_.count()) {
-    visitAll(linear_, number, rest_.count(), std::array<std::uint32_t, 1>{rest_.cageTets[number]});
-  } else {
-    const std::size_t q = number - rest_.count();
-    visitAll(quadratic_, q, rest_.quadratic.size(), rest_.quadratic[q].cageTets);
-  }
-}
-
 /// From now on, the tets have changes; at first, none.
 template <class S>
 void CorotatedTets<S>::makeChanges() {
@@ -122,14 +97,12 @@ void CorotatedTets<S>::setExtraDamping(const std::vector<double>& byTet) {
 template <class S>
 void CorotatedTets<S>::findFactors(double perSecond) {
   perSecond_ = perSecond;
-  isStiffer_ = false;
+  isStiffer_ = lawsOutdated_ = false;
   forBoth([&](auto& packed) {
-    const bool any = !packed.stiffer.empty() || !packed.extraDamping.empty();
+    const bool any = !packed.stiffer.empty() || !packed.lawStiffer.empty() || !packed.extraDamping.empty();
     packed.factors.resize(any ? kGroup * packed.packs.size() : 0);
-    for (std::size_t tet = 0; tet < packed.factors.size(); ++tet) {
-      const double stiffer = packed.stiffer.empty() ? 1.0 : packed.stiffer[tet];
-      packed.factors[tet] = static_cast<S>(stiffer * dampedFactor(packed, tet));
-    }
+    for (std::size_t tet = 0; tet < packed.factors.size(); ++tet)
+      packed.factors[tet] = static_cast<S>(matrixFactor(packed, tet));
   });
 }
 
@@ -266,10 +239,9 @@ void CorotatedTets<S>::setStiffer() {
 template <class S>
 template <class Packs, class Tets>
 void CorotatedTets<S>::setStiffer(Packs& packed, std::size_t tet, const Tets& cageTets) {
-  constexpr double kStale = 1.25;  // forces may be this much stiffer than the matrix
-  const double own = packed.stiffer[tet] = meanOf(given_.stiffer, cageTets);
+  packed.stiffer[tet] = meanOf(given_.stiffer, cageTets);
   const double counted = packed.factors.empty() ? 1.0 : static_cast<double>(packed.factors[tet]);
-  isStiffer_ |= own * dampedFactor(packed, tet) > kStale * counted;
+  isStiffer_ |= isStale(matrixFactor(packed, tet), counted);
 }
 
 template <class S>

@@ -121,11 +121,12 @@ void CorotatedTets<S>::setFibres(const std::vector<std::vector<TetFibre>>& famil
 
 template <class S>
 double CorotatedTets<S>::stiffening() const {
-  if (!fibres_) return stiffening_;
+  const double ofTets = stiffening_ * lawStiffening_;
+  if (!fibres_) return ofTets;
   double volume = 0.0;
   for (const double own : rest_.volumes) volume += own;
   for (const RestQuadraticTet& tet : rest_.quadratic) volume += tet.volume;
-  return stiffening_ + fibres_->stiffness() / (volume * mu_ * (2.0 + static_cast<double>(ratio_)));
+  return ofTets + fibres_->stiffness() / (volume * mu_ * (2.0 + static_cast<double>(ratio_)));
 }
 
 template <class S>
@@ -140,6 +141,8 @@ kernels::TetWork<S, Pack> CorotatedTets<S>::work(Packed<Pack>& packed, std::size
   work.corners = corners_.data() + 4 * packed.firstCorner;
   work.alphas = packed.alphas.data();
   work.factors = packed.factors.empty() ? nullptr : packed.factors.data();
+  work.laws = packed.laws.empty() ? nullptr : packed.laws.data();
+  work.stiffer = packed.laws.empty() || isAsked_ ? nullptr : packed.lawStiffer.data();
   work.frames = frames_;
   work.partOf = partOf_;
   if (packed.changes.empty()) return work;
@@ -187,7 +190,9 @@ double CorotatedTets<S>::cornerForces(const S* points, S* sums, bool energy, Par
     yields |= part.yields;
     total += part.energy;
   }
-  if (!isAsked_) yields_ = yields;
+  if (isAsked_) return total;
+  yields_ = yields;
+  findLawStiffening();
   return total;
 }
 
@@ -314,6 +319,7 @@ const S* CorotatedTets<S>::corners(S alpha, S flatAlpha, const S* points, Parall
 template <class S>
 bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   forBoth([&](auto& packed) { stream.plain(packed.rotations.data(), packed.rotations.size()); });
+  if (!linear_.laws.empty() || !quadratic_.laws.empty()) stream(lawStiffening_);
   bool changed = serializeChanges(stream, ofMatrix);
   if (!ofMatrix) return false;
   const S flatAlpha = flatAlpha_;

@@ -2,12 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 //
 // Elastic forces of a body's tets, with a rotation for each linear one, and for each of four points of quadratic ones:
-// see corotation.h.
+// see kernels/corotation.h, and kernels/hyperelasticity.h for other laws than the corotated one.
 #pragma once
 
 #include <tetskin/core/src/base/aligned.h>
 #include <tetskin/core/src/base/state/state_stream.h>
 #include <tetskin/core/types.h>
+#include <tetskin/elastic/elastic_law.h>
 #include <tetskin/elastic/material_changes.h>
 #include <tetskin/elastic/src/tets/fibre_tets.h>
 #include <tetskin/elastic/src/tets/material.h>
@@ -86,8 +87,10 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   void changeGiven(const std::vector<int>& cageTets, const std::vector<std::uint32_t>& numbers,
                    const GivenShapes& given);
   bool knowsGiven() const { return !given_.shapes.empty(); }
-  /// Some tet's forces are stiffer, by such a factor, than the matrix counts.
-  bool isStiffer() const { return isStiffer_ || (fibres_ && fibres_->outdated().stiffer); }
+  /// Some tet's forces are stiffer than the matrix counts, or many are less stiff.
+  bool isStiffer() const { return isStiffer_ || lawsOutdated_ || (fibres_ && fibres_->outdated().stiffer); }
+  /// Laws of the tets of the cage; empty: all are corotated. A quadratic tet has the mean of its parts. Cost O(T)
+  void setLaws(const std::vector<ElasticLaw>& byTet);
   /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
   void setExtraDamping(const std::vector<double>& byTet);
   /// Counts all this in the matrix from its next assembly on.
@@ -131,7 +134,8 @@ class TETSKIN_ELASTIC_API CorotatedTets {
     std::vector<double> stiffer, extraDamping;                          ///< by tet in the packs; empty: 1, 0
     /// By tet in the packs: the volume of its given shape, and the squared norm of its inverse
     std::vector<std::array<double, 2>> stiffenings;
-    AlignedVector<S> factors;  ///< see TetWork; empty: 1
+    AlignedVector<S> factors;           ///< see TetWork; empty: 1
+    AlignedVector<S> laws, lawStiffer;  ///< see TetWork; empty: all are corotated
     std::size_t firstCorner = 0;
     std::size_t tasks = 0;
   };
@@ -164,6 +168,16 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   template <class Packs, class Tets>
   void setStiffer(Packs& packed, std::size_t tet, const Tets& cageTets);
   void findStiffening();
+  void findLawStiffening();
+  /// Forces may be a quarter stiffer than the matrix.
+  static bool isStale(double wanted, double inMatrix) { return wanted > 1.25 * inMatrix; }
+  /// What a tet counts in the matrix over what it does at rest.
+  template <class Packed>
+  double matrixFactor(const Packed& packed, std::size_t tet) const {
+    const double given = packed.stiffer.empty() ? 1.0 : packed.stiffer[tet];
+    const double law = packed.lawStiffer.empty() ? 1.0 : static_cast<double>(packed.lawStiffer[tet]);
+    return given * law * dampedFactor(packed, tet);
+  }
   bool serializeChanges(StateStream& stream, bool ofMatrix);
   void listCorners(const std::vector<std::uint32_t>& slotOf);
   template <class Pack>
@@ -198,20 +212,46 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double mu_ = 0.0;
   double youngsModulus_ = 0.0, flowRate_ = 0.0, yieldEnergy_ = 0.0;
   S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
-  double stiffening_ = 1.0;
-  bool isGiven_ = false;      ///< shapes other than the first ones
-  bool isStiffer_ = false;    ///< see `isStiffer`
-  double perSecond_ = 0.0;    ///< see `findFactors`
-  bool everFlowed_ = false;   ///< it may have
-  bool yields_ = false;       ///< some tet was beyond its yield surface in the last `forces`
-  bool returns_ = false;      ///< since `forgetFlow`
-  double calmSeconds_ = 0.0;  ///< of a body that returns: since then nothing was beyond it
-  bool isAsked_ = false;      ///< within a question, which lets nothing flow
-  S flatAlpha_ = 0;           ///< of the matrix, where tets were flat; 0: no such value
+  double stiffening_ = 1.0, lawStiffening_ = 1.0;
+  bool lawsOutdated_ = false;  ///< see `isStiffer`
+  bool isGiven_ = false;       ///< shapes other than the first ones
+  bool isStiffer_ = false;     ///< see `isStiffer`
+  double perSecond_ = 0.0;     ///< see `findFactors`
+  bool everFlowed_ = false;    ///< it may have
+  bool yields_ = false;        ///< some tet was beyond its yield surface in the last `forces`
+  bool returns_ = false;       ///< since `forgetFlow`
+  double calmSeconds_ = 0.0;   ///< of a body that returns: since then nothing was beyond it
+  bool isAsked_ = false;       ///< within a question, which lets nothing flow
+  S flatAlpha_ = 0;            ///< of the matrix, where tets were flat; 0: no such value
   S flattest_ = 1;
   S maxTurned_ = 0;      ///< squared difference of quaternions
   double turned_ = 0.0;  ///< sum of the squared differences, each a quarter of the squared angle
   std::vector<kernels::TetFindings<S>> findings_;  ///< by task
 };
+
+/// Calls visit(packed tets, index of a tet in its packs, tets of the cage that it is). The rest of the last pack
+/// repeats the last tet.
+template <class S>
+template <class Visit>
+void CorotatedTets<S>::forTets(Visit&& visit) {
+  for (std::size_t number = 0; number < rest_.count() + rest_.quadratic.size(); ++number) forTet(number, visit);
+}
+
+/// The same for one tet, and what repeats it.
+/// number  see `tetNumbers`
+template <class S>
+template <class Visit>
+void CorotatedTets<S>::forTet(std::size_t number, Visit&& visit) {
+  const auto visitAll = [&](auto& packed, std::size_t first, std::size_t count, const auto& cageTets) {
+    const std::size_t end = first + 1 < count ? first + 1 : kernels::kGroup * packed.packs.size();
+    for (std::size_t k = first; k < end; ++k) visit(packed, k, cageTets);
+  };
+  if (number < rest_.count()) {
+    visitAll(linear_, number, rest_.count(), std::array<std::uint32_t, 1>{rest_.cageTets[number]});
+  } else {
+    const std::size_t q = number - rest_.count();
+    visitAll(quadratic_, q, rest_.quadratic.size(), rest_.quadratic[q].cageTets);
+  }
+}
 
 }  // namespace tetskin::elastic_detail

@@ -78,6 +78,10 @@ Status DeformableBody::setDampingScale(const std::vector<double>& factors) {
   return impl_->changeStiffness("damping by tet", [&](auto& changes) { return changes.setDampingScale(factors); });
 }
 
+Status DeformableBody::setElasticLaw(const ElasticLaw& law, const std::vector<int>& tets) {
+  return impl_->changeSettings("an elastic law", [&](auto& changes) { return changes.setElasticLaw(law, tets); });
+}
+
 Status DeformableBody::addFibres(const Fibres& fibres) {
   return impl_->changeStiffness("fibres", [&](auto& changes) { return changes.addFibres(fibres); });
 }
