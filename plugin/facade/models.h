@@ -9,6 +9,7 @@
 #include <tetskin/core/cage.h>
 #include <tetskin/core/mesh.h>
 #include <tetskin/core/mesh_skin.h>
+#include <tetskin/elastic/elastic_law.h>
 
 #include <array>
 #include <cstddef>

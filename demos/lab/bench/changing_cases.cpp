@@ -150,6 +150,12 @@ Change growing() {
   return change;
 }
 
+Change withLaw(const ElasticLaw& law) {
+  Change change;
+  change.begin = [law](ElasticBody<float>& body) { require(body.setElasticLaw(law)); };
+  return change;
+}
+
 Change pressed(bool gas) {
   Change change;
   change.begin = [gas](ElasticBody<float>& body) {
@@ -241,6 +247,8 @@ void registerChangingCases() {
   });
   addBar("fibres/quarter", [](std::size_t tets) { return withFibres(everyTet(tets, 4)); });
   addBar("fibres/all", [](std::size_t tets) { return withFibres(everyTet(tets, 1)); });
+  addBar("law/neo_hookean", [](std::size_t) { return withLaw(ElasticLaw::neoHookean()); });
+  addBar("law/yeoh", [](std::size_t) { return withLaw(ElasticLaw::yeoh(0.4, 0.2)); });
   addBar("pressure/constant", [](std::size_t) { return pressed(false); });
   addBar("pressure/gas", [](std::size_t) { return pressed(true); });
   add("hollow_ball/nothing", [](State& state) { changingBall(state, [](DeformableBody&) { return Status(); }); });

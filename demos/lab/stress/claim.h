@@ -5,6 +5,8 @@
 // spinning, in steps of any length. No energy beyond what is put in, momentum conserved in free flight, no growth.
 #pragma once
 
+#include <tetskin/elastic/elastic_law.h>
+
 #include <string>
 #include <vector>
 
@@ -33,6 +35,7 @@ struct Claim {
   /// The body has grown, begins at rest in its new size, and yields. What it stores is not known then: energies are
   /// kinetic ones.
   bool changing = false;
+  ElasticLaw law;
 };
 
 /// A name such as "free/sphere/E=1e+09/1kg/c=0.02/spin=10/dt=1_60/tol=0.005"

@@ -103,6 +103,7 @@ void bindAndRun(const StressCase& stressCase, Verdict& verdict) {
       scenes::sceneNamed(stressCase.scene).make(model.bodyCage, sceneOptions(stressCase, model));
   for (const auto& body : scene->world().deformables()) {
     if (stressCase.changing) growAndYield(*body, body->youngsModulus());
+    if (stressCase.law != ElasticLaw()) scenes::require(body->setElasticLaw(stressCase.law));
   }
   SkinOptions options;
   options.interpolation = stressCase.interpolation;
@@ -145,12 +146,16 @@ void runCase(const StressCase& stressCase, Run& run) {
 
 }  // namespace
 
-measure::MeasuredScenes stressScenes(bool changing) {
+measure::MeasuredScenes stressScenes(bool changing, const ElasticLaw& law) {
   measure::MeasuredScenes scenes;
   for (StressCase& stressCase : stressCases()) {
-    if (changing && !isOurs(stressCase.force)) continue;
+    if ((changing || law != ElasticLaw()) && !isOurs(stressCase.force)) continue;
     stressCase.changing = changing;
-    if (stressCase.claim) stressCase.claim->changing = changing;
+    stressCase.law = law;
+    if (stressCase.claim) {
+      stressCase.claim->changing = changing;
+      stressCase.claim->law = law;
+    }
     const measure::Kind kind = isOurs(stressCase.force) ? measure::Kind::Surface : measure::Kind::Bullet;
     const measure::Often often = stressCase.lasts   ? measure::Often::Long
                                  : stressCase.quick ? measure::Often::Quick

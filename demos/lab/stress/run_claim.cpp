@@ -103,6 +103,7 @@ double referenceExtent(const Claim& claim, const SoftObject& body) {
   }
   auto reference = ElasticBody<double>::create(body.model().cage, elastic).value();
   if (claim.changing) growAndYield(reference, claim.youngsModulus);
+  scenes::require(reference.setElasticLaw(claim.law));
   for (std::size_t n = 0; n < reference.nodeCount(); ++n) {
     const btSoftBody::Node& node = soft.m_nodes[static_cast<int>(n)];
     Vector3d::Map(reference.positions()[n]) = toEigen(node.m_x);
@@ -194,6 +195,7 @@ ClaimRun::ClaimRun(const Claim& claim, Run& run)
     growAndYield(body_.deformable(), claim.youngsModulus);
     enlarge(body_);
   }
+  scenes::require(body_.deformable().setElasticLaw(claim.law));
   const Vector3d drift = landing_ ? Vector3d(0.5, -2.0, 0.0) : Vector3d(0.2, 0.1, -0.1);
   body_.push(size_ * drift, claim.spin * Vector3d(1.0, 1.0, 0.3).normalized());
   began_ = motionOf(body_, !claim.changing);

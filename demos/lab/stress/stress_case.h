@@ -78,8 +78,9 @@ struct StressCase {
   bool rests = false;                   ///< it is expected to be at rest at the end
   StatusCode refusal = StatusCode::Ok;  ///< expected status of createSoftBody and bind, or of bind alone
   bool quick = false;                   ///< also runs with --quick
-  bool lasts = false;          ///< a minute or more of simulated time, or one of thousands of claims: only with --long
-  bool changing = false;       ///< its bodies have grown, and yield: see `growAndYield`
+  bool lasts = false;     ///< a minute or more of simulated time, or one of thousands of claims: only with --long
+  bool changing = false;  ///< its bodies have grown, and yield: see `growAndYield`
+  ElasticLaw law;
   std::optional<Claim> claim;  ///< is run and judged instead of everything above
 
   double substep() const { return timeStep / substeps; }
