@@ -62,8 +62,13 @@ void SoftObject::push(const Vector3d& velocity, const Vector3d& spin) {
   }
 }
 
+void SoftObject::setElasticLaw(const ElasticLaw& law) {
+  scenes::require(deformable_.setElasticLaw(law));
+  law_ = law;
+}
+
 double SoftObject::elasticEnergy() const {
-  return measure::elasticEnergy(*model_, soft(), {deformable_.youngsModulus(), deformable_.poissonRatio()},
+  return measure::elasticEnergy(*model_, soft(), {deformable_.youngsModulus(), deformable_.poissonRatio()}, law_,
                                 stiffnessScale_);
 }
 

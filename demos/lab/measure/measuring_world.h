@@ -63,6 +63,7 @@ class SoftObject {
   const BodyModel& model() const { return *model_; }
   const std::vector<double>& stiffnessScale() const { return stiffnessScale_; }  ///< tetCount; empty: 1
 
+  void setElasticLaw(const ElasticLaw& law);
   /// Adds to the velocities of all nodes.
   void push(const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin = Eigen::Vector3d::Zero());
 
@@ -88,6 +89,7 @@ class SoftObject {
   const SurfaceContact* contact_ = nullptr;  ///< null if the body's nodes touch rigid bodies
   ModelPtr model_;
   std::vector<double> stiffnessScale_;
+  ElasticLaw law_;
   SoftBodySkin skin_;
   std::vector<Eigen::Vector3d> surface_;
 };

@@ -136,7 +136,23 @@ double kineticEnergy(const btMultiBody& body) {
                 spin.dot(toEigen(body.getBaseInertia()).cwiseProduct(spin)));
 }
 
-double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli,
+namespace {
+
+/// The energy per volume as it stands in elastic/src/kernels/hyperelasticity.h, by principal stretches.
+double energyOfLaw(const ElasticLaw& law, double mu, double lambda, const Vector3d& stretches) {
+  const double squares = stretches.squaredNorm(), grown = stretches.prod() - 1.0;
+  const double ofVolume = grown < 3.0 ? 3.0 + 2.0 * grown - grown * grown / 3.0 : 6.0;  // 3 J^(2/3), nearly
+  const double distortion = std::max(squares - ofVolume, 0.0), k = std::min(distortion, largestDistortion(law));
+  const double stiffened = k * k * (law.c2 + law.c3 * k) + k * (2.0 * law.c2 + 3.0 * law.c3 * k) * (distortion - k);
+  const double collapsed = std::pow(std::max(3.0 - squares, 0.0) / 3.0, 3.0);
+  const double apart = std::max(1.0 - stretches.sum(), 0.0);
+  return 0.5 * mu * (squares - 3.0 + collapsed + stiffened + apart * apart) - mu * grown +
+         0.5 * (lambda + mu) * grown * grown;
+}
+
+}  // namespace
+
+double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli, const ElasticLaw& law,
                      const std::vector<double>& stiffnessScale) {
   const double mu = moduli.youngsModulus / (2.0 * (1.0 + moduli.poissonRatio));
   const double lambda = 2.0 * mu * moduli.poissonRatio / (1.0 - 2.0 * moduli.poissonRatio);
@@ -148,8 +164,12 @@ double elasticEnergy(const BodyModel& model, const btSoftBody& body, const Elast
     // The smallest singular value is negative if the tet is inverted.
     Vector3d strain = Eigen::JacobiSVD<Matrix3d>(gradient).singularValues();
     if (gradient.determinant() < 0.0) strain[2] = -strain[2];
-    strain.array() -= 1.0;
     const double volume = std::abs(rest.determinant()) / 6.0 * (stiffnessScale.empty() ? 1.0 : stiffnessScale[t]);
+    if (law.kind != ElasticLaw::Kind::Corotated) {
+      energy += volume * energyOfLaw(law, mu, lambda, strain);
+      continue;
+    }
+    strain.array() -= 1.0;
     energy += volume * (mu * strain.squaredNorm() + 0.5 * lambda * strain.sum() * strain.sum());
   }
   return energy;

@@ -6,6 +6,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <tetskin/elastic/elastic_body.h>
+#include <tetskin/elastic/elastic_law.h>
 
 #include <Eigen/Core>
 
@@ -51,9 +52,9 @@ int invertedTets(const BodyModel& model, const btSoftBody& body);
 double kineticEnergy(const btSoftBody& body);
 double kineticEnergy(const btRigidBody& body);
 double kineticEnergy(const btMultiBody& body);  ///< kinetic energy of its base
-/// The energy of corotated elasticity.
+/// The energy of elasticity by a law.
 /// stiffnessScale  tetCount; empty: 1
-double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli,
+double elasticEnergy(const BodyModel& model, const btSoftBody& body, const ElasticModuli& moduli, const ElasticLaw& law,
                      const std::vector<double>& stiffnessScale);
 
 }  // namespace tetskin::measure

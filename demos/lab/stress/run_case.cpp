@@ -152,6 +152,8 @@ measure::MeasuredScenes stressScenes(bool changing, const ElasticLaw& law) {
     if ((changing || law != ElasticLaw()) && !isOurs(stressCase.force)) continue;
     stressCase.changing = changing;
     stressCase.law = law;
+    // What has been stretched tenfold comes back more slowly: other laws are softer there than a linear one.
+    if (law != ElasticLaw() && stressCase.recovers) stressCase.frames *= 4;
     if (stressCase.claim) {
       stressCase.claim->changing = changing;
       stressCase.claim->law = law;

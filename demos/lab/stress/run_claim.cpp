@@ -195,7 +195,7 @@ ClaimRun::ClaimRun(const Claim& claim, Run& run)
     growAndYield(body_.deformable(), claim.youngsModulus);
     enlarge(body_);
   }
-  scenes::require(body_.deformable().setElasticLaw(claim.law));
+  body_.setElasticLaw(claim.law);
   const Vector3d drift = landing_ ? Vector3d(0.5, -2.0, 0.0) : Vector3d(0.2, 0.1, -0.1);
   body_.push(size_ * drift, claim.spin * Vector3d(1.0, 1.0, 0.3).normalized());
   began_ = motionOf(body_, !claim.changing);

@@ -18,7 +18,7 @@ namespace tetskin {
 ///   Yeoh         E / 3 (s - 1 / s^2) (1 + 2 c2 K + 3 c3 K^2),  K = s^2 + 2 / s - 3
 /// So neo-Hookean becomes softer than a linear law when it is pulled, and far stiffer when it is pressed. Yeoh's
 /// stiffens when it is pulled, as rubber and flesh do. The volume resists with Lamé's lambda + mu times (J - 1). K is
-/// bounded: from 60 on, at nearly eight times the length, stress grows in proportion to what the neo-Hookean's does.
+/// bounded by `largestDistortion`: from there on stress grows in proportion to what the neo-Hookean's does.
 /// Sources: see src/kernels/hyperelasticity.h.
 struct ElasticLaw {
   enum class Kind { Corotated, NeoHookean, Yeoh };
@@ -37,6 +37,10 @@ struct ElasticLaw {
 
 /// Ok, or InvalidOption, with what is wrong.
 TETSKIN_ELASTIC_API Status checkElasticLaw(const ElasticLaw& law);
+
+/// The K from which on a law goes on in proportion: 60, at nearly eight times the length, or where it is a hundred times
+/// stiffer than a neo-Hookean one.
+TETSKIN_ELASTIC_API double largestDistortion(const ElasticLaw& law);
 
 /// How a sample is loaded: pulled or pressed along one axis, along two, or along one while another keeps its length
 /// (planar tension, "pure shear").
@@ -60,8 +64,9 @@ struct FittedLaw {
 };
 
 /// The Young's modulus and, of Yeoh's law, the coefficients with which a law meets measured curves best: least squares
-/// of relative errors, among coefficients that `checkElasticLaw` accepts. points  at least one; at least three for
-/// Yeoh's law Errors  InvalidOption: too few points, or points that no elastic material has
+/// of relative errors, among coefficients that `checkElasticLaw` accepts.
+/// points  at least one; at least three for Yeoh's law
+/// Errors  InvalidOption: too few points, or points that no elastic material has
 TETSKIN_ELASTIC_API Result<FittedLaw> fitElasticLaw(ElasticLaw::Kind kind, const std::vector<StressPoint>& points);
 
 }  // namespace tetskin

@@ -267,6 +267,7 @@ int ElasticBody<Scalar>::step(double seconds, const std::array<double, 3>& accel
   const int iterations = p.dynamics.solve(p.solve, limits, p.limits.iterations, threads);
   p.dynamics.remember(elastic_detail::SolvedWith::ElasticityAlone, threads);
   p.dynamics.removeMomentum();
+  p.dynamics.shortenStep(elastic_detail::SolvedWith::ElasticityAlone, threads);
   p.write(seconds);
   return iterations;
 }

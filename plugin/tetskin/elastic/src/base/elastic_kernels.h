@@ -80,15 +80,13 @@ struct TetWork {
   S largestStrain = 0;  ///< the largest plastic strain that may remain: see rest_change.h
 
   // Of tets with another law than the corotated one: see hyperelasticity.h.
-  const S* laws = nullptr;  ///< 1 for such a tet, 0 for others, c2, c3, wide, by pack; null: all are corotated
+  /// 1 for such a tet, 0 for others, c2, c3, `largestDistortion`, wide, by pack; null: all are corotated
+  const S* laws = nullptr;
   S* stiffer = nullptr;     ///< wide, by pack: how much stiffer than at rest such tets are, at least 1; null: not asked
 };
 
 /// Scalars of a pack's changes at one point, and of its laws.
-constexpr std::size_t kChange = 10 * kGroup, kLaw = 3 * kGroup;
-
-/// Yeoh's law goes on linearly in K from here, that of a bar of nearly eight times its length: see hyperelasticity.h.
-constexpr double kLargestDistortion = 60.0;
+constexpr std::size_t kChange = 10 * kGroup, kLaw = 4 * kGroup;
 
 /// Ratio of volume to rest volume below which a tet counts as flat. No body is flat under its own weight; one that is
 /// squashed by ten times what it can carry is, and the corner on which one falls.

@@ -44,6 +44,8 @@ constexpr double kFlatAlpha = 200.0;
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
 constexpr double kNear = 1e-4;
 
+/// Share of a tet's height by which nodes may move in a step, relative to the body, without a look at what its law does.
+constexpr double kSmallMove = 0.1;
 /// The share of its energy that damping leaves a vibration in half a period.
 /// damping  in seconds: the damping ratio is half of this times the circular frequency
 double keptInHalfPeriod(double damping, double frequency) {
@@ -249,7 +251,7 @@ void BodyDynamics<S>::predict(const StepStart& start, ParallelFor* threads) {
   if (shapeLaw_.find) giveShapes();
   components_.find(nodes(), pinned_ > 0, seconds);
   if (changed_) stiffnessOverInertia_ = components_.stiffnessOverInertia();
-  stiffnessNumber_ = seconds * (seconds + meanDamping_) * stiffnessPerInertia();
+  stiffnessNumber_ = seconds * (seconds + meanDamping_ / tets_->countedLaws()) * stiffnessPerInertia();
   stiff_ = stiffnessNumber_ > kStiff;
   components_.move(matrix_, seconds, places_, velocities_, moved_, relative_);
   tets_->flowFor(seconds);
@@ -285,10 +287,12 @@ void BodyDynamics<S>::chooseScheme() {
   const bool free = untouched_ >= kUntouched;
   if (!free || stiff_ || changed_ || !remembered_) history_.forget();
   secondOrder_ = free && history_.fits(forceSeconds_);
-  scheme_ = secondOrder_   ? secondOrder(lastSeconds_, damping_)
-            : free         ? firstOrder(lastSeconds_, damping_)
-            : mayCarryOn() ? carryingOn(lastSeconds_, damping_, carriedShare())
-                           : backwardEuler(lastSeconds_, damping_);
+  if (tets_) tets_->countLaws();
+  const double damping = lawDamping();
+  scheme_ = secondOrder_   ? secondOrder(lastSeconds_, damping)
+            : free         ? firstOrder(lastSeconds_, damping)
+            : mayCarryOn() ? carryingOn(lastSeconds_, damping, carriedShare())
+                           : backwardEuler(lastSeconds_, damping);
 }
 
 /// In lasting contact points come and go, which shakes an undamped body: its own steps damp it.
@@ -335,7 +339,7 @@ double BodyDynamics<S>::matrixAlpha() const {
 template <class S>
 void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
   const double seconds = lastSeconds_, flat = pressed_                ? kFlatAlpha * seconds * seconds
-                                              : scheme_.carried > 0.0 ? backwardEuler(seconds, damping_).alpha(seconds)
+                                              : scheme_.carried > 0.0 ? backwardEuler(seconds, lawDamping()).alpha(seconds)
                                                                       : 0.0;
   const auto flatAlpha = static_cast<S>(flat);
   changed_ = true;  // until it is done: memory may run out
@@ -600,6 +604,70 @@ void BodyDynamics<S>::bendTurns() {
   assert(stage_ == Stage::Solvable || stage_ == Stage::Remembered);
   if (!tets_ || lastSeconds_ * lastSeconds_ * stiffnessPerInertia() < kFeelsTurns) return;
   components_.bendTurns(nodes(), lastSeconds_, matrix_.solution());
+}
+
+template <class S>
+void BodyDynamics<S>::shortenStep(SolvedWith what, ParallelFor* threads) {
+  assert(stage_ == Stage::Solvable || stage_ == Stage::Remembered);
+  if (!tets_ || !tets_->hasLaws()) return;
+  AlignedVector<S> rigid(matrix_.solution(), matrix_.solution() + matrix_.wideSize());
+  components_.projectToRigidMotion(nodes(), rigid.data());
+  AlignedVector<S> deviation(4 * matrix_.slotCount(), S(0)), from = moved_;
+  const auto dt = static_cast<S>(lastSeconds_);
+  S fastest{};
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    const bool free = matrix_.massAt(slot) != S(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S all = matrix_.solution()[wide + k * kGroup], own = free ? rigid[wide + k * kGroup] : all;
+      deviation[4 * slot + k] = all - own;
+      from[4 * slot + k] += dt * own;
+      fastest = std::max(fastest, std::abs(all - own));
+    }
+  });
+  if (lastSeconds_ * static_cast<double>(fastest) <= kSmallMove * tets_->leastHeight()) return;
+  const double share = strainShare(what, deviation, from, threads);
+  if (share == 1.0) return;
+  const auto kept = static_cast<S>(share);
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k)
+      matrix_.solution()[wide + k * kGroup] -= (S(1) - kept) * deviation[4 * slot + k];
+  });
+  history_.forget();
+}
+
+/// The share of a deformation, by velocities, which stores no more energy than its forces and the matrix account for: a
+/// power of a half.
+/// from  where it begins, displacements
+template <class S>
+double BodyDynamics<S>::strainShare(SolvedWith what, const AlignedVector<S>& deviation, const AlignedVector<S>& from,
+                                    ParallelFor* threads) {
+  constexpr int kMostHalvings = 12;
+  constexpr double kRounding = 1e-5;
+  AlignedVector<S> forces(deviation.size()), points = from, product;
+  if (what == SolvedWith::Others) {
+    product.resize(matrix_.wideSize());
+    matrix_.multiply(deviation.data(), product.data(), threads);
+  }
+  // Without others, A times the solution is the right side: what rotates a body beside it is not resisted.
+  const AlignedVector<S>& impulses = what == SolvedWith::Others ? product : rightSide_;
+  tets_->probeForces(points.data(), forces.data(), threads);
+  double resisted = 0.0, power = 0.0;  // deviation (A - M) deviation, forces deviation
+  bySlots(matrix_.slotCount(), [&](std::size_t slot, std::size_t wide) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const S by = deviation[4 * slot + k];
+      resisted += static_cast<double>(by * (impulses[wide + k * kGroup] - matrix_.massAt(slot) * by));
+      power += static_cast<double>(by * forces[4 * slot + k]);
+    }
+  });
+  const double began = (1.0 + kRounding) * tets_->energy(points.data(), threads);
+  const double borne = std::max(resisted, 0.0) * std::max(1.0, lastSeconds_ * lastSeconds_ / alpha_);
+  double share = 1.0;
+  for (int k = 0; k < kMostHalvings; ++k, share *= 0.5) {
+    const double by = share * lastSeconds_;
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = from[i] + static_cast<S>(by) * deviation[i];
+    if (tets_->energy(points.data(), threads) <= began - by * power + share * share * borne) break;
+  }
+  return share;
 }
 
 // ---- probes

@@ -7,8 +7,8 @@
 // with I = tr C and K = I - 3 J^(2/3), which is 0 where only the volume changes, and I - 3 where it does not. K has the
 // power of J up to second order, as it then holds for inverted tets, too. At rest there is no stress, and small strains
 // have the given mu and lambda. Forces follow from F alone, and need no rotation: they are R T g with
-//   T = mu (1 - b' + 2 w) U + ((lambda + mu) (J - 1) - mu - 2 (1 - (J - 1) / 3) w) cof U,   w = (2 c2 K + 3 c3 K^2) mu
-//   / 2
+//   T = mu (1 - b' + 2 w) U + ((lambda + mu) (J - 1) - mu - 2 (1 - (J - 1) / 3) w) cof U
+//   w = mu (c2 K + 3/2 c3 K^2)
 // computed from E = U - 1 without losing the digits of small strains. b = max(3 - I, 0)^3 / 27 takes from what has
 // nearly collapsed to a point the force that would keep it there. It is pushed apart where tr U < 1, by an energy of
 // mu / 2 (1 - tr U)^2.
@@ -29,6 +29,7 @@ template <class S, int W>
 struct WideLaw {
   Lanes<S, W> shear, bulk;    ///< 2 mu V, lambda V
   Lanes<S, W> second, third;  ///< c2, c3
+  Lanes<S, W> most;           ///< see `largestDistortion`
 };
 
 /// The largest of the three numbers whose squares and fourth powers have these sums, from below: exact if they are
@@ -64,8 +65,8 @@ TETSKIN_NOINLINE Lanes<S, W> addLaw(const WideLaw<S, W>& law, const WideMatrix<S
   // The power of J is constant from J = 4 on, where its parabola would fall.
   const V bounded = smaller(grown, all<S, W>(S(3)));
   const V distortion = larger(sheared + (grown < S(3) ? kThird * grown * grown : grown + grown - S(3)), zero);  // K
-  // Far beyond what is measured of any rubber, w stays what it is there.
-  const V measured = smaller(distortion, all<S, W>(S(kLargestDistortion)));
+  // Beyond, w stays what it is there.
+  const V measured = smaller(distortion, law.most);
   const V mu = S(0.5) * law.shear, volume = law.bulk + mu;
   const V w = mu * measured * (law.second + S(1.5) * law.third * measured);
   const V collapsed = larger(-kThird * (trace + trace + squares), zero), lost = mu * collapsed * collapsed;
@@ -91,7 +92,7 @@ TETSKIN_NOINLINE Lanes<S, W> addLaw(const WideLaw<S, W>& law, const WideMatrix<S
     direction += along * along;
   }
   // The largest second derivatives by stretches that keep the volume, and by others.
-  const V slope = distortion < S(kLargestDistortion) ? mu * (law.second + S(3) * law.third * distortion) : zero;
+  const V slope = distortion < law.most ? mu * (law.second + S(3) * law.third * distortion) : zero;
   const V own = shape - lost, squeezed = larger(shape - pressure, zero);
   const V sideways = own + squeezed * squareRoots<S, W>(largestSquare<S, W>(stretch)) + slope * direction;
   const V along = own + (volume + S(2) * kThird * w) * largestSquare<S, W>(cof);

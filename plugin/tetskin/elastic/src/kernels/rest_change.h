@@ -290,7 +290,7 @@ TETSKIN_INLINE WideMatrix<S, W> stressByLaw(const Work& work, std::size_t pack, 
   const S* from = work.laws + kLaw * pack + static_cast<std::size_t>(lane);
   const auto other = (wide<S, W>(from) > S(0)) & !(lost > S(0));
   const WideLaw<S, W> law{other ? shear : V{}, other ? bulk : V{}, wide<S, W>(from + kGroup),
-                          wide<S, W>(from + 2 * kGroup)};
+                          wide<S, W>(from + 2 * kGroup), wide<S, W>(from + 3 * kGroup)};
   WideMatrix<S, W> stress =
       stressOf<S, W>(strain, trace, other ? V{} : shear, other ? V{} : bulk, withEnergy, findings);
   const V stiffer = addLaw<S, W>(law, strain, withEnergy, stress, findings);

@@ -96,7 +96,7 @@ void CorotatedTets<S>::setExtraDamping(const std::vector<double>& byTet) {
 
 template <class S>
 void CorotatedTets<S>::findFactors(double perSecond) {
-  perSecond_ = perSecond;
+  perSecond_ = perSecond / countedLaws_;
   isStiffer_ = lawsOutdated_ = false;
   forBoth([&](auto& packed) {
     const bool any = !packed.stiffer.empty() || !packed.lawStiffer.empty() || !packed.extraDamping.empty();

@@ -319,7 +319,10 @@ const S* CorotatedTets<S>::corners(S alpha, S flatAlpha, const S* points, Parall
 template <class S>
 bool CorotatedTets<S>::serialize(StateStream& stream, S alpha, bool ofMatrix) {
   forBoth([&](auto& packed) { stream.plain(packed.rotations.data(), packed.rotations.size()); });
-  if (!linear_.laws.empty() || !quadratic_.laws.empty()) stream(lawStiffening_);
+  if (hasLaws()) {
+    stream(lawStiffening_);
+    stream(countedLaws_);
+  }
   bool changed = serializeChanges(stream, ofMatrix);
   if (!ofMatrix) return false;
   const S flatAlpha = flatAlpha_;

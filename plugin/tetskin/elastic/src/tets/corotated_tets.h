@@ -91,6 +91,15 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   bool isStiffer() const { return isStiffer_ || lawsOutdated_ || (fibres_ && fibres_->outdated().stiffer); }
   /// Laws of the tets of the cage; empty: all are corotated. A quadratic tet has the mean of its parts. Cost O(T)
   void setLaws(const std::vector<ElasticLaw>& byTet);
+  bool hasLaws() const { return !linear_.laws.empty() || !quadratic_.laws.empty(); }
+  /// How much stiffer than at rest laws make the tets, in the mean, as it was when the matrix had to be made anew for it
+  /// last: 1 without laws.
+  double countedLaws() const { return countedLaws_; }
+  void countLaws() {
+    if (lawsOutdated_) countedLaws_ = lawStiffening_;
+  }
+  /// Of all tets at rest, if they have laws. Of quadratic ones, half of the height.
+  double leastHeight() const { return leastHeight_; }
   /// Seconds of damping that tets have beside the least of their body, by tet of the cage; empty: none.
   void setExtraDamping(const std::vector<double>& byTet);
   /// Counts all this in the matrix from its next assembly on.
@@ -169,6 +178,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   void setStiffer(Packs& packed, std::size_t tet, const Tets& cageTets);
   void findStiffening();
   void findLawStiffening();
+  void findLeastHeight();
   /// Forces may be a quarter stiffer than the matrix.
   static bool isStale(double wanted, double inMatrix) { return wanted > 1.25 * inMatrix; }
   /// What a tet counts in the matrix over what it does at rest.
@@ -212,7 +222,7 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   double mu_ = 0.0;
   double youngsModulus_ = 0.0, flowRate_ = 0.0, yieldEnergy_ = 0.0;
   S flowShare_ = 1, largestStrain_ = 0;  ///< see TetWork
-  double stiffening_ = 1.0, lawStiffening_ = 1.0;
+  double stiffening_ = 1.0, lawStiffening_ = 1.0, countedLaws_ = 1.0, leastHeight_ = 0.0;
   bool lawsOutdated_ = false;  ///< see `isStiffer`
   bool isGiven_ = false;       ///< shapes other than the first ones
   bool isStiffer_ = false;     ///< see `isStiffer`

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 // SPDX-FileCopyrightText: 2026 the tetskin authors
 #include <tetskin/elastic/elastic_law.h>
-#include <tetskin/elastic/src/base/elastic_kernels.h>
 
 #include <Eigen/Core>
 #include <Eigen/QR>
@@ -19,13 +18,15 @@ Status badLaw(std::string message) {
   return {StatusCode::InvalidOption, std::move(message)};
 }
 
+constexpr double kMostDistortion = 60.0;
+
 /// The factor by which Yeoh's law is stiffer than the neo-Hookean one.
 double yeohFactor(double c2, double c3, double k) {
   return 1.0 + 2.0 * c2 * k + 3.0 * c3 * k * k;
 }
 
 double leastFactor(double c2, double c3) {
-  const double end = kernels::kLargestDistortion, turn = c3 > 0.0 ? std::clamp(-c2 / (3.0 * c3), 0.0, end) : 0.0;
+  const double end = kMostDistortion, turn = c3 > 0.0 ? std::clamp(-c2 / (3.0 * c3), 0.0, end) : 0.0;
   return std::min({1.0, yeohFactor(c2, c3, end), yeohFactor(c2, c3, turn)});
 }
 
@@ -47,11 +48,12 @@ double linearFactor(Loading loading) {
 }
 
 /// What the three terms of Yeoh's law, or the only one of another, give for a modulus of 1.
-std::array<double, 3> termsOf(ElasticLaw::Kind kind, const StressPoint& point) {
+/// most  bound of K
+std::array<double, 3> termsOf(ElasticLaw::Kind kind, const StressPoint& point, double most) {
   if (kind == ElasticLaw::Kind::Corotated) return {linearFactor(point.loading) * (point.stretch - 1.0), 0.0, 0.0};
   const auto [k, slope] = distortionOf(point.loading, point.stretch);
-  const double bounded = std::min(k, kernels::kLargestDistortion);
-  return {slope / 3.0, slope / 3.0 * 2.0 * bounded, slope / 3.0 * 3.0 * bounded * bounded};
+  const double bounded = std::min(k, most);
+  return {slope / 3.0, slope / 3.0 * 2.0 * bounded, slope * bounded * bounded};
 }
 
 /// The least squares of these terms, if they are a law.
@@ -59,7 +61,7 @@ std::optional<FittedLaw> fitOf(ElasticLaw::Kind kind, const std::vector<StressPo
                                const std::vector<int>& terms) {
   Eigen::MatrixXd rows(points.size(), terms.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const std::array<double, 3> all = termsOf(kind, points[p]);
+    const std::array<double, 3> all = termsOf(kind, points[p], kMostDistortion);
     for (std::size_t k = 0; k < terms.size(); ++k) {
       rows(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(k)) =
           all[static_cast<std::size_t>(terms[k])] / points[p].stress;
@@ -74,15 +76,20 @@ std::optional<FittedLaw> fitOf(ElasticLaw::Kind kind, const std::vector<StressPo
   FittedLaw fit;
   fit.law = {kind, moduli[1] / moduli[0], moduli[2] / moduli[0]};
   fit.youngsModulus = moduli[0];
-  fit.error = std::sqrt((rows * found - ones).squaredNorm() / static_cast<double>(points.size()));
   if (!checkElasticLaw(fit.law).ok()) return {};
+  double squares = 0.0;
+  for (const auto& [stretch, stress, loading] : points) {
+    const double relative = moduli[0] * nominalStress(fit.law, loading, stretch) / stress - 1.0;
+    squares += relative * relative;
+  }
+  fit.error = std::sqrt(squares / static_cast<double>(points.size()));
   return fit;
 }
 
 }  // namespace
 
 Status checkElasticLaw(const ElasticLaw& law) {
-  constexpr double kLeast = 0.05, kMost = 1e6;
+  constexpr double kLeast = 0.05;
   if (!(std::isfinite(law.c2) && std::isfinite(law.c3))) return badLaw("the coefficients of a law must be finite");
   if (law.kind != ElasticLaw::Kind::Yeoh) {
     const bool none = law.c2 == 0.0 && law.c3 == 0.0;
@@ -93,15 +100,22 @@ Status checkElasticLaw(const ElasticLaw& law) {
         "Yeoh's law: 1 + 2 c2 K + 3 c3 K^2 must be at least 0.05 for all K from 0 to 60: a material that is "
         "pulled would give way");
   }
-  if (!(yeohFactor(law.c2, law.c3, kernels::kLargestDistortion) <= kMost)) {
-    return badLaw("Yeoh's law: 1 + 2 c2 K + 3 c3 K^2 may be at most 1e6 at K = 60");
-  }
   return {};
+}
+
+/// The least K at which the factor is kStiffest.
+double largestDistortion(const ElasticLaw& law) {
+  constexpr double kStiffest = 100.0;
+  if (law.kind != ElasticLaw::Kind::Yeoh) return kMostDistortion;
+  // (kStiffest - 1) / K = c2 + sqrt(c2^2 + 3 c3 (kStiffest - 1))
+  const double inside = law.c2 * law.c2 + 3.0 * law.c3 * (kStiffest - 1.0);
+  const double slope = inside >= 0.0 ? law.c2 + std::sqrt(inside) : 0.0;
+  return slope > 0.0 ? std::min((kStiffest - 1.0) / slope, kMostDistortion) : kMostDistortion;
 }
 
 double nominalStress(const ElasticLaw& law, Loading loading, double stretch) {
   assert(stretch > 0.0);
-  const std::array<double, 3> terms = termsOf(law.kind, {stretch, 0.0, loading});
+  const std::array<double, 3> terms = termsOf(law.kind, {stretch, 0.0, loading}, largestDistortion(law));
   return terms[0] + law.c2 * terms[1] + law.c3 * terms[2];
 }
 

@@ -438,8 +438,12 @@ void DeformableSolver::Impl::finishContacts() {
 
 void DeformableSolver::Impl::writeBack() {
   enter(Stage::WriteBack);
-  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor*) {
+  forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     if (body.solve.again) body.dynamics->bendTurns();
+    if (body.elastic)
+      body.dynamics->shortenStep(body.solve.again ? elastic_detail::SolvedWith::Others
+                                                  : elastic_detail::SolvedWith::ElasticityAlone,
+                                 inner);
     writeVelocities(body);
     listForeignNodes(body);
   });
