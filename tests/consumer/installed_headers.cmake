@@ -1,5 +1,5 @@
 # cmake -DSOURCE= -DPREFIX= -DSTAGED= -DCOMPILER= -DEIGEN= -P: tests that exactly the public headers are installed, at
-# most 30; a file that includes a private one compiles neither with the installation nor in the build.
+# most 31; a file that includes a private one compiles neither with the installation nor in the build.
 file(GLOB_RECURSE installed RELATIVE ${PREFIX}/include ${PREFIX}/include/*)
 file(GLOB public RELATIVE ${SOURCE}/plugin ${SOURCE}/plugin/tetskin/*.h ${SOURCE}/plugin/tetskin/*/*.h)
 list(SORT installed)
@@ -8,8 +8,8 @@ if(NOT installed STREQUAL public)
   message(FATAL_ERROR "Installed: ${installed}\nPublic: ${public}")
 endif()
 list(LENGTH installed count)
-if(count GREATER 30)
-  message(FATAL_ERROR "${count} public headers are more than 30")
+if(count GREATER 31)
+  message(FATAL_ERROR "${count} public headers are more than 31")
 endif()
 
 file(GLOB_RECURSE private RELATIVE ${SOURCE}/plugin ${SOURCE}/plugin/tetskin/*.h)

@@ -199,7 +199,9 @@ TEST(ElasticLaws, AFitFindsTheLawOfACurve) {
     std::vector<StressPoint> points;
     for (const Loading loading : {Loading::Uniaxial, Loading::Equibiaxial, Loading::Planar}) {
       for (const double s : {0.6, 0.9, 1.1, 1.5, 2.0, 3.0}) {
-        const double across = loading == Loading::Equibiaxial ? s : loading == Loading::Planar ? 1.0 : 1.0 / std::sqrt(s);
+        const double across = loading == Loading::Equibiaxial ? s
+                              : loading == Loading::Planar    ? 1.0
+                                                              : 1.0 / std::sqrt(s);
         if (Vector3d(s, across, 1.0 / (s * across)).squaredNorm() - 3.0 < largestDistortion(law))
           points.push_back({s, 2e5 * nominalStress(law, loading, s), loading});
       }
@@ -373,6 +375,68 @@ TYPED_TEST(ElasticLawsOf, WhatIsCrushedGainsNoEnergy) {
         }
       }
     }
+  }
+}
+
+/// The matrix of a step knows nothing of how stiff its neighbours become when a node is thrown back into them.
+TYPED_TEST(ElasticLawsOf, WhatStiffensWithinAStepGainsNoEnergy) {
+  const Cage block = boxCage({2, 4, 2}, Vector3d(0.2, 0.4, 0.2), false);
+  std::vector<double> masses = lumped(block.mesh);
+  for (double& m : masses) m /= 0.016;  // 1 kg
+  for (const ElasticLaw& law : {ElasticLaw::neoHookean(), ElasticLaw::yeoh(0.4, 0.2)}) {
+    for (int start = 0; start < 60; ++start) {
+      ElasticOptions options = lawOptions(0.3, 0.0, 1000.0);
+      options.nodeMasses = masses;
+      ElasticBody<TypeParam> body = made<TypeParam>(block, options);
+      ASSERT_TRUE(body.setElasticLaw(law).ok());
+      Points nodes = block.mesh.nodes;
+      const double by = std::pow(10.0, -1.0 + (start % 12) / 6.0);
+      nodes[static_cast<std::size_t>(7 * start) % nodes.size()] +=
+          by * Vector3d(std::sin(1.0 + start), std::sin(2.0 + 3.0 * start), std::sin(3.0 + 5.0 * start));
+      fill(body.positions(), nodes);
+      const double stored = body.energy();
+      for (int k = 0; k < 30; ++k) {
+        body.step(1.0 / 60.0);
+        ASSERT_LT(motionOf(body, masses).energy(), 1.02 * stored)
+            << "c2 " << law.c2 << " start " << start << " step " << k;
+      }
+    }
+  }
+}
+
+/// Seconds of damping in which a bar without inertia, whose length and widths begin as these, comes to a length: its
+/// forces are those of the law, and its viscosity that of small strains.
+double dampingsUntil(const ElasticLaw& law, double nu, Vector3d stretches, double length) {
+  const double mu = 0.5 / (1.0 + nu), lambda = nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), step = 1e-3;
+  Eigen::Matrix3d viscosity = lambda * Eigen::Matrix3d::Ones();
+  viscosity.diagonal().array() += 2.0 * mu;
+  double seconds = 0.0;
+  for (; stretches[0] > length; seconds += step)
+    stretches -= step * viscosity.ldlt().solve(closedStress(law, nu, stretches));
+  return seconds;
+}
+
+TYPED_TEST(ElasticLawsOf, ViscosityDoesNotGrowWithTheStiffness) {
+  constexpr double kDamping = 1.0, kStep = 1.0 / 240, kNu = 0.45, kEnd = 1.4;
+  const Vector3d from(2.2, 0.6742, 0.6742);
+  const Cage bar = boxCage({8, 2, 2}, Vector3d(1.0, 0.25, 0.25), true);
+  for (const ElasticLaw& law : {ElasticLaw::neoHookean(), ElasticLaw::yeoh(0.4, 0.2)}) {
+    ElasticOptions options = lawOptions(kNu, kDamping, 1e6);
+    options.density = 1.0;
+    ElasticBody<TypeParam> body = made<TypeParam>(bar, options);
+    ASSERT_TRUE(body.setElasticLaw(law).ok());
+    Points nodes;
+    for (const Vector3d& p : bar.mesh.nodes) nodes.push_back(from.cwiseProduct(p));
+    fill(body.positions(), nodes);
+    int steps = 0;
+    for (double length = from[0]; length > kEnd && steps < 2400; ++steps) {
+      body.step(kStep);
+      const Points now = pointsOf(body.positions());
+      const auto [low, high] = std::minmax_element(now.begin(), now.end(),
+                                                   [](const Vector3d& p, const Vector3d& q) { return p.x() < q.x(); });
+      length = high->x() - low->x();
+    }
+    EXPECT_NEAR(steps * kStep / dampingsUntil(law, kNu, from, kEnd), 1.0, 0.05) << "c2 " << law.c2;
   }
 }
 

@@ -21,25 +21,32 @@ namespace tetskin {
 /// bounded by `largestDistortion`: from there on stress grows in proportion to what the neo-Hookean's does.
 /// Sources: see src/kernels/hyperelasticity.h.
 struct ElasticLaw {
+  /// Their formulas: see above.
   enum class Kind { Corotated, NeoHookean, Yeoh };
 
-  Kind kind = Kind::Corotated;
-  /// Of Yeoh's: C20 / C10 and C30 / C10, no units. 1 + 2 c2 K + 3 c3 K^2 must be at least 0.05 for all K from 0 to 60
-  double c2 = 0.0, c3 = 0.0;
+  Kind kind = Kind::Corotated;  ///< the formula
+  double c2 = 0.0;              ///< of Yeoh's: C20 / C10, no units
+  /// Likewise C30 / C10. 1 + 2 c2 K + 3 c3 K^2 must be at least 0.05 for all K from 0 to 60.
+  double c3 = 0.0;
 
+  /// The linear law.
   static ElasticLaw corotated() { return {}; }
+  /// Softer when it is pulled, stiffer when it is pressed.
   static ElasticLaw neoHookean() { return {Kind::NeoHookean, 0.0, 0.0}; }
+  /// Stiffer in both. See `c2`.
   static ElasticLaw yeoh(double c2, double c3) { return {Kind::Yeoh, c2, c3}; }
 
+  /// The same law.
   bool operator==(const ElasticLaw& other) const { return kind == other.kind && c2 == other.c2 && c3 == other.c3; }
+  /// Another law.
   bool operator!=(const ElasticLaw& other) const { return !(*this == other); }
 };
 
 /// Ok, or InvalidOption, with what is wrong.
 TETSKIN_ELASTIC_API Status checkElasticLaw(const ElasticLaw& law);
 
-/// The K from which on a law goes on in proportion: 60, at nearly eight times the length, or where it is a hundred times
-/// stiffer than a neo-Hookean one.
+/// The K from which on a law goes on in proportion: 60, at nearly eight times the length, or where it is a hundred
+/// times stiffer than a neo-Hookean one.
 TETSKIN_ELASTIC_API double largestDistortion(const ElasticLaw& law);
 
 /// How a sample is loaded: pulled or pressed along one axis, along two, or along one while another keeps its length
@@ -52,13 +59,14 @@ TETSKIN_ELASTIC_API double nominalStress(const ElasticLaw& law, Loading loading,
 
 /// A measured point of a curve of stress over stretch.
 struct StressPoint {
-  double stretch = 1.0;  ///< length over length at rest, above 0 and not 1
-  double stress = 0.0;   ///< nominal, pressure units; negative where the sample is pressed
-  Loading loading = Loading::Uniaxial;
+  double stretch = 1.0;                 ///< length over length at rest, above 0 and not 1
+  double stress = 0.0;                  ///< nominal, pressure units; negative where the sample is pressed
+  Loading loading = Loading::Uniaxial;  ///< of the sample
 };
 
+/// What `fitElasticLaw` finds.
 struct FittedLaw {
-  ElasticLaw law;
+  ElasticLaw law;              ///< of the kind that was asked for
   double youngsModulus = 0.0;  ///< pressure units
   double error = 0.0;          ///< root mean square of the relative errors of the stresses
 };

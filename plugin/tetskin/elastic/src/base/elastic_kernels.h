@@ -82,7 +82,7 @@ struct TetWork {
   // Of tets with another law than the corotated one: see hyperelasticity.h.
   /// 1 for such a tet, 0 for others, c2, c3, `largestDistortion`, wide, by pack; null: all are corotated
   const S* laws = nullptr;
-  S* stiffer = nullptr;     ///< wide, by pack: how much stiffer than at rest such tets are, at least 1; null: not asked
+  S* stiffer = nullptr;  ///< wide, by pack: how much stiffer than at rest such tets are, at least 1; null: not asked
 };
 
 /// Scalars of a pack's changes at one point, and of its laws.

@@ -44,7 +44,8 @@ constexpr double kFlatAlpha = 200.0;
 /// Share of a body's radius up to which a node counts as where it was: far more than rounding.
 constexpr double kNear = 1e-4;
 
-/// Share of a tet's height by which nodes may move in a step, relative to the body, without a look at what its law does.
+/// Share of a tet's height by which nodes may move in a step, relative to the body, without a look at what its law
+/// does.
 constexpr double kSmallMove = 0.1;
 /// The share of its energy that damping leaves a vibration in half a period.
 /// damping  in seconds: the damping ratio is half of this times the circular frequency
@@ -338,9 +339,10 @@ double BodyDynamics<S>::matrixAlpha() const {
 
 template <class S>
 void BodyDynamics<S>::assemble(double alpha, ParallelFor* threads) {
-  const double seconds = lastSeconds_, flat = pressed_                ? kFlatAlpha * seconds * seconds
-                                              : scheme_.carried > 0.0 ? backwardEuler(seconds, lawDamping()).alpha(seconds)
-                                                                      : 0.0;
+  const double seconds = lastSeconds_, flat = pressed_ ? kFlatAlpha * seconds * seconds
+                                              : scheme_.carried > 0.0
+                                                  ? backwardEuler(seconds, lawDamping()).alpha(seconds)
+                                                  : 0.0;
   const auto flatAlpha = static_cast<S>(flat);
   changed_ = true;  // until it is done: memory may run out
   alpha_ = alpha;

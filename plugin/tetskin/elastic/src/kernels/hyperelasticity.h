@@ -52,7 +52,7 @@ template <class S, int W>
 TETSKIN_NOINLINE Lanes<S, W> addLaw(const WideLaw<S, W>& law, const WideMatrix<S, W>& strain, bool withEnergy,
                                     WideMatrix<S, W>& stress, WideFindings<S, W>& findings) {
   using V = Lanes<S, W>;
-  constexpr S kThird = S(1) / S(3);
+  constexpr S kThird = S(1) / S(3);  // of polynomials
   const auto* e = strain.at;
   const V zero{}, one = all<S, W>(1), trace = traceOf<S, W>(strain);
   const V squares = e[0] * e[0] + e[4] * e[4] + e[8] * e[8] + S(2) * (e[1] * e[1] + e[2] * e[2] + e[5] * e[5]);

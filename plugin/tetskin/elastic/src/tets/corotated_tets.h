@@ -92,11 +92,12 @@ class TETSKIN_ELASTIC_API CorotatedTets {
   /// Laws of the tets of the cage; empty: all are corotated. A quadratic tet has the mean of its parts. Cost O(T)
   void setLaws(const std::vector<ElasticLaw>& byTet);
   bool hasLaws() const { return !linear_.laws.empty() || !quadratic_.laws.empty(); }
-  /// How much stiffer than at rest laws make the tets, in the mean, as it was when the matrix had to be made anew for it
-  /// last: 1 without laws.
+  /// How much stiffer than at rest laws make the tets, in the mean, within a seventh: a time scheme that followed it
+  /// exactly would need a new matrix in each step. 1 without laws.
   double countedLaws() const { return countedLaws_; }
   void countLaws() {
-    if (lawsOutdated_) countedLaws_ = lawStiffening_;
+    constexpr double kSame = 1.15;  // ratio
+    if (lawStiffening_ > kSame * countedLaws_ || countedLaws_ > kSame * lawStiffening_) countedLaws_ = lawStiffening_;
   }
   /// Of all tets at rest, if they have laws. Of quadratic ones, half of the height.
   double leastHeight() const { return leastHeight_; }

@@ -18,6 +18,7 @@ Status badLaw(std::string message) {
   return {StatusCode::InvalidOption, std::move(message)};
 }
 
+/// See `largestDistortion`.
 constexpr double kMostDistortion = 60.0;
 
 /// The factor by which Yeoh's law is stiffer than the neo-Hookean one.
@@ -89,7 +90,7 @@ std::optional<FittedLaw> fitOf(ElasticLaw::Kind kind, const std::vector<StressPo
 }  // namespace
 
 Status checkElasticLaw(const ElasticLaw& law) {
-  constexpr double kLeast = 0.05;
+  constexpr double kLeast = 0.05;  // of the factor
   if (!(std::isfinite(law.c2) && std::isfinite(law.c3))) return badLaw("the coefficients of a law must be finite");
   if (law.kind != ElasticLaw::Kind::Yeoh) {
     const bool none = law.c2 == 0.0 && law.c3 == 0.0;

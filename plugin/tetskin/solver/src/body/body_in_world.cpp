@@ -46,7 +46,7 @@ void setMaterial(Force& force, const ElasticMaterial& material) {
 }  // namespace
 
 Status checkGravity(const btVector3& gravity, const btSoftBody& body) {
-  constexpr double kMaxBodyLengths = 1e6;
+  constexpr double kMaxBodyLengths = 1e6;  // per second squared
   double volume = 0.0;
   for (int t = 0; t < body.m_tetras.size(); ++t) volume += static_cast<double>(body.m_tetras[t].m_element_measure);
   const double size = cubeRoot(volume), length = static_cast<double>(gravity.length());

@@ -441,9 +441,8 @@ void DeformableSolver::Impl::writeBack() {
   forEachBody(bodies.bodies(), threads, [&](SolvedBody& body, ParallelFor* inner) {
     if (body.solve.again) body.dynamics->bendTurns();
     if (body.elastic)
-      body.dynamics->shortenStep(body.solve.again ? elastic_detail::SolvedWith::Others
-                                                  : elastic_detail::SolvedWith::ElasticityAlone,
-                                 inner);
+      body.dynamics->shortenStep(
+          body.solve.again ? elastic_detail::SolvedWith::Others : elastic_detail::SolvedWith::ElasticityAlone, inner);
     writeVelocities(body);
     listForeignNodes(body);
   });
