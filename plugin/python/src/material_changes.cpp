@@ -137,7 +137,8 @@ void setElasticLaw(Body& body, const std::string& law, double c2, double c3, con
   guarded(body, [&] { check(changeable(body).setElasticLaw(wanted, some)); });
 }
 
-nb::dict fitted(const std::string& law, const ArrayLike& points, const std::string& loading) {
+nb::typed<nb::dict, nb::str, double> fitted(const std::string& law, const ArrayLike& points,
+                                            const std::string& loading) {
   const Numbers<double> numbers(points, "points", 2);
   const Loading how = facade::valueOf(facade::Choice<Loading>{loading});
   std::vector<StressPoint> curve;
